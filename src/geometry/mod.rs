@@ -1,0 +1,21 @@
+//! Points, boxes, planes, eyes and frusta, once for flatland (2D) and space (3D).
+//!
+//! Conventions: right-handed, y up, radians, world units. A half-space is *inside* where `n·x + d ≥ 0`.
+//! All view arithmetic is done relative to the eye (`point − eye` first), so its rounding error is
+//! relative to the distance from the eye and not to the distance from the origin.
+
+mod bounds;
+mod eye;
+mod frustum;
+mod id;
+mod predicate;
+mod project;
+mod space;
+
+pub use bounds::Aabb;
+pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
+pub use frustum::{Frustum, FrustumTest, PlaneTest};
+pub use id::{MaterialId, NodeId, ObjectId, PrimId};
+pub use predicate::{orient2d, orient3d};
+pub use project::{Footprint, ScreenRect, project_box};
+pub use space::{Flat, Solid, Space, Vector};

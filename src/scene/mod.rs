@@ -1,0 +1,278 @@
+//! What is looked at: load, generate, preprocess, validate. The only door for outside data.
+//!
+//! After [`Scene::new`] every coordinate is finite, every corner index is in range and there is at
+//! least one live primitive, so nothing behind this door can fail.
+
+mod report;
+
+pub use report::{Dropped, Report, SceneError};
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use sha2::{Digest, Sha256};
+
+use crate::geometry::{Aabb, Flat, MaterialId, ObjectId, PrimId, Solid, Space, View, ViewPath};
+
+/// A named part of a scene: an `o` or `g` of an OBJ file, a node of a glTF file, a flatland object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Its name; unique names are not required.
+    pub name: String,
+    /// Name of the group it belongs to, or empty.
+    pub group: String,
+    /// Rigid motion, if it moves: one transform a frame, repeated; applied to the stored points.
+    pub motion: Option<Arc<[Pose]>>,
+}
+
+/// A rigid transform: rotation by the unit quaternion `[x, y, z, w]`, then translation.
+/// In flatland only rotation about z and translation in x, y are used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Unit quaternion.
+    pub rotation: [f32; 4],
+    /// World units.
+    pub translation: [f32; 3],
+}
+
+/// How a primitive is colored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name.
+    pub name: String,
+    /// Diffuse color (Kd), linear 0..1.
+    pub color: [f32; 3],
+}
+
+/// A planar convex polygon (in flatland: a segment) made of one or more primitives. What occluders are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Face {
+    /// Point indices in order, counter-clockwise seen from the front.
+    pub corners: Vec<u32>,
+    /// The primitives that tile it, ascending.
+    pub prims: Vec<PrimId>,
+}
+
+/// Everything a reader or generator hands over; [`Scene::new`] validates it.
+#[derive(Clone, Debug)]
+pub struct Parts<S: Space> {
+    /// Short name, such as the file's stem.
+    pub name: String,
+    /// Where it came from: a path as given, or `generate:NAME?…`.
+    pub source: String,
+    /// Shared points, world units, after `origin` was subtracted.
+    pub points: Vec<S::Vector>,
+    /// Corners of each primitive by [`PrimId`]; `None` was dropped and keeps its id.
+    pub prims: Vec<Option<S::Corners>>,
+    /// Object of each primitive.
+    pub prim_object: Vec<ObjectId>,
+    /// Material of each primitive.
+    pub prim_material: Vec<MaterialId>,
+    /// Planar convex polygons.
+    pub faces: Vec<Face>,
+    /// Objects by [`ObjectId`].
+    pub objects: Vec<Object>,
+    /// Materials by [`MaterialId`].
+    pub materials: Vec<Material>,
+    /// What was subtracted from the file's coordinates, for models far from their origin.
+    pub origin: DVec3,
+    /// View paths that came with it (in the same recentered coordinates), such as `eyes` and `walk`.
+    pub paths: Vec<ViewPath<S>>,
+    /// What was noticed while loading.
+    pub report: Report,
+}
+
+/// A validated scene. Frozen; shared by reference.
+#[derive(Clone, Debug)]
+pub struct Scene<S: Space> {
+    parts: Parts<S>,
+    live: Vec<PrimId>,
+    bounds: Aabb<S::Vector>,
+    hash: [u8; 32],
+}
+
+impl<S: Space> Scene<S> {
+    /// The only door in.
+    ///
+    /// # Errors
+    /// [`SceneError::Empty`] if no primitive is live, [`SceneError::Inconsistent`] if a table does not
+    /// fit another one (a reader's fault, not the file's).
+    pub fn new(parts: Parts<S>) -> Result<Self, SceneError> {
+        let n = parts.prims.len();
+        let bad = |what: &'static str| SceneError::Inconsistent { scene: parts.source.clone(), what };
+        if parts.prim_object.len() != n || parts.prim_material.len() != n {
+            return Err(bad("a per-primitive table has another length than the primitives"));
+        }
+        let in_points = |c: &u32| (*c as usize) < parts.points.len();
+        if !parts.prims.iter().flatten().all(|c| c.as_ref().iter().all(in_points)) || !parts.faces.iter().all(|f| f.corners.iter().all(in_points)) {
+            return Err(bad("a corner points past the last point"));
+        }
+        if !parts.points.iter().all(|p| crate::geometry::Vector::is_finite(*p)) {
+            return Err(bad("a point is not finite"));
+        }
+        if parts.prim_object.iter().any(|o| o.at() >= parts.objects.len()) || parts.prim_material.iter().any(|m| m.at() >= parts.materials.len()) {
+            return Err(bad("a primitive names an object or material that is not there"));
+        }
+        let live: Vec<PrimId> = (0..n as u32).map(PrimId).filter(|p| parts.prims[p.at()].is_some()).collect();
+        if live.is_empty() {
+            return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM });
+        }
+        let hash = digest(&parts);
+        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash };
+        scene.bounds = scene.live.iter().fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)));
+        Ok(scene)
+    }
+
+    /// Short name.
+    pub fn name(&self) -> &str {
+        &self.parts.name
+    }
+    /// Where it came from, as it may be given on the command line again.
+    pub fn source(&self) -> &str {
+        &self.parts.source
+    }
+    /// All points.
+    pub fn points(&self) -> &[S::Vector] {
+        &self.parts.points
+    }
+    /// Number of primitive ids, dropped ones included.
+    pub fn prim_count(&self) -> usize {
+        self.parts.prims.len()
+    }
+    /// Ids of the primitives that exist, ascending; never empty.
+    pub fn live(&self) -> &[PrimId] {
+        &self.live
+    }
+    /// Corner indices of a primitive, or `None` if it was dropped.
+    #[inline]
+    pub fn corners(&self, prim: PrimId) -> Option<S::Corners> {
+        self.parts.prims[prim.at()]
+    }
+    /// Corner points of a live primitive (two or three).
+    #[inline]
+    pub fn prim_points(&self, prim: PrimId) -> impl Iterator<Item = S::Vector> + '_ {
+        let corners = self.parts.prims[prim.at()];
+        (0..S::CORNERS).filter_map(move |i| corners.map(|c| self.parts.points[c.as_ref()[i] as usize]))
+    }
+    /// Bounds of a live primitive.
+    #[inline]
+    pub fn prim_bounds(&self, prim: PrimId) -> Aabb<S::Vector> {
+        Aabb::of(self.prim_points(prim))
+    }
+    /// Object of a primitive.
+    pub fn object_of(&self, prim: PrimId) -> ObjectId {
+        self.parts.prim_object[prim.at()]
+    }
+    /// Linear diffuse color of a primitive.
+    pub fn color_of(&self, prim: PrimId) -> [f32; 3] {
+        self.parts.materials[self.parts.prim_material[prim.at()].at()].color
+    }
+    /// Material of a primitive.
+    pub fn material_of(&self, prim: PrimId) -> MaterialId {
+        self.parts.prim_material[prim.at()]
+    }
+    /// All objects.
+    pub fn objects(&self) -> &[Object] {
+        &self.parts.objects
+    }
+    /// All materials.
+    pub fn materials(&self) -> &[Material] {
+        &self.parts.materials
+    }
+    /// Planar convex polygons.
+    pub fn faces(&self) -> &[Face] {
+        &self.parts.faces
+    }
+    /// Bounds of all live primitives.
+    pub fn bounds(&self) -> Aabb<S::Vector> {
+        self.bounds
+    }
+    /// What was subtracted from the file's coordinates.
+    pub fn origin(&self) -> DVec3 {
+        self.parts.origin
+    }
+    /// View paths that came with the scene.
+    pub fn paths(&self) -> &[ViewPath<S>] {
+        &self.parts.paths
+    }
+    /// What was noticed while loading.
+    pub fn report(&self) -> &Report {
+        &self.parts.report
+    }
+    /// SHA-256 of the geometry (points, corners, objects, colors), lower-case hex.
+    pub fn hash_hex(&self) -> String {
+        self.hash.iter().map(|b| format!("{b:02x}")).collect()
+    }
+    /// Bytes that the tables take, names left out.
+    pub fn memory_bytes(&self) -> usize {
+        use std::mem::size_of;
+        let faces: usize = self.parts.faces.iter().map(|f| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len())).sum();
+        self.parts.points.len() * size_of::<S::Vector>()
+            + self.parts.prims.len() * (size_of::<Option<S::Corners>>() + size_of::<ObjectId>() + size_of::<MaterialId>())
+            + self.live.len() * size_of::<PrimId>()
+            + faces
+    }
+    /// The parts again, to make another scene of them.
+    pub fn into_parts(self) -> Parts<S> {
+        self.parts
+    }
+    /// Normal of a live primitive, not of unit length; see [`Space::normal`].
+    #[inline]
+    pub fn normal(&self, prim: PrimId) -> S::Vector {
+        let mut p = [S::Vector::default(); 3];
+        for (to, from) in p.iter_mut().zip(self.prim_points(prim)) {
+            *to = from;
+        }
+        S::normal(&p[..S::CORNERS])
+    }
+}
+
+/// A scene of either space, for code that has not yet asked which.
+#[derive(Clone, Debug)]
+pub enum AnyScene {
+    /// Flatland.
+    Flat(Arc<Scene<Flat>>),
+    /// Space.
+    Solid(Arc<Scene<Solid>>),
+}
+
+/// A view path of either space.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AnyPath {
+    /// Flatland.
+    Flat(ViewPath<Flat>),
+    /// Space.
+    Solid(ViewPath<Solid>),
+}
+
+fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
+    use crate::geometry::Vector;
+    let mut hash = Sha256::new();
+    hash.update(S::NAME);
+    for p in &parts.points {
+        (0..S::Vector::AXES).for_each(|a| hash.update(p.get(a).to_le_bytes()));
+    }
+    for (i, corners) in parts.prims.iter().enumerate() {
+        match corners {
+            Some(c) => c.as_ref().iter().for_each(|k| hash.update(k.to_le_bytes())),
+            None => hash.update(u32::MAX.to_le_bytes()),
+        }
+        hash.update(parts.prim_object[i].0.to_le_bytes());
+        parts.materials[parts.prim_material[i].at()].color.iter().for_each(|c| hash.update(c.to_le_bytes()));
+    }
+    hash.finalize().into()
+}
+
+/// A view that frames the whole scene: from the front, right and above in space; from below in flatland.
+pub fn framing_view<S: Space>(bounds: &Aabb<S::Vector>, width: u32, height: u32) -> View<S> {
+    use crate::geometry::{Eye, Vector};
+    let fov = 60f32.to_radians();
+    let center = bounds.center();
+    let radius = (bounds.diagonal() * 0.5).max(1e-3);
+    let toward = S::Vector::from_fn(|a| if S::Vector::AXES == 2 { [0.0, -1.0][a] } else { [0.6, 0.5, 0.8][a] });
+    let distance = radius / (fov * 0.5).sin() * 1.05;
+    let position = center + toward * (distance / toward.length());
+    let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { 0.0 });
+    let eye = Eye { position, target: center, up, fov, near: (distance - radius * 1.02).max(distance * 1e-3), far: distance + radius * 1.1 };
+    View { eye, width, height: if S::Vector::AXES == 2 { 1 } else { height } }
+}
