@@ -3,8 +3,10 @@
 //! After [`Scene::new`] every coordinate is finite, every corner index is in range and there is at
 //! least one live primitive, so nothing behind this door can fail.
 
+mod progress;
 mod report;
 
+pub use progress::{Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
 
 use std::sync::Arc;
