@@ -18,4 +18,4 @@ pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{MaterialId, NodeId, ObjectId, PrimId};
 pub use predicate::{orient2d, orient3d};
 pub use project::{Footprint, ScreenRect, project_box};
-pub use space::{Flat, Solid, Space, Vector};
+pub use space::{Flat, Solid, Space, Vector, faces_away};

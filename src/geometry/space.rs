@@ -135,3 +135,11 @@ impl Space for Solid {
         (corners[1] - corners[0]).cross(corners[2] - corners[0])
     }
 }
+
+/// Whether a primitive turns its back to the eye: the eye lies strictly behind the primitive's plane.
+/// The one rule for every method and for the rasterizer, so that they agree on grazing primitives.
+/// `corners` are the primitive's `S::CORNERS` points.
+#[inline]
+pub fn faces_away<S: Space>(eye: S::Vector, corners: &[S::Vector]) -> bool {
+    S::normal(corners).dot(eye - corners[0]) < 0.0
+}

@@ -1,1 +1,30 @@
-//! Room index.
+//! Spatial indexes: built once, then frozen.
+
+mod kd_tree;
+mod whole;
+
+pub use kd_tree::{KdNode, KdTree};
+pub use whole::Whole;
+
+use std::ops::Range;
+
+use crate::geometry::{Aabb, NodeId, PrimId, Space};
+
+/// A frozen tree of boxes over the primitives of a scene, as stepping and drawing see it.
+/// Parents have smaller ids than their children; the root is node 0.
+pub trait Hierarchy<S: Space>: Send + Sync {
+    /// Number of nodes, at least 1.
+    fn node_count(&self) -> usize;
+    /// Bounds of everything at and below a node.
+    fn bounds(&self, node: NodeId) -> Aabb<S::Vector>;
+    /// Parent, or `None` for the root.
+    fn parent(&self, node: NodeId) -> Option<NodeId>;
+    /// Ids of the children; empty for a leaf.
+    fn children(&self, node: NodeId) -> Range<u32>;
+    /// Depth below the root, which is 0.
+    fn level(&self, node: NodeId) -> u32;
+    /// All primitives at and below a node.
+    fn prims(&self, node: NodeId) -> &[PrimId];
+    /// Bytes that the index takes.
+    fn bytes(&self) -> usize;
+}

@@ -1,0 +1,132 @@
+//! `centroid`: the polygons in view, nearest centroid first, up to a budget.
+//!
+//! Klosowski and Silva 2000, Section 4.5, the baseline of their comparison. As there, view-frustum and
+//! back-face culling come first (Section 5), and there is no spatial index. It is not conservative: what
+//! lies beyond the budget is left out, visible or not. Ties are broken by id.
+//! Cost: O(n) tests and a sort of the polygons in view.
+
+use std::sync::Arc;
+
+use super::explain::{Distance, Evidence, Facing, Tested};
+use super::{backface_knob, prim_faces_away};
+use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
+use crate::drawing::{Drawing, Subject};
+use crate::geometry::{self, FrustumTest, PrimId, Space, Vector, View};
+use crate::index::Whole;
+use crate::scene::{Progress, Scene};
+
+/// The method.
+pub struct Centroid;
+
+/// Parameters of [`Centroid`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    budget: Budget,
+    backface_culling: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        // The budget at which the paper compares with it.
+        Self { budget: Budget::Percent(10.0), backface_culling: false }
+    }
+}
+
+const CODE: &[CodeLine] = &[
+    CodeLine { label: "Order:1", text: "for each polygon p of the scene" },
+    CodeLine { label: "Order:2", text: "  if p is outside the view frustum or faces away: skip it" },
+    CodeLine { label: "Order:3", text: "  else put p into L with its centroid's distance from the eye" },
+    CodeLine { label: "Draw:1", text: "for each polygon p of L, nearest first" },
+    CodeLine { label: "Draw:2", text: "  if the budget is not spent: draw p" },
+    CodeLine { label: "Draw:3", text: "  else leave p out" },
+];
+
+impl<S: Space> Method<S> for Centroid {
+    type Params = Params;
+    type Index = Whole<S>;
+    type Memory = ();
+    type Note = Evidence<S>;
+    type Dense = ();
+    const CARD: Card = Card {
+        key: "centroid",
+        name: "Centroid ordering with a budget",
+        summary: "Sorts the polygons in view by the distance of their centroids and draws the nearest ones until the budget is spent.",
+        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set Estimation. IEEE TVCG 6(2), 2000, Section 4.5.",
+        doi: "10.1109/2945.856993",
+        conservative: false,
+        code: CODE,
+    };
+
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let budget = Knob {
+            name: "budget",
+            unit: "primitives",
+            meaning: "how many primitives are drawn: a number, or a share of the scene such as 10%",
+            source: "Klosowski and Silva 2000, Section 4.5",
+        };
+        knobs.budget(budget, &mut params.budget);
+        backface_knob(knobs, &mut params.backface_culling);
+    }
+    fn build(scene: &Arc<Scene<S>>, _: &Params, _: &dyn Progress) -> Option<Whole<S>> {
+        Some(Whole::new(scene.clone()))
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        _: &Whole<S>,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Params,
+        (): &mut (),
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        let mut queue = in_view(scene, view, params, watch);
+        queue.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let budget = params.budget.of(scene.live().len());
+        for (rank, &(squared, prim)) in queue.iter().enumerate() {
+            let fits = rank < budget;
+            watch.event(Event::Line(if fits { 4 } else { 5 }));
+            watch.note(|| Evidence::Distance(Distance::of(scene, prim, squared, rank, budget)));
+            if fits {
+                out.prims.push(prim);
+            }
+            watch.event(Event::DecidedPrim(prim, if fits { Verdict::Visible } else { Verdict::OverBudget }));
+        }
+    }
+    fn dense(_: &Scene<S>, _: &View<S>) {}
+    fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
+    fn explain((): &(), scene: &Scene<S>, _: &Whole<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = note {
+            note.draw(scene, view, to);
+        }
+    }
+}
+
+/// The primitives in view with the squared distance of their centroids from the eye, world units².
+fn in_view<S: Space, O: Observer<Evidence<S>>>(scene: &Scene<S>, view: &View<S>, params: &Params, watch: &mut O) -> Vec<(f32, PrimId)> {
+    let (frustum, eye) = (view.frustum(), view.eye.position);
+    let mut queue = Vec::with_capacity(scene.live().len());
+    for &prim in scene.live() {
+        watch.event(Event::Line(1));
+        let bounds = scene.prim_bounds(prim);
+        let planes = geometry::Frustum::<S::Vector>::ALL;
+        let test = frustum.test(&bounds, planes);
+        if matches!(test, FrustumTest::Outside(_)) {
+            watch.note(|| Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test)));
+            watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+        } else if params.backface_culling && prim_faces_away(scene, eye, prim) {
+            watch.note(|| Evidence::Facing(Facing::of(scene, view, prim)));
+            watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+        } else {
+            watch.event(Event::Line(2));
+            let toward = centroid(scene, prim) - eye;
+            queue.push((toward.dot(toward), prim));
+        }
+    }
+    queue
+}
+
+/// Mean of a live primitive's corners.
+pub(super) fn centroid<S: Space>(scene: &Scene<S>, prim: PrimId) -> S::Vector {
+    scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32)
+}

@@ -1,0 +1,162 @@
+//! `frustum`: view-frustum culling over a kD-tree.
+//!
+//! Clark 1976 (hierarchical view-frustum culling); the tree is that of Coorg and Teller 1997,
+//! Section 4. Planes that a node lies wholly inside of are not tested again below it. A node is culled
+//! only where it lies outside a plane by more than the bound on the rounding error (see
+//! [`crate::geometry::Frustum`]), so no visible primitive is lost. Primitives of a leaf that the frustum
+//! cuts are drawn without a test of their own, as in the paper.
+//! Cost: O(nodes that touch the frustum's boundary + primitives drawn).
+
+use std::sync::Arc;
+
+use super::explain::{Evidence, Facing, Tested};
+use super::{backface_knob, prim_faces_away};
+use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
+use crate::drawing::{Drawing, Subject};
+use crate::geometry::{self, FrustumTest, NodeId, Space, View};
+use crate::index::KdTree;
+use crate::scene::{Progress, Scene};
+
+/// The method.
+pub struct Frustum;
+
+/// Parameters of [`Frustum`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    tree_height: u32,
+    backface_culling: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        // The paper's height: about 250 nodes.
+        Self { tree_height: 8, backface_culling: false }
+    }
+}
+
+const CODE: &[CodeLine] = &[
+    CodeLine { label: "Visible:1", text: "Visible(node T, planes P)" },
+    CodeLine { label: "Visible:2", text: "  if T lies outside a plane of P" },
+    CodeLine { label: "Visible:3", text: "    return: nothing of T can be seen" },
+    CodeLine { label: "Visible:4", text: "  P' := the planes of P that cut T" },
+    CodeLine { label: "Visible:5", text: "  if P' is empty or T is a leaf" },
+    CodeLine { label: "Visible:6", text: "    Gather(T): draw all polygons of T" },
+    CodeLine { label: "Visible:7", text: "  else for each child T' of T" },
+    CodeLine { label: "Visible:8", text: "    Visible(T', P')" },
+    CodeLine { label: "Gather:1", text: "Gather(T) with back-face culling" },
+    CodeLine { label: "Gather:2", text: "  draw those polygons of T that face the eye" },
+];
+
+impl<S: Space> Method<S> for Frustum {
+    type Params = Params;
+    type Index = KdTree<S::Vector>;
+    type Memory = ();
+    type Note = Evidence<S>;
+    type Dense = ();
+    const CARD: Card = Card {
+        key: "frustum",
+        name: "View-frustum culling over a kD-tree",
+        summary: "Walks a kD-tree from the root and drops every node that lies outside a plane of the view frustum.",
+        paper: "Clark. Hierarchical Geometric Models for Visible Surface Algorithms. CACM 19(10), 1976; kD-tree as in Coorg and Teller, Real-Time Occlusion Culling for Models with Large Occluders, I3D 1997, Section 4.",
+        doi: "10.1145/360349.360354",
+        conservative: true,
+        code: CODE,
+    };
+
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let height = Knob {
+            name: "tree-height",
+            unit: "levels",
+            meaning: "levels of the kD-tree; 8 gives 255 nodes",
+            source: "Coorg and Teller 1997, Section 4",
+        };
+        knobs.integer(height, 1..=24, &mut params.tree_height);
+        backface_knob(knobs, &mut params.backface_culling);
+    }
+    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
+        progress.report(0.0, "building the kD-tree");
+        KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), params.tree_height, || progress.cancelled())
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        index: &Self::Index,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Params,
+        (): &mut (),
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        let frustum = view.frustum();
+        let mut walk = Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
+        walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
+    }
+    fn dense(_: &Scene<S>, _: &View<S>) {}
+    fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
+    fn explain((): &(), scene: &Scene<S>, _: &Self::Index, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = note {
+            note.draw(scene, view, to);
+        }
+    }
+}
+
+/// One traversal.
+struct Walk<'a, S: Space, O> {
+    index: &'a KdTree<S::Vector>,
+    scene: &'a Scene<S>,
+    view: &'a View<S>,
+    frustum: geometry::Frustum<S::Vector>,
+    backface_culling: bool,
+    out: &'a mut DrawList,
+    watch: &'a mut O,
+}
+
+impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
+    fn visible(&mut self, id: NodeId, planes: u8) {
+        let index = self.index;
+        let node = &index.nodes()[id.at()];
+        self.watch.event(Event::Entered(id));
+        self.watch.event(Event::Line(1));
+        let test = self.frustum.test(&node.bounds, planes);
+        let frustum = &self.frustum;
+        self.watch.note(|| Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+        match (test, node.children()) {
+            (FrustumTest::Outside(_), _) => {
+                self.watch.event(Event::Line(2));
+                self.watch.event(Event::DecidedNode(id, Verdict::Outside));
+            }
+            (FrustumTest::Partial(cutting), Some(children)) => {
+                self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+                for child in children {
+                    self.watch.event(Event::Line(7));
+                    self.visible(child, cutting);
+                }
+            }
+            (FrustumTest::Inside | FrustumTest::Partial(_), _) => {
+                self.watch.event(Event::Line(5));
+                self.gather(id);
+                self.watch.event(Event::DecidedNode(id, Verdict::Visible));
+            }
+        }
+        self.watch.event(Event::Left(id));
+    }
+
+    fn gather(&mut self, id: NodeId) {
+        let prims = self.index.prims_below(id);
+        if !self.backface_culling {
+            self.out.prims.extend_from_slice(prims);
+            return;
+        }
+        let (scene, view) = (self.scene, self.view);
+        for &prim in prims {
+            self.watch.event(Event::Line(9));
+            let away = prim_faces_away(scene, view.eye.position, prim);
+            if away {
+                self.watch.note(|| Evidence::Facing(Facing::of(scene, view, prim)));
+            } else {
+                self.out.prims.push(prim);
+            }
+            self.watch.event(Event::DecidedPrim(prim, if away { Verdict::Outside } else { Verdict::Visible }));
+        }
+    }
+}

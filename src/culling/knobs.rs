@@ -1,0 +1,185 @@
+//! Parameters, declared once by each method and visited by sliders, `--set`, sweeps and listings.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+/// What a parameter is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Knob {
+    /// Kebab-case name, as in `--set name=value`.
+    pub name: &'static str,
+    /// Unit, such as `levels`, or empty.
+    pub unit: &'static str,
+    /// One line that says what it does.
+    pub meaning: &'static str,
+    /// Where it comes from, such as `Coorg and Teller 1997, Section 4`.
+    pub source: &'static str,
+}
+
+/// Visits a method's parameters.
+pub trait Knobs {
+    /// A whole number.
+    fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32);
+    /// On or off.
+    fn switch(&mut self, knob: Knob, value: &mut bool);
+    /// How much may be drawn.
+    fn budget(&mut self, knob: Knob, value: &mut Budget);
+}
+
+/// How much may be drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Budget {
+    /// So many primitives.
+    Count(u32),
+    /// A share of the scene's primitives, 0 to 100.
+    Percent(f32),
+}
+
+impl Budget {
+    /// The number of primitives it allows of `total`: a share is rounded up.
+    pub fn of(self, total: usize) -> usize {
+        match self {
+            Self::Count(n) => n as usize,
+            Self::Percent(p) => (f64::from(p) * total as f64 / 100.0).ceil() as usize,
+        }
+    }
+}
+
+impl fmt::Display for Budget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count(n) => write!(f, "{n}"),
+            Self::Percent(p) => write!(f, "{p}%"),
+        }
+    }
+}
+
+impl FromStr for Budget {
+    type Err = &'static str;
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = "a number of primitives such as 2000, or a share such as 10%";
+        match text.strip_suffix('%') {
+            Some(share) => share.trim().parse().ok().filter(|p| (0.0..=100.0).contains(p)).map(Self::Percent).ok_or(expected),
+            None => text.parse().map(Self::Count).map_err(|_| expected),
+        }
+    }
+}
+
+/// Parameters by name, as text; what is not named keeps its default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settings(pub BTreeMap<String, String>);
+
+impl Settings {
+    /// Adds `key=value`.
+    ///
+    /// # Errors
+    /// When there is no `=` or no key.
+    pub fn parse(&mut self, text: &str) -> Result<(), SettingError> {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => {
+                self.0.insert(key.trim().to_owned(), value.trim().to_owned());
+                Ok(())
+            }
+            _ => Err(SettingError::NotAPair(text.to_owned())),
+        }
+    }
+}
+
+/// Why a setting was refused. Displays as one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingError {
+    /// Not of the form `key=value`.
+    #[error("`{0}` is not of the form key=value")]
+    NotAPair(String),
+    /// The method has no such parameter.
+    #[error("`{method}` has no parameter `{key}`; it has {known}")]
+    Unknown {
+        /// The method.
+        method: &'static str,
+        /// The name given.
+        key: String,
+        /// The names there are.
+        known: String,
+    },
+    /// The value does not fit.
+    #[error("`{key}={value}`: expected {expected}")]
+    BadValue {
+        /// The parameter.
+        key: &'static str,
+        /// The value given.
+        value: String,
+        /// What it should be.
+        expected: String,
+    },
+}
+
+/// A parameter's value with its type, for listings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum KnobValue {
+    /// A whole number in a range.
+    Integer(u32, RangeInclusive<u32>),
+    /// On or off.
+    Switch(bool),
+    /// How much may be drawn.
+    Budget(Budget),
+}
+
+impl fmt::Display for KnobValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Integer(v, _) => v.fmt(f),
+            Self::Switch(v) => v.fmt(f),
+            Self::Budget(v) => v.fmt(f),
+        }
+    }
+}
+
+/// Collects all parameters with their values.
+#[derive(Default)]
+pub(super) struct Collect(pub Vec<(Knob, KnobValue)>);
+
+impl Knobs for Collect {
+    fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32) {
+        self.0.push((knob, KnobValue::Integer(*value, range)));
+    }
+    fn switch(&mut self, knob: Knob, value: &mut bool) {
+        self.0.push((knob, KnobValue::Switch(*value)));
+    }
+    fn budget(&mut self, knob: Knob, value: &mut Budget) {
+        self.0.push((knob, KnobValue::Budget(*value)));
+    }
+}
+
+/// Sets parameters from text.
+pub(super) struct Apply<'a> {
+    pub settings: &'a Settings,
+    pub error: Option<SettingError>,
+}
+
+impl Apply<'_> {
+    fn set<T: FromStr>(&mut self, knob: Knob, expected: impl FnOnce() -> String, fits: impl Fn(&T) -> bool, value: &mut T) {
+        let Some(text) = self.settings.0.get(knob.name) else { return };
+        match text.parse().ok().filter(fits) {
+            Some(v) => *value = v,
+            None => {
+                let error = SettingError::BadValue { key: knob.name, value: text.clone(), expected: expected() };
+                self.error.get_or_insert(error);
+            }
+        }
+    }
+}
+
+impl Knobs for Apply<'_> {
+    fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32) {
+        let expected = || format!("a whole number from {} to {}", range.start(), range.end());
+        self.set(knob, expected, |v| range.contains(v), value);
+    }
+    fn switch(&mut self, knob: Knob, value: &mut bool) {
+        self.set(knob, || "true or false".into(), |_| true, value);
+    }
+    fn budget(&mut self, knob: Knob, value: &mut Budget) {
+        self.set(knob, || "a number of primitives such as 2000, or a share such as 10%".into(), |_| true, value);
+    }
+}

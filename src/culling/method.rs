@@ -1,0 +1,127 @@
+//! The shape of a method, generic inside; `entry` erases it, once a frame and never per node.
+
+use std::sync::Arc;
+
+use super::{Knobs, Observer, event::Tallied};
+use crate::drawing::Drawing;
+use crate::geometry::{PrimId, Space, View};
+use crate::index::Hierarchy;
+use crate::scene::{Progress, Scene};
+
+/// One line of a method's pseudocode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CodeLine {
+    /// Procedure and line, such as `Visible:4`.
+    pub label: &'static str,
+    /// The text, indented by two spaces a level.
+    pub text: &'static str,
+}
+
+/// Who a method is. Menus, captions, `cullscope methods` and the documentation all read this.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Card {
+    /// Stable key of files and the command line.
+    pub key: &'static str,
+    /// Its name for people.
+    pub name: &'static str,
+    /// What it does, in one sentence.
+    pub summary: &'static str,
+    /// Authors, title, venue, year; section.
+    pub paper: &'static str,
+    /// Digital object identifier, or empty.
+    pub doi: &'static str,
+    /// Whether its answer always includes every visible primitive.
+    pub conservative: bool,
+    /// Its pseudocode; `Event::Line(i)` refers to line `i`.
+    pub code: &'static [CodeLine],
+}
+
+/// What a frame draws.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DrawList {
+    /// Primitives in the order in which they are drawn; each at most once.
+    pub prims: Vec<PrimId>,
+}
+
+impl DrawList {
+    /// The primitives by ascending id.
+    pub fn ascending(&self) -> Vec<PrimId> {
+        let mut ids = self.prims.clone();
+        ids.sort_unstable();
+        ids
+    }
+}
+
+/// A value of a note's field.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A measured number.
+    Number(f64),
+    /// A count or an id.
+    Integer(u64),
+    /// Yes or no.
+    Switch(bool),
+    /// A word.
+    Word(String),
+    /// Several numbers.
+    List(Vec<f64>),
+}
+
+/// An operand or result of a test, by name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Snake-case name; units last, as in `margin_units`.
+    pub name: &'static str,
+    /// Its value.
+    pub value: Value,
+}
+
+/// A piece of evidence of a method: the operands of one test, not only its result.
+pub trait Note<S: Space>: Tallied + Copy + Send + Sync + 'static {
+    /// What was done, in the past tense and camel case, such as `NodeClassified`.
+    fn kind(&self) -> &'static str;
+    /// Operands and results by name; the trace, the inspector and comparisons read these.
+    fn fields(&self) -> Vec<Field>;
+    /// What was done, in a sentence or two that a student understands.
+    fn sentence(&self, scene: &Scene<S>) -> String;
+}
+
+/// One culling method in one space.
+pub trait Method<S: Space>: Sized + Send + Sync + 'static {
+    /// Parameters.
+    type Params: Default + Clone + PartialEq + Send + Sync;
+    /// Built once per scene and parameters.
+    type Index: Hierarchy<S> + 'static;
+    /// What it keeps from frame to frame.
+    type Memory: Default + Clone + Send;
+    /// Its evidence.
+    type Note: Note<S>;
+    /// Large state that is replayed rather than recorded (a pyramid, a map); `()` if there is none.
+    type Dense: Clone + Send + Sync;
+    /// Identity.
+    const CARD: Card;
+
+    /// Declares every parameter, once.
+    fn knobs(params: &mut Self::Params, knobs: &mut dyn Knobs);
+    /// Scene to index; `None` when cancelled.
+    fn build(scene: &Arc<Scene<S>>, params: &Self::Params, progress: &dyn Progress) -> Option<Self::Index>;
+    /// The method. There is no second copy of this function.
+    #[allow(clippy::too_many_arguments)]
+    fn cull<O: Observer<Self::Note>>(
+        index: &Self::Index,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Self::Params,
+        memory: &mut Self::Memory,
+        out: &mut DrawList,
+        watch: &mut O,
+    );
+    /// Large state before the first event of a frame.
+    fn dense(scene: &Scene<S>, view: &View<S>) -> Self::Dense;
+    /// The only way large state changes: `cull` calls it as it works and a film calls it again, so
+    /// replay cannot drift from the run.
+    fn apply(dense: &mut Self::Dense, scene: &Scene<S>, note: &Self::Note);
+    /// Draws, in world coordinates, what is private to the method at one step: its large state, and
+    /// the evidence of the current note.
+    fn explain(dense: &Self::Dense, scene: &Scene<S>, index: &Self::Index, view: &View<S>, note: Option<&Self::Note>, to: &mut Drawing<S::Vector>);
+}
