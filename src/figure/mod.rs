@@ -1,1 +1,9 @@
-//! Room figure.
+//! (film, step, look) → drawing: every picture in the explorer and in the documentation.
+//!
+//! [`world`] draws a step in world coordinates, [`Sheet`] and [`project`] put it on paper.
+
+mod look;
+mod place;
+
+pub use look::{Look, role_of, world};
+pub use place::{Sheet, project};

@@ -1,0 +1,116 @@
+//! A step of a film as marks in the world: primitives and nodes by state, the Eye, the evidence.
+
+use crate::culling::{Film, Verdict};
+use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::geometry::{Frustum, NodeId, Space, Vector};
+use crate::index::Hierarchy;
+use crate::trace::{Stamps, State};
+
+/// What is shown of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The primitives, by state.
+    pub prims: bool,
+    /// The boxes of the nodes that were entered, by state.
+    pub nodes: bool,
+    /// The Eye and its frustum.
+    pub eye: bool,
+    /// The evidence of the current event.
+    pub evidence: bool,
+    /// What is marked as selected.
+    pub selected: Subject,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self { prims: true, nodes: true, eye: true, evidence: true, selected: Subject::None }
+    }
+}
+
+/// What a state looks like.
+pub fn role_of(state: State) -> Role {
+    match state {
+        State::Unseen => Role::Scene,
+        State::Open | State::Decided(Verdict::Partial) => Role::Partial,
+        State::Decided(Verdict::Outside) => Role::Outside,
+        State::Decided(Verdict::Hidden) => Role::Hidden,
+        State::Decided(Verdict::Visible) => Role::Visible,
+        State::Decided(Verdict::Approximated | Verdict::OverBudget) => Role::Approximated,
+    }
+}
+
+/// Draws step `step` of a film in world coordinates.
+pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &Look) -> Drawing<S::Vector> {
+    let mut to = Drawing::default();
+    let scene = film.scene();
+    if look.eye {
+        eye(film, &mut to);
+    }
+    if look.prims {
+        for &prim in scene.live() {
+            let points: Vec<_> = scene.prim_points(prim).collect();
+            let role = role_of(stamps.prim(prim, step));
+            let mark = if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
+            to.push(Layer::Scene, role, Subject::Prim(prim), mark);
+        }
+    }
+    if look.nodes && film.hierarchy().node_count() > 1 {
+        nodes(film.hierarchy(), stamps, step, &mut to);
+    }
+    if look.evidence {
+        film.explain(step, &mut to);
+    }
+    selected(film, look.selected, &mut to);
+    to
+}
+
+/// Boxes of the nodes entered so far. In flatland a node decided as a whole is filled; the boxes of
+/// its parents are outlines.
+fn nodes<S: Space>(hierarchy: &dyn Hierarchy<S>, stamps: &Stamps, step: usize, to: &mut Drawing<S::Vector>) {
+    for id in (0..hierarchy.node_count() as u32).map(NodeId) {
+        if stamps.entered(id) as usize > step {
+            continue;
+        }
+        let (state, bounds) = (stamps.node(id, step), hierarchy.bounds(id));
+        let role = role_of(state);
+        let decided = matches!(state, State::Decided(v) if v != Verdict::Partial);
+        if decided && S::Vector::AXES == 2 {
+            let corners = [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec();
+            to.push(Layer::Areas, role, Subject::Node(id), Mark::Area(corners));
+        } else {
+            to.bounds(Layer::Nodes, role, Subject::Node(id), &bounds);
+        }
+    }
+}
+
+fn eye<S: Space>(film: &dyn Film<S>, to: &mut Drawing<S::Vector>) {
+    let view = film.view();
+    let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
+    let rim = corners.len() / 2;
+    for plane in [&corners[..rim], &corners[rim..]] {
+        to.push(Layer::Frustum, Role::Eye, Subject::Eye, Mark::Line { points: plane.to_vec(), closed: rim > 2 });
+    }
+    for i in 0..rim {
+        to.line(Layer::Frustum, Role::Eye, Subject::Eye, [view.eye.position, corners[rim + i]]);
+    }
+    let ahead = view.eye.position + view.eye.forward() * ((view.eye.far - view.eye.near) * 0.06);
+    to.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Arrow(view.eye.position, ahead));
+    to.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Dot { at: view.eye.position, radius_pt: 4.0 });
+}
+
+fn selected<S: Space>(film: &dyn Film<S>, subject: Subject, to: &mut Drawing<S::Vector>) {
+    let scene = film.scene();
+    let mut outline = |prim| {
+        let points: Vec<_> = scene.prim_points(prim).collect();
+        let closed = points.len() > 2;
+        to.push(Layer::Emphasis, Role::Selected, Subject::Prim(prim), Mark::Line { points, closed });
+    };
+    match subject {
+        Subject::Prim(prim) if prim.at() < scene.prim_count() => outline(prim),
+        Subject::Object(object) => scene.live().iter().filter(|&&p| scene.object_of(p) == object).for_each(|&p| outline(p)),
+        Subject::Node(node) if node.at() < film.hierarchy().node_count() => {
+            to.bounds(Layer::Emphasis, Role::Selected, subject, &film.hierarchy().bounds(node));
+        }
+        _ => {}
+    }
+}
