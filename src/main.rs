@@ -1,1 +1,3 @@
+//! cullscope, the program.
+
 fn main() {}

@@ -11,6 +11,8 @@ mod id;
 mod predicate;
 mod project;
 mod space;
+#[cfg(test)]
+mod tests;
 
 pub use bounds::Aabb;
 pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};

@@ -1,0 +1,256 @@
+//! The walls of the house, checked: who may use whom, words that belong to one room, the shape of files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Rooms with their ranks. A room uses rooms of smaller rank and itself, never a peer.
+const ROOMS: &[(&str, u8)] = &[
+    ("geometry", 0),
+    ("scene", 1),
+    ("drawing", 2),
+    ("raster", 2),
+    ("index", 3),
+    ("culling", 4),
+    ("trace", 5),
+    ("truth", 5),
+    ("figure", 6),
+    ("measure", 6),
+    ("render", 7),
+    ("app", 8),
+    ("views", 9),
+    ("cli", 9),
+    ("lib", 10),
+    ("main", 11),
+];
+
+/// `cli` opens the explorer, which is its only use of a peer.
+const PEERS: &[(&str, &str)] = &[("cli", "views")];
+
+/// Words that belong to certain rooms only, with the reason.
+const WORDS: &[(&str, &[&str], &str)] = &[
+    ("egui", &["views", "render"], "core rooms know no GUI"),
+    ("wgpu", &["views", "render"], "core rooms know no GPU"),
+    ("Instant", &["measure", "views"], "a kernel that reads the clock is not reproducible"),
+    ("SystemTime", &["measure"], "a result that knows the date is not reproducible"),
+    ("std::fs", &["scene", "cli", "app"], "only the doors touch the disk"),
+    ("File::", &["scene", "cli", "app"], "only the doors touch the disk"),
+    ("HashMap", &[], "iteration order is not reproducible: use BTreeMap or an indexed Vec"),
+    ("HashSet", &[], "iteration order is not reproducible: use BTreeSet or an indexed Vec"),
+    ("mul_add", &[], "fused operations round differently from machine to machine"),
+    ("Color32::from_rgb", &["render"], "colors live in the theme"),
+    ("thread::", &["app", "views", "cli", "measure"], "core rooms also build where there are no threads"),
+];
+
+/// Lines of code that a function may have, so that it fits on a screen.
+const FUNCTION_LINES: usize = 70;
+/// Lines that a file may have.
+const FILE_LINES: usize = 900;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn walk(dir: &Path, into: &mut Vec<(PathBuf, String)>) {
+    for entry in fs::read_dir(dir).expect("a readable folder").map(|e| e.expect("an entry")) {
+        let path = entry.path();
+        if path.is_dir() {
+            walk(&path, into);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            let text = fs::read_to_string(&path).expect("a readable file");
+            into.push((path.strip_prefix(root()).expect("below the root").to_owned(), text));
+        }
+    }
+}
+
+/// Path and text of every source file below `folder`, in order.
+fn sources(folder: &str) -> Vec<(PathBuf, String)> {
+    let mut all = Vec::new();
+    walk(&root().join(folder), &mut all);
+    all.sort();
+    assert!(!all.is_empty(), "no source files in {folder}");
+    all
+}
+
+fn room(path: &Path) -> String {
+    let name = path.iter().nth(1).and_then(|n| n.to_str()).expect("a path in src");
+    name.trim_end_matches(".rs").to_owned()
+}
+
+fn rank(room: &str) -> u8 {
+    let found = ROOMS.iter().find(|(name, _)| *name == room);
+    found.unwrap_or_else(|| panic!("src/{room} is no room: give it a rank in tests/tidy.rs and a line in ARCHITECTURE.md")).1
+}
+
+/// The code of a file: comments blanked, unit tests at its end cut off.
+fn code(text: &str) -> String {
+    let body = text.find("#[cfg(test)]\nmod tests {").map_or(text, |at| &text[..at]);
+    body.lines().map(|l| l.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
+}
+
+/// Every room named after `crate::`, with its line, also inside `use crate::{a::…, b::…}`.
+fn rooms_used(text: &str) -> Vec<(usize, String)> {
+    let word = |s: &str| s.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut used = Vec::new();
+    for (at, _) in text.match_indices("crate::") {
+        let line = text[..at].matches('\n').count() + 1;
+        let rest = &text[at + 7..];
+        if !rest.starts_with('{') {
+            used.push((line, word(rest)));
+            continue;
+        }
+        let mut depth = 0;
+        for (i, c) in rest.char_indices() {
+            depth += i32::from(c == '{') - i32::from(c == '}');
+            if depth == 0 {
+                break;
+            }
+            if depth == 1 && (c == '{' || c == ',') {
+                used.push((line, word(rest[i + 1..].trim_start())));
+            }
+        }
+    }
+    used.retain(|(_, name)| ROOMS.iter().any(|(room, _)| room == name));
+    used
+}
+
+fn report(wrong: &[String]) {
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn nobody_looks_uphill() {
+    let mut wrong = Vec::new();
+    for (path, text) in sources("src") {
+        let here = room(&path);
+        for (line, there) in rooms_used(&code(&text)) {
+            let allowed = there == here || rank(&there) < rank(&here) || PEERS.contains(&(here.as_str(), there.as_str()));
+            if !allowed {
+                wrong.push(format!("{}:{line}: room `{here}` uses `{there}`", path.display()));
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn the_uphill_test_sees_every_form_of_use() {
+    let text = "use crate::views;\nuse crate::{app::State, cli::{a, b}, render};\nlet x = crate::trace::Stamps::new();";
+    let names: Vec<_> = rooms_used(text).into_iter().map(|(line, name)| format!("{line}{name}")).collect();
+    assert_eq!(names, ["1views", "2app", "2cli", "2render", "3trace"]);
+}
+
+#[test]
+fn words_stay_in_their_rooms() {
+    let mut wrong = Vec::new();
+    for (path, text) in sources("src") {
+        for (i, line) in code(&text).lines().enumerate() {
+            for (word, homes, why) in WORDS {
+                if line.contains(word) && !homes.contains(&room(&path).as_str()) {
+                    wrong.push(format!("{}:{}: `{word}`: {why}", path.display(), i + 1));
+                }
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn every_file_says_what_it_is_and_is_not_long() {
+    let mut wrong = Vec::new();
+    for folder in ["src", "tests", "benches"] {
+        for (path, text) in sources(folder) {
+            if !text.starts_with("//! ") {
+                wrong.push(format!("{}: no module comment", path.display()));
+            }
+            if text.lines().count() > FILE_LINES {
+                wrong.push(format!("{}: over {FILE_LINES} lines", path.display()));
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn functions_fit_on_a_screen() {
+    let mut wrong = Vec::new();
+    for (path, text) in sources("src") {
+        let mut open: Option<(usize, usize, String)> = None;
+        for (i, line) in code(&text).lines().enumerate() {
+            let indent = line.len() - line.trim_start().len();
+            let words = line.trim_start();
+            let begins = ["fn ", "pub fn ", "pub(super) fn ", "pub(crate) fn ", "unsafe fn ", "pub unsafe fn ", "const fn ", "pub const fn "];
+            if begins.iter().any(|b| words.starts_with(b)) && !words.ends_with(';') && !words.ends_with('}') {
+                open = Some((i, indent, words.chars().take(50).collect()));
+            } else if let Some((from, depth, name)) = &open
+                && indent == *depth
+                && words.starts_with('}')
+            {
+                if i - from > FUNCTION_LINES {
+                    wrong.push(format!("{}:{}: {} lines: {name}", path.display(), from + 1, i - from));
+                }
+                open = None;
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn methods_are_strangers_to_each_other() {
+    let culling = root().join("src/culling");
+    let methods: Vec<String> = fs::read_dir(culling)
+        .expect("src/culling")
+        .map(|e| e.expect("an entry").path())
+        .filter(|p| p.is_dir())
+        .filter_map(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()))
+        .collect();
+    assert!(methods.contains(&"baseline".to_owned()));
+    let mut wrong = Vec::new();
+    for (path, text) in sources("src/culling") {
+        let own = path.iter().nth(2).and_then(|n| n.to_str()).unwrap_or("").to_owned();
+        for other in methods.iter().filter(|m| methods.contains(&own) && **m != own) {
+            if code(&text).contains(&format!("{other}::")) {
+                wrong.push(format!("{}: method `{own}` names `{other}`", path.display()));
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn nothing_is_left_undone() {
+    // Spelled in halves so that this file does not find itself.
+    let marks = [concat!("to", "do!("), concat!("unim", "plemented!("), concat!("FIX", "ME"), concat!("#[ign", "ore")];
+    let mut wrong = Vec::new();
+    for folder in ["src", "tests", "benches"] {
+        for (path, text) in sources(folder) {
+            for mark in marks.iter().filter(|m| text.contains(*m)) {
+                wrong.push(format!("{}: `{mark}`", path.display()));
+            }
+        }
+    }
+    report(&wrong);
+}
+
+#[test]
+fn the_map_names_every_room() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let missing: Vec<_> = ROOMS.iter().filter(|(room, _)| !map.contains(&format!("`{room}`")) && !["lib", "main"].contains(room)).collect();
+    assert!(missing.is_empty(), "ARCHITECTURE.md does not name {missing:?}");
+}
+
+#[test]
+fn the_checkout_is_small() {
+    fn size(dir: &Path) -> u64 {
+        let entries = fs::read_dir(dir).expect("a readable folder").map(|e| e.expect("an entry"));
+        entries
+            .filter(|e| !["target", ".git"].contains(&e.file_name().to_string_lossy().as_ref()))
+            .map(|e| {
+                let meta = e.path().symlink_metadata().expect("metadata");
+                if meta.is_dir() { size(&e.path()) } else { meta.len() }
+            })
+            .sum()
+    }
+    let bytes = size(root());
+    assert!(bytes < 40 << 20, "the checkout takes {bytes} bytes, over 40 MB");
+}
