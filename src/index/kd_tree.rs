@@ -16,7 +16,7 @@ use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 pub struct KdNode<V> {
     /// Bounds of the primitives below, world units.
     pub bounds: Aabb<V>,
-    /// Where it is split along `axis`: centres of the first child's primitives are ≤ this; NaN for a leaf.
+    /// Where it is split along `axis`: centres of the first child's primitives are ≤ this; meaningless for a leaf.
     pub split: f32,
     /// Splitting axis; meaningless for a leaf.
     pub axis: u8,
@@ -71,7 +71,7 @@ impl<V: Vector> KdTree<V> {
     pub fn build(prims: impl Iterator<Item = (PrimId, Aabb<V>)>, height: u32, cancelled: impl Fn() -> bool) -> Option<Self> {
         let mut entries: Vec<Entry<V>> = prims.map(|(prim, bounds)| Entry { bounds, prim }).collect();
         let n = entries.len() as u32;
-        let root = KdNode { bounds: Aabb::empty(), split: f32::NAN, axis: 0, level: 0, first_child: 0, parent: 0, first: 0, count: n };
+        let root = KdNode { bounds: Aabb::empty(), split: 0.0, axis: 0, level: 0, first_child: 0, parent: 0, first: 0, count: n };
         let mut nodes = vec![root];
         let mut at = 0;
         while at < nodes.len() {
@@ -83,7 +83,7 @@ impl<V: Vector> KdTree<V> {
             if u32::from(node.level) + 1 < height
                 && let Some((axis, half, split)) = partition(&mut entries[range], node.level as usize % V::AXES)
             {
-                let child = KdNode { split: f32::NAN, level: node.level + 1, first_child: 0, parent: at as u32, ..node };
+                let child = KdNode { split: 0.0, level: node.level + 1, first_child: 0, parent: at as u32, ..node };
                 let left = nodes.len() as u32;
                 nodes.push(KdNode { count: half, ..child });
                 nodes.push(KdNode { first: node.first + half, count: node.count - half, ..child });
