@@ -88,6 +88,8 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// Point indices of one primitive: two of a segment, three of a triangle.
     type Corners: Copy + Debug + PartialEq + AsRef<[u32]> + Send + Sync + 'static;
 
+    /// A primitive's corners from the first `CORNERS` of three indices.
+    fn corners_from(indices: [u32; 3]) -> Self::Corners;
     /// The image axes (x, then y in space) of a view along the unit vector `forward`, unit length.
     /// `up` matters in space only; any `up` works, one parallel to `forward` is replaced.
     fn image_axes(forward: Self::Vector, up: Self::Vector) -> Vec<Self::Vector>;
@@ -111,6 +113,9 @@ impl Space for Flat {
     type Vector = Vec2;
     type Corners = [u32; 2];
 
+    fn corners_from([a, b, _]: [u32; 3]) -> [u32; 2] {
+        [a, b]
+    }
     fn image_axes(forward: Vec2, _up: Vec2) -> Vec<Vec2> {
         vec![Vec2::new(forward.y, -forward.x)]
     }
@@ -126,6 +131,9 @@ impl Space for Solid {
     type Vector = Vec3;
     type Corners = [u32; 3];
 
+    fn corners_from(indices: [u32; 3]) -> [u32; 3] {
+        indices
+    }
     fn image_axes(forward: Vec3, up: Vec3) -> Vec<Vec3> {
         let right = forward.cross(up).try_normalize();
         let right = right.unwrap_or_else(|| forward.any_orthonormal_vector());

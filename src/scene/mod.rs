@@ -5,6 +5,8 @@
 
 mod progress;
 mod report;
+#[cfg(test)]
+pub(crate) mod samples;
 
 pub use progress::{Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};

@@ -6,6 +6,8 @@
 
 mod moves;
 mod stamps;
+#[cfg(test)]
+mod tests;
 
 pub use moves::{Detail, Moves, subject};
 pub use stamps::{Counts, Stamp, Stamps, State};
