@@ -5,6 +5,8 @@
 //! methods explain themselves with, and `figure` puts it on paper. Screen, SVG, PDF and PNG are
 //! readers of one list, so they cannot disagree.
 
+pub mod metrics;
+
 use std::sync::Arc;
 
 use glam::Vec2;
@@ -67,6 +69,9 @@ pub enum Role {
 }
 
 impl Role {
+    /// The states of a primitive or node, which a picture must keep apart without color too.
+    pub const STATES: [Role; 8] =
+        [Role::Undecided, Role::Partial, Role::Visible, Role::Hidden, Role::Outside, Role::Occluder, Role::Approximated, Role::Wrong];
     /// Every role, in the order of legends.
     pub const ALL: [Role; 16] = [
         Role::Ink,
@@ -167,7 +172,7 @@ pub enum Anchor {
 }
 
 /// Which of the three embedded fonts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Font {
     /// Running text.
     Regular,
@@ -260,6 +265,19 @@ pub struct Drawing<P = Vec2> {
 impl<P> Default for Drawing<P> {
     fn default() -> Self {
         Self { size_pt: Vec2::ZERO, items: Vec::new(), title: String::new(), description: String::new() }
+    }
+}
+
+impl Font {
+    /// The three fonts.
+    pub const ALL: [Font; 3] = [Font::Regular, Font::Bold, Font::Mono];
+    /// Name of the CSS class and of the family in a GUI.
+    pub fn name(self) -> &'static str {
+        match self {
+            Font::Regular => "regular",
+            Font::Bold => "bold",
+            Font::Mono => "mono",
+        }
     }
 }
 

@@ -1,1 +1,45 @@
-//! Room render.
+//! Readers of drawings: SVG, PDF, PNG and the screen; and the theme, the only place with colors.
+//!
+//! A reader adds no mark of its own. What a role needs beyond one stroke (halo, hatch, sign) is decided once, in
+//! `piece.rs`, so that all readers show the same picture. Every file format carries the recipe of the
+//! figure, which [`recipe`] reads back.
+
+mod face;
+mod piece;
+mod raster;
+pub mod sight;
+mod svg;
+pub mod theme;
+
+pub use raster::{PngSize, pixels, png, png_pixels};
+pub use svg::{SvgOptions, svg};
+pub use theme::{Look, Theme};
+
+/// What can go wrong while a drawing is read.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The picture would be empty or too large for memory.
+    #[error("a picture of {width_px} × {height_px} pixels cannot be made (at least 1, at most 20000 a side)")]
+    Size {
+        /// Columns asked for.
+        width_px: f32,
+        /// Rows asked for.
+        height_px: f32,
+    },
+    /// The rasterizer refused the drawing.
+    #[error("the picture could not be rasterized: {0}")]
+    Picture(String),
+    /// The PDF writer refused the drawing.
+    #[error("the PDF file could not be written: {0}")]
+    Pdf(String),
+}
+
+/// The recipe that a figure file carries, whichever of the formats it has; `None` if there is none.
+pub fn recipe(bytes: &[u8]) -> Option<String> {
+    if bytes.starts_with(b"\x89PNG") {
+        return raster::recipe(bytes);
+    }
+    let text = std::str::from_utf8(bytes).ok()?;
+    let after = text.split_once("<metadata id=\"recipe\">")?.1;
+    Some(svg::unescape(after.split_once("</metadata>")?.0))
+}

@@ -1,0 +1,125 @@
+//! Readers of drawings against golden files and against each other.
+//!
+//! `UPDATE_FIGURES=1 cargo test --test render` writes tests/figures anew; with `FIGURES_OUT=folder` the
+//! pictures are written there too, to be looked at.
+
+use std::path::Path;
+
+use cullscope::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject};
+use cullscope::geometry::{NodeId, PrimId};
+use cullscope::render::{self, Look, PngSize, SvgOptions, Theme, theme::Sight};
+use glam::{Vec2, vec2};
+
+const RECIPE: &str = "{\"method\":\"frustum\",\"note\":\"a < b & \\\"c\\\" > d, ünï − ρ ≤ 1\\n\",\"step\":412}";
+
+/// Every role as area, line, arrow, dot and text, beside a pixel picture.
+fn every_mark() -> Drawing {
+    let mut d = Drawing { size_pt: vec2(420.0, 330.0), ..Drawing::default() };
+    d.title = "Every role & every mark".into();
+    d.description = "A table of what roles look like.".into();
+    for (i, role) in Role::ALL.into_iter().enumerate() {
+        let y = 14.0 + 19.0 * i as f32;
+        let prim = Subject::Prim(PrimId(i as u32));
+        d.push(Layer::Scene, role, prim, Mark::Area(vec![vec2(90.0, y), vec2(130.0, y), vec2(136.0, y + 13.0), vec2(90.0, y + 13.0)]));
+        d.line(Layer::Nodes, role, Subject::Node(NodeId(i as u32)), [vec2(150.0, y + 10.0), vec2(170.0, y + 3.0), vec2(205.0, y + 10.0)]);
+        d.outline(Layer::Nodes, role, Subject::None, [vec2(215.0, y), vec2(245.0, y), vec2(245.0, y + 12.0), vec2(215.0, y + 12.0)]);
+        d.push(Layer::Evidence, role, Subject::Plane(1), Mark::Arrow(vec2(255.0, y + 10.0), vec2(295.0, y + 4.0)));
+        d.push(Layer::Emphasis, role, Subject::None, Mark::Dot { at: vec2(310.0, y + 6.0), radius_pt: 3.5 });
+        let (text, size_pt, font) = (role.name().to_owned(), 9.0, [Font::Regular, Font::Bold, Font::Mono][i % 3]);
+        d.push(Layer::Labels, role, Subject::None, Mark::Text { at: vec2(80.0, y + 10.0), text, size_pt, anchor: Anchor::End, font });
+    }
+    let rgba: Vec<u8> = (0..8 * 8).flat_map(|i| [i as u8 * 4, (i % 8) as u8 * 30, 255 - i as u8 * 3, 255]).collect();
+    let pixels = Pixels { width: 8, height: 8, rgba: rgba.into() };
+    d.push(Layer::Areas, Role::Ink, Subject::None, Mark::Image { corners: [vec2(325.0, 14.0), vec2(405.0, 94.0)], pixels });
+    d.text(Layer::Caption, Role::Ink, vec2(405.0, 110.0), 8.0, Anchor::End, "8 × 8 texels, ρ ≥ 0.75 → kept");
+    d.text(Layer::Caption, Role::Faint, vec2(365.0, 122.0), 8.0, Anchor::Middle, "−3.5 ε, π r², Öl ← ½");
+    d
+}
+
+fn golden(name: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/figures").join(name);
+    if std::env::var_os("UPDATE_FIGURES").is_some() {
+        std::fs::write(&path, text).expect("the figure can be written");
+    }
+    let wanted = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = text.lines().zip(wanted.lines()).position(|(a, b)| a != b).unwrap_or(text.lines().count().min(wanted.lines().count()));
+    assert!(text == wanted, "{name} differs from the golden file at line {}; UPDATE_FIGURES=1 writes it anew", differs + 1);
+}
+
+fn look_at(name: &str, bytes: &[u8]) {
+    if let Some(folder) = std::env::var_os("FIGURES_OUT") {
+        std::fs::write(Path::new(&folder).join(name), bytes).expect("the picture can be written");
+    }
+}
+
+#[test]
+fn svg_is_the_golden_text() {
+    let d = every_mark();
+    let options = SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() };
+    let text = render::svg(&d, Theme::Print, &options);
+    assert_eq!(text, render::svg(&d, Theme::Print, &options));
+    assert!(text.len() < 80_000, "{} bytes", text.len());
+    golden("roles-print.svg", &text);
+    golden("roles-dark.svg", &render::svg(&d, Theme::Dark, &options));
+    let outlined = render::svg(&d, Theme::Print, &SvgOptions { outline_text: true, ..options });
+    assert!(!outlined.contains("<text") && !outlined.contains("@font-face"));
+    look_at("roles-outlined.svg", outlined.as_bytes());
+}
+
+#[test]
+fn png_is_the_same_each_time_and_shows_every_theme() {
+    let d = every_mark();
+    for theme in Theme::ALL {
+        let bytes = render::png(&d, theme, PngSize::Dpi(144.0), Some(RECIPE)).expect("a picture");
+        assert_eq!(bytes, render::png(&d, theme, PngSize::Dpi(144.0), Some(RECIPE)).expect("a picture"));
+        look_at(&format!("roles-{}.png", theme.name()), &bytes);
+    }
+    for sight in Sight::ALL {
+        let bytes = render::png(&d, Look { theme: Theme::Print, sight }, PngSize::WidthPx(700), None).expect("a picture");
+        look_at(&format!("sight-{}.png", sight.name()), &bytes);
+    }
+    let p = render::pixels(&d, Theme::Print, PngSize::WidthPx(420)).expect("a picture");
+    assert_eq!((p.width, p.height), (420, 330));
+    let at = |x: usize, y: usize| &p.rgba[4 * (y * 420 + x)..][..3];
+    assert_eq!(at(2, 2), [255; 3], "paper is white");
+    assert_eq!(at(330, 19), at(334, 23), "one texel is one flat cell");
+    assert_ne!(at(334, 19), at(336, 19), "the next texel is another color");
+}
+
+#[test]
+fn recipes_come_back_from_every_format() {
+    let d = every_mark();
+    let svg = render::svg(&d, Theme::Light, &SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() });
+    let png = render::png(&d, Theme::Light, PngSize::WidthPx(200), Some(RECIPE)).expect("a picture");
+    for (name, bytes) in [("svg", svg.as_bytes()), ("png", &png)] {
+        assert_eq!(render::recipe(bytes).as_deref(), Some(RECIPE), "{name}");
+    }
+    let bare = render::svg(&d, Theme::Light, &SvgOptions::default());
+    assert_eq!(render::recipe(bare.as_bytes()), None);
+    for broken in [&b""[..], b"\x89PNG", b"%PDF-1.7", b"<metadata id=\"recipe\">", &png[..png.len() / 2], &[0xff; 40]] {
+        let _ = render::recipe(broken);
+    }
+}
+
+#[test]
+fn odd_drawings_harm_nothing() {
+    let mut d = every_mark();
+    for bad in [f32::NAN, f32::INFINITY, -1e30] {
+        d.line(Layer::Scene, Role::Visible, Subject::None, [vec2(bad, 0.0), Vec2::ONE]);
+        d.push(Layer::Scene, Role::Wrong, Subject::None, Mark::Dot { at: Vec2::ONE, radius_pt: bad });
+        d.push(Layer::Scene, Role::Hidden, Subject::None, Mark::Area(vec![vec2(bad, bad); 4]));
+        d.text(Layer::Scene, Role::Ink, Vec2::ONE, bad, Anchor::Start, "x");
+    }
+    d.line(Layer::Scene, Role::Visible, Subject::None, []);
+    d.push(Layer::Scene, Role::Wrong, Subject::None, Mark::Area(vec![Vec2::ONE; 3]));
+    let pixels = Pixels { width: 4, height: 4, rgba: vec![0; 3].into() };
+    d.push(Layer::Scene, Role::Ink, Subject::None, Mark::Image { corners: [Vec2::ZERO, Vec2::ONE], pixels });
+    d.text(Layer::Labels, Role::Ink, vec2(9.0, 9.0), 8.0, Anchor::Start, "</text> & \u{0} ]]> 漢");
+    let svg = render::svg(&d, Theme::Print, &SvgOptions::default());
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    assert!(render::png(&d, Theme::Print, PngSize::WidthPx(100), None).is_ok());
+    for size in [PngSize::WidthPx(0), PngSize::WidthPx(u32::MAX), PngSize::Dpi(f32::NAN), PngSize::Dpi(-3.0), PngSize::Dpi(0.0)] {
+        assert!(render::png(&d, Theme::Print, size, None).is_err(), "{size:?}");
+    }
+    assert!(render::png(&Drawing::default(), Theme::Print, PngSize::WidthPx(10), None).is_err());
+}
