@@ -6,6 +6,8 @@
 
 mod baseline;
 mod entry;
+#[cfg(test)]
+mod entry_tests;
 mod event;
 mod knobs;
 mod method;
