@@ -2,8 +2,10 @@
 //!
 //! [`world`] draws a step in world coordinates, [`Sheet`] and [`project`] put it on paper.
 
+mod clip;
 mod look;
 mod place;
 
+pub use clip::clip;
 pub use look::{Look, role_of, world};
 pub use place::{Sheet, project};
