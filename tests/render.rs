@@ -87,16 +87,31 @@ fn png_is_the_same_each_time_and_shows_every_theme() {
 }
 
 #[test]
+fn pdf_is_the_same_each_time_and_embeds_its_fonts() {
+    let d = every_mark();
+    let bytes = render::pdf(&d, Theme::Print, Some(RECIPE)).expect("a document");
+    assert_eq!(bytes, render::pdf(&d, Theme::Print, Some(RECIPE)).expect("a document"));
+    look_at("roles-print.pdf", &bytes);
+    look_at("roles-dark.pdf", &render::pdf(&d, Theme::Dark, None).expect("a document"));
+    let has = |what: &[u8]| bytes.windows(what.len()).any(|w| w == what);
+    assert!(has(b"/FontFile2") && has(b"Inter") && has(b"JetBrainsMono"), "fonts are embedded");
+    assert!(!has(b"/CreationDate") && !has(b"xmp:CreateDate"), "no date");
+    assert!(has(b"/MediaBox[0 0 420 330]") || has(b"/MediaBox [0 0 420 330]"));
+}
+
+#[test]
 fn recipes_come_back_from_every_format() {
     let d = every_mark();
     let svg = render::svg(&d, Theme::Light, &SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() });
     let png = render::png(&d, Theme::Light, PngSize::WidthPx(200), Some(RECIPE)).expect("a picture");
-    for (name, bytes) in [("svg", svg.as_bytes()), ("png", &png)] {
+    let pdf = render::pdf(&d, Theme::Light, Some(RECIPE)).expect("a document");
+    for (name, bytes) in [("svg", svg.as_bytes()), ("png", &png), ("pdf", &pdf)] {
         assert_eq!(render::recipe(bytes).as_deref(), Some(RECIPE), "{name}");
     }
     let bare = render::svg(&d, Theme::Light, &SvgOptions::default());
     assert_eq!(render::recipe(bare.as_bytes()), None);
-    for broken in [&b""[..], b"\x89PNG", b"%PDF-1.7", b"<metadata id=\"recipe\">", &png[..png.len() / 2], &[0xff; 40]] {
+    assert_eq!(render::recipe(&render::pdf(&d, Theme::Light, None).expect("a document")), None);
+    for broken in [&b""[..], b"\x89PNG", b"%PDF-1.7", b"<metadata id=\"recipe\">", &png[..png.len() / 2], &pdf[..pdf.len() / 2], &[0xff; 40]] {
         let _ = render::recipe(broken);
     }
 }
@@ -121,5 +136,7 @@ fn odd_drawings_harm_nothing() {
     for size in [PngSize::WidthPx(0), PngSize::WidthPx(u32::MAX), PngSize::Dpi(f32::NAN), PngSize::Dpi(-3.0), PngSize::Dpi(0.0)] {
         assert!(render::png(&d, Theme::Print, size, None).is_err(), "{size:?}");
     }
+    assert!(render::pdf(&d, Theme::Print, None).is_ok());
+    assert!(render::pdf(&Drawing::default(), Theme::Print, None).is_err());
     assert!(render::png(&Drawing::default(), Theme::Print, PngSize::WidthPx(10), None).is_err());
 }

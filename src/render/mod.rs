@@ -5,12 +5,15 @@
 //! figure, which [`recipe`] reads back.
 
 mod face;
+mod hatch;
+mod pdf;
 mod piece;
 mod raster;
 pub mod sight;
 mod svg;
 pub mod theme;
 
+pub use pdf::pdf;
 pub use raster::{PngSize, pixels, png, png_pixels};
 pub use svg::{SvgOptions, svg};
 pub use theme::{Look, Theme};
@@ -26,6 +29,14 @@ pub enum RenderError {
         /// Rows asked for.
         height_px: f32,
     },
+    /// PDF allows no such page.
+    #[error("a page of {width_pt} × {height_pt} points cannot be made (at least 1, at most 14400 a side)")]
+    Page {
+        /// Its width.
+        width_pt: f32,
+        /// Its height.
+        height_pt: f32,
+    },
     /// The rasterizer refused the drawing.
     #[error("the picture could not be rasterized: {0}")]
     Picture(String),
@@ -38,6 +49,9 @@ pub enum RenderError {
 pub fn recipe(bytes: &[u8]) -> Option<String> {
     if bytes.starts_with(b"\x89PNG") {
         return raster::recipe(bytes);
+    }
+    if bytes.starts_with(b"%PDF") {
+        return pdf::recipe(bytes);
     }
     let text = std::str::from_utf8(bytes).ok()?;
     let after = text.split_once("<metadata id=\"recipe\">")?.1;
