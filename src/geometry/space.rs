@@ -5,6 +5,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::{orient2d, orient3d};
+
 /// A vector of any number of axes. Holds only what the shared structures (boxes, planes, trees) need.
 pub trait Vector:
     Copy + Debug + Default + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f32, Output = Self>
@@ -93,6 +95,9 @@ pub trait Space: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The image axes (x, then y in space) of a view along the unit vector `forward`, unit length.
     /// `up` matters in space only; any `up` works, one parallel to `forward` is replaced.
     fn image_axes(forward: Self::Vector, up: Self::Vector) -> Vec<Self::Vector>;
+    /// The exact sign of the side of a primitive on which a point lies: positive in front (where its
+    /// normal points), 0 on its plane.
+    fn side(corners: &[Self::Vector], point: Self::Vector) -> f64;
     /// A normal of the primitive, not unit: right-handed (counter-clockwise corners are seen from the
     /// side it points to). In flatland the normal of `a → b` points to its left.
     fn normal(corners: &[Self::Vector]) -> Self::Vector;
@@ -119,6 +124,9 @@ impl Space for Flat {
     fn image_axes(forward: Vec2, _up: Vec2) -> Vec<Vec2> {
         vec![Vec2::new(forward.y, -forward.x)]
     }
+    fn side(corners: &[Vec2], point: Vec2) -> f64 {
+        orient2d(corners[0].as_dvec2(), corners[1].as_dvec2(), point.as_dvec2())
+    }
     fn normal(corners: &[Vec2]) -> Vec2 {
         (corners[1] - corners[0]).perp()
     }
@@ -139,15 +147,18 @@ impl Space for Solid {
         let right = right.unwrap_or_else(|| forward.any_orthonormal_vector());
         vec![right, right.cross(forward)]
     }
+    fn side(corners: &[Vec3], point: Vec3) -> f64 {
+        orient3d(corners[0].as_dvec3(), corners[1].as_dvec3(), corners[2].as_dvec3(), point.as_dvec3())
+    }
     fn normal(corners: &[Vec3]) -> Vec3 {
         (corners[1] - corners[0]).cross(corners[2] - corners[0])
     }
 }
 
-/// Whether a primitive turns its back to the eye: the eye lies strictly behind the primitive's plane.
-/// The one rule for every method and for the rasterizer, so that they agree on grazing primitives.
-/// `corners` are the primitive's `S::CORNERS` points.
+/// Whether a primitive turns its back to the eye: the eye lies strictly behind the primitive's plane, by
+/// exact arithmetic. The one rule for every method and for the rasterizer, so that they agree on
+/// grazing primitives. `corners` are the primitive's `S::CORNERS` points.
 #[inline]
 pub fn faces_away<S: Space>(eye: S::Vector, corners: &[S::Vector]) -> bool {
-    S::normal(corners).dot(eye - corners[0]) < 0.0
+    S::side(corners, eye) < 0.0
 }
