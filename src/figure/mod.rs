@@ -4,8 +4,10 @@
 
 mod clip;
 mod look;
+mod panels;
 mod place;
 
 pub use clip::clip;
 pub use look::{Look, role_of, world};
+pub use panels::{Panel, Picture, panels};
 pub use place::{Sheet, project};

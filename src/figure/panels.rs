@@ -1,0 +1,77 @@
+//! Several pictures side by side, each with a frame and a label.
+
+use glam::{Vec2, Vec3};
+
+use super::{Sheet, clip, project};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
+use crate::geometry::{Aabb, Solid, View};
+
+/// One picture.
+pub struct Panel {
+    /// What it shows, on one short line below it.
+    pub label: String,
+    /// The picture.
+    pub picture: Picture,
+}
+
+/// What a panel holds.
+pub enum Picture {
+    /// A flatland drawing in world coordinates, fitted to these bounds.
+    Flat(Drawing<Vec2>, Aabb<Vec2>),
+    /// A drawing of space, as seen by this observer; the view's size gives its proportions.
+    Space(Drawing<Vec3>, View<Solid>),
+    /// Pixels.
+    Pixels(crate::drawing::Pixels),
+}
+
+impl Picture {
+    /// Height over width.
+    fn proportion(&self) -> f32 {
+        match self {
+            Self::Flat(_, bounds) => bounds.size().y / bounds.size().x.max(1e-6),
+            Self::Space(_, view) => view.height as f32 / view.width as f32,
+            Self::Pixels(p) => p.height as f32 / p.width as f32,
+        }
+    }
+    fn draw(&self, min: Vec2, max: Vec2) -> Drawing {
+        let mut paper = Drawing::default();
+        match self {
+            Self::Flat(world, bounds) => Sheet::fit(bounds, min, max).place(world, &mut paper),
+            Self::Space(world, observer) => project(world, observer, min, max, &mut paper),
+            Self::Pixels(pixels) => paper.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners: [min, max], pixels: pixels.clone() }),
+        }
+        clip(&mut paper, min, max);
+        paper
+    }
+}
+
+/// Space between panels, and between a panel and its label.
+const GAP_PT: f32 = 10.0;
+/// Size and line of labels.
+const LABEL_PT: f32 = 8.0;
+
+/// Panels in rows of `columns`, `width_pt` wide in all; every panel has the height of the tallest.
+pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
+    let columns = columns.clamp(1, panels.len().max(1));
+    let cell_width = (width_pt - GAP_PT * (columns - 1) as f32) / columns as f32;
+    let cell_height = panels.iter().map(|p| p.picture.proportion().clamp(0.02, 1.6) * cell_width).fold(0.0, f32::max);
+    let row_height = cell_height + LABEL_PT * 1.6 + GAP_PT;
+    let rows = panels.len().div_ceil(columns);
+    let mut paper = Drawing { size_pt: Vec2::new(width_pt, rows as f32 * row_height - GAP_PT + LABEL_PT * 0.4), ..Drawing::default() };
+    for (i, panel) in panels.iter().enumerate() {
+        let (column, row) = ((i % columns) as f32, (i / columns) as f32);
+        let min = Vec2::new(column * (cell_width + GAP_PT), row * row_height);
+        let max = min + Vec2::new(cell_width, cell_height);
+        // A frame in its own proportions, in the middle of its cell.
+        let height = (panel.picture.proportion() * cell_width).min(cell_height);
+        let inner = [Vec2::new(min.x, max.y - height), max];
+        let frame = [inner[0], Vec2::new(inner[1].x, inner[0].y), inner[1], Vec2::new(inner[0].x, inner[1].y)];
+        paper.items.extend(panel.picture.draw(inner[0], inner[1]).items);
+        paper.outline(Layer::Labels, Role::Faint, Subject::None, frame);
+        let text = panel.label.clone();
+        let at = Vec2::new((min.x + max.x) * 0.5, max.y + LABEL_PT * 1.4);
+        let mark = Mark::Text { at, text, size_pt: LABEL_PT, anchor: Anchor::Middle, font: Font::Regular };
+        paper.push(Layer::Labels, Role::Ink, Subject::None, mark);
+    }
+    paper
+}
