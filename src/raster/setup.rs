@@ -1,0 +1,138 @@
+//! A triangle made ready for pixels: its box, its edge functions, its depth plane.
+//!
+//! Pinned-down arithmetic (Pineda 1988, <https://doi.org/10.1145/378456.378457>): with pixel centers a
+//! whole 256 grid steps apart an edge function changes by multiples of 256 from center to center, so its
+//! low 8 bits never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
+
+use super::vertex::{CENTER, SUBPIXEL_BITS, Vertex};
+
+/// Depth over the image: `1/w` is linear there. Grid steps; larger is nearer.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// Where the depth is `z`: the farthest vertex, so that distant pixels lose nothing to near ones.
+    pub x: i32,
+    /// Row of that vertex.
+    pub y: i32,
+    /// Depth there.
+    pub z: f32,
+    /// Change per step in x.
+    pub dx: f32,
+    /// Change per step in y.
+    pub dy: f32,
+    /// Least depth of the vertices; rounding never leads below.
+    pub low: f32,
+    /// Greatest depth of the vertices; rounding never leads above.
+    pub high: f32,
+}
+
+/// Slopes above this would overflow over the guard band; they come only with near planes below 1e-20.
+const STEEPEST: f32 = 1e28;
+
+impl Plane {
+    /// The plane through three vertices with twice the signed area `area`, not zero.
+    #[inline(always)]
+    pub fn of(v: &[Vertex; 3], area: i64) -> Self {
+        let far = if v[1].z < v[0].z { 1 } else { 0 };
+        let far = if v[2].z < v[far].z { 2 } else { far };
+        let (o, p, q) = (v[far], v[(far + 1) % 3], v[(far + 2) % 3]);
+        let (pz, qz) = (f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z));
+        let per_area = 1.0 / area as f64;
+        let dx = (pz * f64::from(q.y - o.y) - qz * f64::from(p.y - o.y)) * per_area;
+        let dy = (qz * f64::from(p.x - o.x) - pz * f64::from(q.x - o.x)) * per_area;
+        Self::new(o, dx as f32, dy as f32, o.z, p.z.max(q.z))
+    }
+    /// The plane of a flatland segment between vertices of different columns.
+    pub fn of_segment(a: Vertex, b: Vertex) -> Self {
+        let (o, p) = if b.z < a.z { (b, a) } else { (a, b) };
+        let dx = (f64::from(p.z) - f64::from(o.z)) / f64::from(p.x - o.x);
+        Self::new(o, dx as f32, 0.0, o.z, p.z)
+    }
+    #[inline(always)]
+    fn new(at: Vertex, dx: f32, dy: f32, low: f32, high: f32) -> Self {
+        let usable = dx.abs().max(dy.abs()) < STEEPEST;
+        Self { x: at.x, y: at.y, z: at.z, dx: if usable { dx } else { 0.0 }, dy: if usable { dy } else { 0.0 }, low, high }
+    }
+    /// Depth at the start of row `y`: the part that does not depend on the column.
+    #[inline(always)]
+    pub fn at_row(&self, y: i32) -> f32 {
+        self.z + self.dy * (center(y) - self.y) as f32
+    }
+}
+
+/// Grid coordinate of a pixel's center.
+#[inline(always)]
+pub(super) fn center(pixel: i32) -> i32 {
+    (pixel << SUBPIXEL_BITS) + CENTER
+}
+
+/// The pixels `0..size` whose centers lie in the closed grid interval, half-open.
+#[inline(always)]
+pub(super) fn pixels(low: i32, high: i32, size: i32) -> (i32, i32) {
+    (((low + CENTER - 1) >> SUBPIXEL_BITS).max(0), (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(size))
+}
+
+/// Twice the signed area; positive if clockwise on the screen (y down).
+#[inline(always)]
+pub(super) fn area(v: &[Vertex; 3]) -> i64 {
+    let (ux, uy) = (i64::from(v[1].x - v[0].x), i64::from(v[1].y - v[0].y));
+    let (vx, vy) = (i64::from(v[2].x - v[0].x), i64::from(v[2].y - v[0].y));
+    ux * vy - uy * vx
+}
+
+/// A triangle ready to be filled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setup {
+    /// First column and row, and the ones past the last.
+    pub x0: i32,
+    pub x1: i32,
+    pub y0: i32,
+    pub y1: i32,
+    /// Edge functions at the center of pixel `(x0, y0)`, divided by 256 and rounded down; a center is
+    /// covered where none is negative. The top-left rule is in them.
+    pub edge: [i64; 3],
+    /// Their change per column.
+    pub edge_dx: [i32; 3],
+    /// Their change per row.
+    pub edge_dy: [i32; 3],
+    /// Whether the edge functions fit 32 bits all over the triangle's box.
+    pub narrow: bool,
+    pub plane: Plane,
+    pub id: u32,
+}
+
+/// A triangle whose box is at most this wide and high, in grid steps, has edge functions below 2³¹.
+const NARROW: i32 = 1024 << SUBPIXEL_BITS;
+
+impl Setup {
+    /// Makes a triangle ready for an image of `width` by `height` pixels; `None` if it covers no center.
+    #[inline(always)]
+    pub fn new(mut v: [Vertex; 3], id: u32, width: i32, height: i32) -> Option<Self> {
+        let (low_x, high_x) = (v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x));
+        let (low_y, high_y) = (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y));
+        let (x0, x1) = pixels(low_x, high_x, width);
+        let (y0, y1) = pixels(low_y, high_y, height);
+        if x0 >= x1 || y0 >= y1 {
+            return None;
+        }
+        let area = area(&v);
+        if area == 0 {
+            return None;
+        }
+        let plane = Plane::of(&v, area);
+        if area < 0 {
+            v.swap(1, 2);
+        }
+        let (px, py) = (center(x0), center(y0));
+        let (mut edge, mut edge_dx, mut edge_dy) = ([0; 3], [0; 3], [0; 3]);
+        for i in 0..3 {
+            let (a, b) = (v[i], v[(i + 1) % 3]);
+            let (dx, dy) = (b.x - a.x, b.y - a.y);
+            // A center on the edge belongs to the triangle to its right or below it.
+            let top_left = dy < 0 || (dy == 0 && dx > 0);
+            let e = i64::from(dx) * i64::from(py - a.y) - i64::from(dy) * i64::from(px - a.x) - i64::from(!top_left);
+            (edge[i], edge_dx[i], edge_dy[i]) = (e >> SUBPIXEL_BITS, -dy, dx);
+        }
+        let narrow = high_x - low_x <= NARROW && high_y - low_y <= NARROW;
+        Some(Self { x0, x1, y0, y1, edge, edge_dx, edge_dy, narrow, plane, id })
+    }
+}

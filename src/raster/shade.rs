@@ -1,0 +1,61 @@
+//! A color image of an item image: flat-shaded, one color a primitive.
+
+use super::{Drawable, Target};
+use crate::geometry::{PrimId, Vector, View};
+use crate::scene::Scene;
+
+/// Share of a material's color that faces seen edge-on keep; the rest grows with the cosine.
+const AMBIENT: f32 = 0.35;
+
+/// The image in the scene's own colors under a light at the eye: material color times
+/// `0.35 + 0.65 |cos|` of the angle between the face's normal and the direction to the eye, both sides
+/// alike. `background` (linear) fills the rest. RGBA, sRGB-encoded, row by row.
+pub fn shade<S: Drawable>(target: &Target, scene: &Scene<S>, view: &View<S>, background: [f32; 3]) -> Vec<u8> {
+    shade_with(target, scene, view, background, |prim| scene.color_of(prim))
+}
+
+/// The same with a color (linear 0..1) chosen for each primitive, such as by its state.
+pub fn shade_with<S: Drawable>(
+    target: &Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    background: [f32; 3],
+    mut color: impl FnMut(PrimId) -> [f32; 3],
+) -> Vec<u8> {
+    let background = encode(background);
+    // Each primitive is shaded once; alpha 0 marks those not met yet.
+    let mut palette = vec![[0u8; 4]; scene.prim_count()];
+    let mut pixels = Vec::with_capacity(target.item.len() * 4);
+    for &item in &target.item {
+        if item == Target::NONE {
+            pixels.extend_from_slice(&background);
+            continue;
+        }
+        let entry = &mut palette[item as usize];
+        if entry[3] == 0 {
+            let light = headlight(scene, view, PrimId(item));
+            *entry = encode(color(PrimId(item)).map(|c| c * light));
+        }
+        pixels.extend_from_slice(entry);
+    }
+    pixels
+}
+
+/// Brightness of a face under a light at the eye.
+fn headlight<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
+    let middle = scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32);
+    let (normal, toward) = (scene.normal(prim), view.eye.position - middle);
+    let lengths = normal.length() * toward.length();
+    let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
+    AMBIENT + (1.0 - AMBIENT) * cosine
+}
+
+/// Linear color to opaque sRGB (IEC 61966-2-1).
+fn encode(color: [f32; 3]) -> [u8; 4] {
+    let [r, g, b] = color.map(|c| {
+        let c = c.clamp(0.0, 1.0);
+        let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+        (s * 255.0 + 0.5) as u8
+    });
+    [r, g, b, 255]
+}

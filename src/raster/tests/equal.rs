@@ -1,0 +1,97 @@
+//! The fast code equals the reference on random primitives of every awkward kind.
+
+use super::*;
+
+/// A random triangle of one of many kinds, some sharing corners with the one before.
+fn triangle(dice: &mut Dice, kind: u32, before: [Vec3; 3]) -> [Vec3; 3] {
+    let middle = dice.point(8.0);
+    let around = |dice: &mut Dice, reach: f32| [(); 3].map(|()| middle + dice.point(reach));
+    match kind {
+        0 => around(dice, 0.05),
+        1 => around(dice, 0.5),
+        2 => around(dice, 4.0),
+        3 => around(dice, 100.0),
+        4 => around(dice, 1e6),
+        5 => {
+            // A sliver.
+            let [a, b, _] = around(dice, 6.0);
+            [a, b, a + (b - a) * dice.between(-0.5, 1.5) + dice.point(1e-3)]
+        }
+        6 => [before[1], before[2], middle],
+        7 => [before[2], before[0], before[2] + dice.point(0.3)],
+        // Around the eye: crosses the near plane.
+        8 => [(); 3].map(|()| dice.point(0.3)),
+        9 => [dice.point(0.02), dice.point(50.0), dice.point(50.0)],
+        // Degenerate: two corners alike, or all on a line.
+        10 => [middle, middle, dice.point(8.0)],
+        11 => [middle, middle * 0.5, middle * 0.25],
+        // On the grid's corners, for ties.
+        12 => [(); 3].map(|()| at_px(64, f64::from(dice.below(65)), f64::from(dice.below(65)), 4.0)),
+        13 => [(); 3].map(|()| at_px(64, f64::from(dice.below(129)) * 0.5, f64::from(dice.below(129)) * 0.5, 4.0)),
+        // Coplanar with another: equal depths.
+        14 => before,
+        _ => [(); 3].map(|()| dice.point(8.0).with_z(-3.0)),
+    }
+}
+
+fn triangles(dice: &mut Dice, count: usize) -> Vec<[Vec3; 3]> {
+    let mut list: Vec<[Vec3; 3]> = Vec::with_capacity(count);
+    for _ in 0..count {
+        let before = list.last().copied().unwrap_or_default();
+        let kind = dice.below(16);
+        list.push(triangle(dice, kind, before));
+    }
+    list
+}
+
+fn random_view(dice: &mut Dice) -> View<Solid> {
+    let (width, height) = (1 + dice.below(100), 1 + dice.below(80));
+    let near = [1e-3, 0.1, 2.0][dice.below(3) as usize];
+    let eye = if dice.below(2) == 0 {
+        Eye { far: near + 20.0, ..straight_view(1, near, 1.0).eye }
+    } else {
+        let position = dice.point(3.0);
+        let target = position + dice.point(1.0) + Vec3::X * 2.0;
+        Eye { position, target, up: dice.point(1.0), fov: dice.between(0.02, 3.0), near, far: near + dice.between(1.0, 1e4) }
+    };
+    View { eye, width, height }
+}
+
+#[test]
+fn triangles_equal_the_reference() {
+    let dice = &mut Dice::new(1);
+    let mut covered = 0;
+    for round in 0..150 {
+        let scene = soup(&triangles(dice, 60));
+        let view = if round % 3 == 0 { straight_view(64, 0.1, 30.0) } else { random_view(dice) };
+        let image = assert_equal(&scene, &view, scene.live(), round % 5 == 0, &format!("round {round}"));
+        covered += image.item.iter().filter(|&&i| i != Target::NONE).count();
+    }
+    assert!(covered > 100_000, "the scenes show too little to test anything: {covered} pixels");
+}
+
+#[test]
+fn single_triangles_equal_the_reference() {
+    let dice = &mut Dice::new(2);
+    for round in 0..3000 {
+        let scene = soup(&triangles(dice, 2));
+        let view = if round % 2 == 0 { straight_view(64, 0.1, 30.0) } else { random_view(dice) };
+        assert_equal(&scene, &view, &[PrimId(round % 2)], false, &format!("round {round}"));
+    }
+}
+
+#[test]
+fn segments_equal_the_reference() {
+    let dice = &mut Dice::new(3);
+    for round in 0..500 {
+        let count = 40;
+        let reach = [0.5, 5.0, 1e5][dice.below(3) as usize];
+        let points: Vec<Vec2> = (0..count * 2).map(|_| dice.point(reach).truncate()).collect();
+        let scene: Scene<Flat> = scene_of(points, (0..count).map(|s| [2 * s, (2 * s + 1 + dice.below(2)) % (2 * count)]).collect());
+        let position = dice.point(1.0).truncate();
+        let target = position + Vec2::new(1.5, 0.0) + dice.point(1.0).truncate();
+        let eye = Eye { position, target, up: Vec2::Y, fov: dice.between(0.1, 3.0), near: 0.01, far: 40.0 };
+        let view = View { eye, width: 1 + dice.below(300), height: 1 };
+        assert_equal(&scene, &view, scene.live(), round % 3 == 0, &format!("round {round}"));
+    }
+}

@@ -1,0 +1,103 @@
+//! Tests of the z-buffer: against the plain reference, against rays, and of the rules it keeps.
+
+mod equal;
+
+use glam::{DVec3, Vec2, Vec3};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::Rng;
+
+use super::*;
+use crate::geometry::{Eye, MaterialId, ObjectId};
+use crate::scene::{Material, Object, Parts, Report};
+
+/// Seeded numbers for tests.
+pub(super) struct Dice(Pcg64Mcg);
+
+impl Dice {
+    pub fn new(seed: u64) -> Self {
+        Self(Pcg64Mcg::new(u128::from(seed) << 64 | 0xcafe_f00d_d15e_a5e5))
+    }
+    /// Uniform in 0..n.
+    pub fn below(&mut self, n: u32) -> u32 {
+        ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
+    }
+    /// Uniform in low..high.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * (self.0.next_u32() >> 8) as f32 / (1 << 24) as f32
+    }
+    pub fn point(&mut self, reach: f32) -> Vec3 {
+        Vec3::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
+    }
+    pub fn shuffle<T>(&mut self, list: &mut [T]) {
+        for i in (1..list.len()).rev() {
+            list.swap(i, self.below(i as u32 + 1) as usize);
+        }
+    }
+}
+
+/// A scene of one object and one material.
+pub(super) fn scene_of<S: Space>(points: Vec<S::Vector>, prims: Vec<S::Corners>) -> Scene<S> {
+    let n = prims.len();
+    let parts = Parts {
+        name: "test".into(),
+        source: "test".into(),
+        points,
+        prims: prims.into_iter().map(Some).collect(),
+        prim_object: vec![ObjectId(0); n],
+        prim_material: vec![MaterialId(0); n],
+        faces: Vec::new(),
+        objects: vec![Object { name: "all".into(), group: String::new(), motion: None }],
+        materials: vec![Material { name: "gray".into(), color: [0.5; 3] }],
+        origin: DVec3::ZERO,
+        paths: Vec::new(),
+        report: Report::default(),
+    };
+    Scene::new(parts).expect("the test's scene is valid")
+}
+
+/// Triangles with points of their own.
+pub(super) fn soup(triangles: &[[Vec3; 3]]) -> Scene<Solid> {
+    let points = triangles.iter().flatten().copied().collect();
+    scene_of(points, (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect())
+}
+
+/// An eye at the origin that looks along −z, 90° high, so that pixel (x, y) of an image of `size` by
+/// `size` pixels lies at `((2x − size) / size, (size − 2y) / size, −1)`.
+pub(super) fn straight_view(size: u32, near: f32, far: f32) -> View<Solid> {
+    let fov = std::f32::consts::FRAC_PI_2;
+    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov, near, far };
+    View { eye, width: size, height: size }
+}
+
+/// The point at view depth `w` that shows at column `x` and row `y` (pixel corners are integers) of a
+/// [`straight_view`].
+pub(super) fn at_px(size: u32, x: f64, y: f64, w: f64) -> Vec3 {
+    let half = f64::from(size) * 0.5;
+    DVec3::new((x / half - 1.0) * w, (1.0 - y / half) * w, -w).as_vec3()
+}
+
+/// Every way to draw: instruction sets and threads.
+pub(super) fn all_options(backface_culling: bool) -> Vec<Options> {
+    let isas = [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().filter(|&i| i <= Isa::detect());
+    isas.flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa })).collect()
+}
+
+/// Asserts that every way to draw gives the reference's bytes, and returns the image.
+pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId], backface_culling: bool, what: &str) -> Target {
+    let mut expected = Target::new(view);
+    S::draw_reference(&mut expected, scene, view, prims, &Options { backface_culling, ..Options::default() });
+    for options in all_options(backface_culling) {
+        let mut target = Target::new(view);
+        S::draw(&mut target, scene, view, prims, &options);
+        if let Some(i) =
+            (0..target.item.len()).find(|&i| target.item[i] != expected.item[i] || target.depth[i].to_bits() != expected.depth[i].to_bits())
+        {
+            let (x, y) = (i % view.width as usize, i / view.width as usize);
+            panic!(
+                "{what}, {options:?}: pixel ({x}, {y}) shows {} at {}, expected {} at {}",
+                target.item[i], target.depth[i], expected.item[i], expected.depth[i]
+            );
+        }
+    }
+    expected
+}

@@ -1,0 +1,176 @@
+//! From world points to the pixel grid: projection, snapping, clipping.
+//!
+//! Projection runs in f64 on the f32 rows of the view's [`Projection`](crate::geometry::Projection),
+//! relative to the eye, so it is exact to about 2⁻⁵⁰ and the snap to 1/256 pixel is the one error that
+//! counts. Clipping (near plane and guard band) also runs in f64, in clip space, and cuts an edge from
+//! its lesser end whichever triangle asks, so that neighbors keep sharing their edges.
+
+use crate::geometry::{Space, Vector, View};
+
+/// Grid steps in a pixel, as a shift.
+pub(super) const SUBPIXEL_BITS: i32 = 8;
+/// Grid steps from a pixel's corner to its center.
+pub(super) const CENTER: i32 = 1 << (SUBPIXEL_BITS - 1);
+/// Half the side of the guard band about the middle of the image, grid steps: 16384 pixels. Inside it
+/// coordinate differences stay below 2²³, exact in f32, and edge functions below 2⁴⁸.
+const GUARD: f64 = 16384.0 * (1 << SUBPIXEL_BITS) as f64;
+
+/// A point in clip space: x, y, w. Flatland has y = 0.
+pub(super) type Clip = [f64; 3];
+
+/// A vertex on the pixel grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Vertex {
+    /// Column, grid steps.
+    pub x: i32,
+    /// Row, grid steps, down.
+    pub y: i32,
+    /// 1/w.
+    pub z: f32,
+    /// Which planes it lies outside of; bits below.
+    pub outside: u32,
+}
+
+/// Nearer than the near plane: has no place on the grid.
+const NEAR: u32 = 1 << 5;
+/// Off the guard band: has no place on the grid.
+const OFF_GRID: u32 = 1 << 6;
+/// A vertex with one of these needs its triangle clipped.
+pub(super) const NEEDS_CLIP: u32 = NEAR | OFF_GRID;
+/// A triangle whose vertices share one of these is out of view.
+pub(super) const REJECTS: u32 = OFF_GRID - 1;
+
+/// The view's projection to the pixel grid.
+#[derive(Clone, Copy)]
+pub(super) struct Camera {
+    eye: [f64; 3],
+    rows: [[f64; 3]; 3],
+    /// Middle of the image, grid steps.
+    middle: [f64; 2],
+    near: f64,
+    depth_far: f32,
+}
+
+impl Camera {
+    pub fn new<S: Space>(view: &View<S>) -> Self {
+        let projection = view.projection();
+        let axes = S::Vector::AXES;
+        let widen = |v: S::Vector| std::array::from_fn(|a| if a < axes { f64::from(v.get(a)) } else { 0.0 });
+        let mut rows = [[0.0; 3]; 3];
+        for image_axis in 0..axes - 1 {
+            rows[image_axis] = widen(projection.rows[image_axis]);
+        }
+        rows[2] = widen(projection.rows[axes - 1]);
+        let half = |pixels: u32| f64::from(pixels) * f64::from(CENTER);
+        Self {
+            eye: widen(projection.eye),
+            rows,
+            middle: [half(view.width), half(view.height)],
+            near: f64::from(view.eye.near),
+            depth_far: 1.0 / view.eye.far,
+        }
+    }
+
+    /// Clip coordinates of a world point.
+    #[inline(always)]
+    pub fn clip<V: Vector>(&self, point: V) -> Clip {
+        let r: [f64; 3] = std::array::from_fn(|a| if a < V::AXES { f64::from(point.get(a)) - self.eye[a] } else { 0.0 });
+        std::array::from_fn(|i| (self.rows[i][0] * r[0] + self.rows[i][1] * r[1]) + self.rows[i][2] * r[2])
+    }
+
+    /// The vertex of a point in clip space.
+    #[inline(always)]
+    pub fn vertex(&self, clip: Clip) -> Vertex {
+        let [x, y, w] = clip;
+        let (at, z) = self.place(clip);
+        let near = w < self.near;
+        let off_grid = !near & !((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) <= GUARD);
+        let beyond_far = !near & (z < self.depth_far);
+        let bits = [x < -w, x > w, y < -w, y > w, beyond_far, near, off_grid];
+        let outside = bits.iter().enumerate().fold(0, |o, (i, &b)| o | u32::from(b) << i);
+        let on_grid = outside & NEEDS_CLIP == 0;
+        Vertex { x: if on_grid { round(at[0]) } else { 0 }, y: if on_grid { round(at[1]) } else { 0 }, z, outside }
+    }
+
+    /// Grid coordinates before snapping, and depth.
+    #[inline(always)]
+    fn place(&self, [x, y, w]: Clip) -> ([f64; 2], f32) {
+        let inverse = 1.0 / w;
+        let at = [self.middle[0] + x * inverse * self.middle[0], self.middle[1] - y * inverse * self.middle[1]];
+        (at, (inverse as f32).min(f32::MAX))
+    }
+
+    /// The part of a convex polygon (or of a segment) that is beyond the near plane and on the guard
+    /// band, in order; fewer corners than before may be left, or none.
+    pub fn clipped(&self, corners: &[Clip]) -> Polygon {
+        let mut polygon = Polygon::default();
+        corners.iter().for_each(|&c| polygon.push(c));
+        let [gx, gy] = self.middle.map(|m| GUARD / m);
+        // Inside is plane·(x, y, w) ≥ offset.
+        let planes = [([0.0, 0.0, 1.0], self.near), ([1.0, 0.0, gx], 0.0), ([-1.0, 0.0, gx], 0.0), ([0.0, 1.0, gy], 0.0), ([0.0, -1.0, gy], 0.0)];
+        for (plane, offset) in planes {
+            let distance = |c: &Clip| (plane[0] * c[0] + plane[1] * c[1]) + plane[2] * c[2] - offset;
+            if polygon.corners().iter().any(|c| distance(c) < 0.0) {
+                polygon = polygon.cut(distance);
+            }
+        }
+        polygon
+    }
+
+    /// The vertex of a corner of a clipped polygon.
+    pub fn clipped_vertex(&self, corner: Clip) -> Vertex {
+        let ([x, y], z) = self.place(corner);
+        Vertex { x: round(x), y: round(y), z, outside: 0 }
+    }
+}
+
+/// A convex polygon in clip space: a triangle cut by five planes has at most eight corners.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Polygon {
+    corners: [Clip; 8],
+    count: usize,
+}
+
+impl Polygon {
+    pub fn corners(&self) -> &[Clip] {
+        &self.corners[..self.count]
+    }
+    fn push(&mut self, corner: Clip) {
+        // Rounding can make a sliver seem concave; a ninth corner would then be a repetition.
+        if self.count < self.corners.len() {
+            self.corners[self.count] = corner;
+            self.count += 1;
+        }
+    }
+    fn cut(&self, distance: impl Fn(&Clip) -> f64) -> Self {
+        let mut kept = Self::default();
+        // A segment has one edge, a polygon closes.
+        let edges = if self.count == 2 { 1 } else { self.count };
+        for i in 0..self.count {
+            let (a, b) = (self.corners[i], self.corners[(i + 1) % self.count]);
+            let (da, db) = (distance(&a), distance(&b));
+            if da >= 0.0 {
+                kept.push(a);
+            }
+            if i < edges && (da >= 0.0) != (db >= 0.0) {
+                kept.push(crossing(a, b, da, db));
+            }
+        }
+        kept
+    }
+}
+
+/// Where the edge between `a` and `b` crosses the plane at signed distances `da` and `db`, computed
+/// from the lesser end, so that both triangles of an edge find the same point.
+fn crossing(a: Clip, b: Clip, da: f64, db: f64) -> Clip {
+    let ((a, da), (b, db)) = if a <= b { ((a, da), (b, db)) } else { ((b, db), (a, da)) };
+    let t = da / (da - db);
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+/// Nearest integer, ties to even, for |v| < 2⁵⁰: the sum's last mantissa bit is worth one.
+#[inline(always)]
+fn round(v: f64) -> i32 {
+    const ONES: f64 = (3u64 << 51) as f64;
+    (v + ONES).to_bits() as i32
+}
