@@ -57,8 +57,8 @@ impl Camera {
         let axes = S::Vector::AXES;
         let widen = |v: S::Vector| std::array::from_fn(|a| if a < axes { f64::from(v.get(a)) } else { 0.0 });
         let mut rows = [[0.0; 3]; 3];
-        for image_axis in 0..axes - 1 {
-            rows[image_axis] = widen(projection.rows[image_axis]);
+        for (row, &from) in rows.iter_mut().zip(&projection.rows[..axes - 1]) {
+            *row = widen(from);
         }
         rows[2] = widen(projection.rows[axes - 1]);
         let half = |pixels: u32| f64::from(pixels) * f64::from(CENTER);
@@ -84,7 +84,7 @@ impl Camera {
         let [x, y, w] = clip;
         let (at, z) = self.place(clip);
         let near = w < self.near;
-        let off_grid = !near & !((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) <= GUARD);
+        let off_grid = !near & ((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) > GUARD);
         let beyond_far = !near & (z < self.depth_far);
         let bits = [x < -w, x > w, y < -w, y > w, beyond_far, near, off_grid];
         let outside = bits.iter().enumerate().fold(0, |o, (i, &b)| o | u32::from(b) << i);

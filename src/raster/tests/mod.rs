@@ -2,6 +2,8 @@
 
 mod equal;
 
+
+
 use glam::{DVec3, Vec2, Vec3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
@@ -28,6 +30,7 @@ impl Dice {
     pub fn point(&mut self, reach: f32) -> Vec3 {
         Vec3::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
     }
+    #[allow(dead_code)]
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for i in (1..list.len()).rev() {
             list.swap(i, self.below(i as u32 + 1) as usize);
