@@ -9,6 +9,8 @@ mod hatch;
 mod pdf;
 mod piece;
 mod raster;
+#[cfg(feature = "gui")]
+pub mod screen;
 pub mod sight;
 mod svg;
 pub mod theme;

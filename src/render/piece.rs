@@ -184,13 +184,11 @@ fn arrow<'a>(from: Vec2, to: Vec2, style: &Style, push: &mut impl FnMut(Part, Sh
     let head = (style.width_pt * 2.0 + 3.5).min(length);
     let (base, side) = (to - unit * head, unit.perp() * head * 0.36);
     let shaft = || Shape::Path { points: Cow::Owned(vec![from, to - unit * head * 0.8]), closed: false };
-    let tip = || Shape::Path { points: Cow::Owned(vec![to, base + side, base - side]), closed: true };
     if style.halo.is_some() {
-        push(Part::Halo, shaft());
-        push(Part::Halo, tip());
+        push(Part::Halo, Shape::Path { points: Cow::Owned(vec![from, to + unit]), closed: false });
     }
     push(Part::Line, shaft());
-    push(Part::Head, tip());
+    push(Part::Head, Shape::Path { points: Cow::Owned(vec![to, base + side, base - side]), closed: true });
 }
 
 /// Where the sign of a line or area stands: the mean of a closed outline's corners, the middle of a line's middle edge.
@@ -208,7 +206,7 @@ fn middle(points: &[Vec2], closed: bool) -> Option<Vec2> {
 
 fn finite(mark: &Mark<Vec2>) -> bool {
     // Beyond this no paper is; larger numbers overflow the readers' arithmetic.
-    let near = |p: &Vec2| p.is_finite() && p.abs().max_element() < 1e6;
+    let near = |p: &Vec2| p.is_finite() && p.abs().max_element() < 1e7;
     match mark {
         Mark::Line { points, closed: _ } => points.len() > 1 && points.iter().all(near),
         Mark::Area(points) => points.len() > 2 && points.iter().all(near),

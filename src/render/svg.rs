@@ -75,9 +75,10 @@ impl Writer {
     fn layers(&mut self, drawing: &Drawing) {
         let mut open: Option<Layer> = None;
         let mut pieces = Vec::new();
+        let styles = self.look.styles();
         for item in drawing.painted() {
             pieces.clear();
-            piece::pieces(item, &self.look.style(item.role), &mut pieces);
+            piece::pieces(item, &styles[item.role as usize], &mut pieces);
             if pieces.is_empty() {
                 continue;
             }

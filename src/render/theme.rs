@@ -323,6 +323,11 @@ impl Look {
         }
     }
 
+    /// The styles of all roles, for readers of many marks; `styles[role as usize]`.
+    pub fn styles(self) -> [Style; Role::ALL.len()] {
+        Role::ALL.map(|role| self.style(role))
+    }
+
     /// Color of the paper.
     pub fn paper(self) -> Rgb {
         self.sight.see(self.theme.paper())
@@ -341,6 +346,13 @@ mod tests {
 
     fn pairs() -> impl Iterator<Item = (Role, Role)> {
         Role::STATES.iter().enumerate().flat_map(|(i, a)| Role::STATES[i + 1..].iter().map(|b| (*a, *b)))
+    }
+
+    #[test]
+    fn styles_are_found_by_role() {
+        let look = Look::from(Theme::Dark);
+        let styles = look.styles();
+        assert!(Role::ALL.iter().all(|role| styles[*role as usize] == look.style(*role)));
     }
 
     #[test]
