@@ -3,13 +3,33 @@
 //! After [`Scene::new`] every coordinate is finite, every corner index is in range and there is at
 //! least one live primitive, so nothing behind this door can fail.
 
+mod about;
+mod assemble;
+mod flat;
+mod generate;
+mod gltf;
+mod json;
+mod load;
+mod mtl;
+mod obj;
+mod paths;
+mod polygon;
+mod pose;
 mod progress;
 mod report;
 #[cfg(test)]
 pub(crate) mod samples;
+mod text;
+mod views;
 
-pub use progress::{Progress, Quiet};
+pub use about::{About, Expectation};
+pub use assemble::{MAX_COORDINATE, MAX_PRIMS};
+pub use generate::{Generator, GeneratorParam, generators};
+pub use load::{LoadOptions, Recenter, load};
+pub use paths::{figure_eight_path, random_views};
+pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
+pub use views::{parse_views, read_views, read_views_for, write_views};
 
 use std::sync::Arc;
 
@@ -72,7 +92,7 @@ pub struct Parts<S: Space> {
     pub prim_object: Vec<ObjectId>,
     /// Material of each primitive.
     pub prim_material: Vec<MaterialId>,
-    /// Planar convex polygons.
+    /// Planar convex polygons of more than one primitive. A primitive that none of them names stands for itself.
     pub faces: Vec<Face>,
     /// Objects by [`ObjectId`].
     pub objects: Vec<Object>,
@@ -86,6 +106,27 @@ pub struct Parts<S: Space> {
     pub report: Report,
 }
 
+impl<S: Space> Parts<S> {
+    /// One object of one material made of these primitives; for generators and tests.
+    pub fn simple(name: &str, points: Vec<S::Vector>, prims: Vec<S::Corners>) -> Self {
+        let n = prims.len();
+        Self {
+            name: name.to_owned(),
+            source: name.to_owned(),
+            points,
+            prims: prims.into_iter().map(Some).collect(),
+            prim_object: vec![ObjectId(0); n],
+            prim_material: vec![MaterialId(0); n],
+            faces: Vec::new(),
+            objects: vec![Object { name: name.to_owned(), group: String::new(), motion: None }],
+            materials: vec![Material { name: "default".into(), color: mtl::GRAY }],
+            origin: DVec3::ZERO,
+            paths: Vec::new(),
+            report: Report::default(),
+        }
+    }
+}
+
 /// A validated scene. Frozen; shared by reference.
 #[derive(Clone, Debug)]
 pub struct Scene<S: Space> {
@@ -93,6 +134,7 @@ pub struct Scene<S: Space> {
     live: Vec<PrimId>,
     bounds: Aabb<S::Vector>,
     hash: [u8; 32],
+    about: Arc<About>,
 }
 
 impl<S: Space> Scene<S> {
@@ -122,7 +164,7 @@ impl<S: Space> Scene<S> {
             return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM });
         }
         let hash = digest(&parts);
-        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash };
+        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash, about: Arc::default() };
         scene.bounds = scene.live.iter().fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)));
         Ok(scene)
     }
@@ -203,6 +245,15 @@ impl<S: Space> Scene<S> {
     pub fn report(&self) -> &Report {
         &self.parts.report
     }
+    /// What it is for, and facts to expect.
+    pub fn about(&self) -> &About {
+        &self.about
+    }
+    /// The same scene, saying this about itself.
+    pub fn with_about(mut self, about: About) -> Self {
+        self.about = Arc::new(about);
+        self
+    }
     /// SHA-256 of the geometry (points, corners, objects, colors), lower-case hex.
     pub fn hash_hex(&self) -> String {
         self.hash.iter().map(|b| format!("{b:02x}")).collect()
@@ -238,6 +289,18 @@ pub enum AnyScene {
     Flat(Arc<Scene<Flat>>),
     /// Space.
     Solid(Arc<Scene<Solid>>),
+}
+
+impl From<Scene<Flat>> for AnyScene {
+    fn from(scene: Scene<Flat>) -> Self {
+        Self::Flat(Arc::new(scene))
+    }
+}
+
+impl From<Scene<Solid>> for AnyScene {
+    fn from(scene: Scene<Solid>) -> Self {
+        Self::Solid(Arc::new(scene))
+    }
 }
 
 /// A view path of either space.

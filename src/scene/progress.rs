@@ -19,3 +19,22 @@ impl Progress for Quiet {
         false
     }
 }
+
+/// A part of a longer work, as a progress of its own: its 0 to 1 is told as `start` to `start + length`.
+pub struct Part<'a> {
+    /// Who is told.
+    pub whole: &'a dyn Progress,
+    /// Fraction of the whole where this part begins.
+    pub start: f32,
+    /// Fraction of the whole that this part is.
+    pub length: f32,
+}
+
+impl Progress for Part<'_> {
+    fn report(&self, fraction: f32, what: &'static str) {
+        self.whole.report(self.start + fraction.clamp(0.0, 1.0) * self.length, what);
+    }
+    fn cancelled(&self) -> bool {
+        self.whole.cancelled()
+    }
+}

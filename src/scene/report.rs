@@ -36,6 +36,10 @@ pub struct Report {
     pub notes: Vec<String>,
     /// Sentences beyond the limit.
     pub unsaid: usize,
+    /// Points that went because another was at the same place, or nothing used them.
+    pub merged_points: usize,
+    /// Primitives that became part of a larger convex polygon by merging coplanar neighbors.
+    pub merged_prims: usize,
 }
 
 impl Report {

@@ -1,0 +1,87 @@
+//! Scenes made by rule: seeded, parametric, the same on every machine.
+//!
+//! Only addition, multiplication, division and square root are used, whose results IEEE 754 fixes; sines come
+//! from a series, since those of system libraries differ in their last bits.
+
+mod building;
+mod furniture;
+mod plan;
+mod shapes;
+
+use super::{LoadOptions, Part, Parts, Progress, SceneError};
+use crate::geometry::Solid;
+
+/// A parameter of a generator: a whole number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GeneratorParam {
+    /// As written in `generate:NAME?name=value`.
+    pub name: &'static str,
+    /// What it is if it is not given.
+    pub default: u64,
+    /// Least value.
+    pub min: u64,
+    /// Greatest value.
+    pub max: u64,
+    /// One line.
+    pub meaning: &'static str,
+}
+
+/// A scene that is made by rule.
+#[derive(Clone, Copy, Debug)]
+pub struct Generator {
+    /// As written in `generate:NAME`.
+    pub name: &'static str,
+    /// One line.
+    pub meaning: &'static str,
+    /// Its parameters.
+    pub params: &'static [GeneratorParam],
+    make: fn(&Values, &str, &LoadOptions, &dyn Progress) -> Result<Parts<Solid>, SceneError>,
+}
+
+/// Values of all parameters of a generator, in the order of its list.
+struct Values {
+    params: &'static [GeneratorParam],
+    values: Vec<u64>,
+}
+
+impl Values {
+    fn get(&self, name: &str) -> u64 {
+        self.params.iter().position(|p| p.name == name).map_or(0, |i| self.values[i])
+    }
+}
+
+static GENERATORS: &[Generator] = &[building::GENERATOR];
+
+/// All generators, by name.
+pub fn generators() -> &'static [Generator] {
+    GENERATORS
+}
+
+/// Makes the scene that `generate:NAME[?key=value&…]` describes. `call` is what follows `generate:`.
+pub(super) fn generate(call: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+    let fail = |why: String| SceneError::Format { path: format!("generate:{call}"), why };
+    let (name, query) = call.split_once('?').unwrap_or((call, ""));
+    let Some(generator) = GENERATORS.iter().find(|g| g.name == name) else {
+        let known: Vec<&str> = GENERATORS.iter().map(|g| g.name).collect();
+        return Err(fail(format!("there is no generator `{name}`; there are: {}", known.join(", "))));
+    };
+    let mut values = Values { params: generator.params, values: generator.params.iter().map(|p| p.default).collect() };
+    for pair in query.split('&').filter(|p| !p.is_empty()) {
+        let Some((key, value)) = pair.split_once('=') else {
+            return Err(fail(format!("`{pair}` should read key=value")));
+        };
+        let Some(i) = generator.params.iter().position(|p| p.name == key) else {
+            let known: Vec<&str> = generator.params.iter().map(|p| p.name).collect();
+            return Err(fail(format!("`{name}` has no parameter `{key}`; it has: {}", known.join(", "))));
+        };
+        let param = &generator.params[i];
+        let number: Option<u64> = value.replace('_', "").parse().ok();
+        match number.filter(|n| (param.min..=param.max).contains(n)) {
+            Some(number) => values.values[i] = number,
+            None => return Err(fail(format!("`{key}` must be a whole number from {} to {}, not `{value}`", param.min, param.max))),
+        }
+    }
+    let given: Vec<String> = generator.params.iter().zip(&values.values).map(|(p, v)| format!("{}={v}", p.name)).collect();
+    let source = format!("generate:{name}?{}", given.join("&"));
+    (generator.make)(&values, &source, options, &Part { whole: progress, start: 0.0, length: 0.95 })
+}

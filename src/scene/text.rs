@@ -1,0 +1,164 @@
+//! Reading files with care, and the lines of old text formats.
+//!
+//! Only regular files are opened (a device or a pipe could feed bytes for ever), each up to a limit.
+//! Files that a model names must lie in the model's folder, links followed. Cost: one copy of the file.
+
+use std::borrow::Cow;
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+use super::SceneError;
+
+/// Reads a regular file of at most `limit` bytes.
+///
+/// # Errors
+/// [`SceneError::Io`] if it cannot be opened or read, [`SceneError::Format`] if it is no regular file or too long.
+pub(super) fn read_file(path: &Path, shown: &str, limit_bytes: u64) -> Result<Vec<u8>, SceneError> {
+    let io = |why| SceneError::Io { path: shown.to_owned(), why };
+    let format = |why: String| SceneError::Format { path: shown.to_owned(), why };
+    // Asked before opening, because opening a pipe waits for its writer.
+    let kind = fs::metadata(path).map_err(io)?;
+    if kind.is_dir() {
+        return Err(format("is a folder, not a file".into()));
+    }
+    if !kind.is_file() {
+        return Err(format("is a device or a pipe, not a regular file".into()));
+    }
+    if kind.len() > limit_bytes {
+        return Err(format(format!("is {} bytes long, more than the limit of {limit_bytes}", kind.len())));
+    }
+    let mut bytes = Vec::with_capacity(kind.len() as usize + 1);
+    File::open(path).map_err(io)?.take(limit_bytes + 1).read_to_end(&mut bytes).map_err(io)?;
+    if bytes.len() as u64 > limit_bytes {
+        return Err(format(format!("grew beyond the limit of {limit_bytes} bytes while it was read")));
+    }
+    Ok(bytes)
+}
+
+/// Finds the file that a model in `folder` names, or says why it must not be opened.
+pub(super) fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
+    let relative = PathBuf::from(name.replace('\\', "/"));
+    let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if relative.as_os_str().is_empty() || !plain {
+        return Err("the name leads out of the model's folder, so it was not opened".into());
+    }
+    let reason = |e: io::Error| if e.kind() == io::ErrorKind::NotFound { "there is no such file".to_owned() } else { e.to_string() };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let home = folder.canonicalize().map_err(reason)?;
+    let found = folder.join(relative).canonicalize().map_err(reason)?;
+    if !found.starts_with(&home) {
+        return Err("it is a link out of the model's folder, so it was not opened".into());
+    }
+    Ok(found)
+}
+
+/// The bytes after a UTF-8 byte order mark, if there is one.
+///
+/// # Errors
+/// What to tell if the text is UTF-16.
+pub(super) fn without_mark(bytes: &[u8]) -> Result<&[u8], &'static str> {
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err("is UTF-16 text; save it as UTF-8");
+    }
+    Ok(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
+}
+
+/// Logical lines of a Wavefront file with the number of their first physical line: `\` at the end
+/// joins the next one on, except in comments. Line ends may be LF, CR LF or CR.
+pub(super) struct Lines<'a> {
+    rest: &'a [u8],
+    number: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { rest: text, number: 0 }
+    }
+    /// Bytes not yet read.
+    pub(super) fn left_bytes(&self) -> usize {
+        self.rest.len()
+    }
+    fn physical(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        self.number += 1;
+        let end = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(self.rest.len());
+        let (line, tail) = self.rest.split_at(end);
+        self.rest = tail.strip_prefix(b"\r\n").or_else(|| tail.get(1..)).unwrap_or(&[]);
+        Some(line)
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, Cow<'a, [u8]>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let first = self.physical()?;
+        let number = self.number;
+        if !first.ends_with(b"\\") || first.trim_ascii_start().starts_with(b"#") {
+            return Some((number, Cow::Borrowed(first)));
+        }
+        let mut joined = first[..first.len() - 1].to_vec();
+        while let Some(next) = self.physical() {
+            joined.push(b' ');
+            match next.strip_suffix(b"\\") {
+                Some(more) => joined.extend_from_slice(more),
+                None => {
+                    joined.extend_from_slice(next);
+                    break;
+                }
+            }
+        }
+        Some((number, Cow::Owned(joined)))
+    }
+}
+
+/// Splits off the first word: (word, trimmed rest).
+pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
+    let line = line.trim_ascii();
+    let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+    (&line[..end], line[end..].trim_ascii())
+}
+
+/// Words of a line up to a comment.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).take_while(|w| w[0] != b'#')
+}
+
+/// A number as Rust writes them; also `nan` and `inf`, which the caller must refuse.
+pub(super) fn number(word: &[u8]) -> Option<f64> {
+    std::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A name for people: bytes that are not UTF-8 become `�`, control characters a space.
+pub(super) fn name_of(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(text: &[u8]) -> Vec<(usize, String)> {
+        Lines::new(text).map(|(n, l)| (n, String::from_utf8_lossy(&l).into_owned())).collect()
+    }
+
+    #[test]
+    fn lines_join_and_keep_their_numbers() {
+        let got = lines(b"a\r\nb \\\nc\\\n d\n# C:\\temp\\\ne\rf\n\nlast\\");
+        let want = [(1, "a"), (2, "b  c  d"), (5, "# C:\\temp\\"), (6, "e"), (7, "f"), (8, ""), (9, "last")];
+        assert_eq!(got, want.map(|(n, s)| (n, s.to_owned())));
+    }
+
+    #[test]
+    fn names_that_lead_out_are_refused() {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+        for name in ["../Cargo.toml", "/dev/zero", "/etc/passwd", "", "scene/../../Cargo.toml", "..\\Cargo.toml"] {
+            assert!(beside(&here, name).is_err(), "{name}");
+        }
+        assert!(beside(&here, "./scene/mod.rs").is_ok());
+        assert_eq!(beside(&here, "nothing.mtl"), Err("there is no such file".into()));
+    }
+}

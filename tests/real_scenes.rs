@@ -1,0 +1,97 @@
+//! The real models: those of scenes2d/ and scenes3d/ always, others where `CULLSCOPE_SCENES` names a folder.
+
+use std::path::{Path, PathBuf};
+
+use cullscope::geometry::{Flat, Solid};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
+
+fn home() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn solid(path: &Path) -> std::sync::Arc<Scene<Solid>> {
+    match load(&path.to_string_lossy(), &LoadOptions::default(), &Quiet) {
+        Ok(AnyScene::Solid(scene)) => scene,
+        other => panic!("{}: {other:?}", path.display()),
+    }
+}
+
+fn flat(path: &Path) -> std::sync::Arc<Scene<Flat>> {
+    match load(&path.to_string_lossy(), &LoadOptions::default(), &Quiet) {
+        Ok(AnyScene::Flat(scene)) => scene,
+        other => panic!("{}: {other:?}", path.display()),
+    }
+}
+
+/// Triangles, objects and views in space; what SOURCE.txt and the files' own lists say.
+const SHIPPED: [(&str, usize, usize, usize); 7] = [
+    ("freedoom_e1m1", 3_693, 135, 119),
+    ("freedoom_e1m2", 7_786, 316, 120),
+    ("freedoom_e1m5", 27_828, 1_055, 120),
+    ("freedoom_p2_map12", 44_232, 1_707, 118),
+    ("terrain_jacksboro_65k", 65_322, 132, 120),
+    ("tree_aspen_5k", 4_896, 46, 120),
+    ("tree_oak_52k", 52_325, 551, 120),
+];
+
+#[test]
+fn shipped_models_load_whole() {
+    for (name, triangles, objects, views) in SHIPPED {
+        let scene = solid(&home().join("scenes3d").join(name).join(format!("{name}.obj")));
+        assert_eq!(scene.prim_count(), triangles, "{name}");
+        assert_eq!((scene.objects().len(), scene.paths()[0].views.len()), (objects, views), "{name}");
+        assert!(scene.materials().iter().all(|m| m.name != "default"), "{name}: every face has a material");
+        assert!(scene.report().notes.iter().all(|n| !n.contains("material")), "{name}: {:?}", scene.report());
+    }
+}
+
+#[test]
+fn shipped_levels_stand_in_flatland_too() {
+    for (name, segments, objects, eyes, walk) in [
+        ("freedoom_e1m1", 425, 107, 228, 792),
+        ("freedoom_e1m2", 1_267, 278, 283, 724),
+        ("freedoom_e1m5", 4_263, 803, 516, 2_281),
+        ("freedoom_p2_map12", 5_108, 966, 577, 2_542),
+    ] {
+        let scene = flat(&home().join("scenes2d").join(name).join(format!("{name}.flat.json")));
+        assert_eq!(scene.prim_count(), segments, "{name}");
+        assert_eq!((scene.objects().len(), scene.paths()[0].views.len(), scene.paths()[1].views.len()), (objects, eyes, walk), "{name}");
+    }
+}
+
+/// Triangles and objects of the models that are not shipped.
+const OTHERS: [(&str, usize, usize); 14] = [
+    ("citysim_town/citysim_town", 277_293, 439),
+    ("delft/delft", 36_267, 570),
+    ("classics/spot", 5_856, 1),
+    ("classics/suzanne", 3_936, 1),
+    ("classics/teapot", 6_320, 1),
+    ("eztree_grove/eztree_grove", 170_348, 45),
+    ("lq_e1m2/lq_e1m2", 14_850, 271),
+    ("pandora/pandora", 60_694, 856),
+    ("small_house/small_house", 145_231, 85),
+    ("willow_garage/willow_garage", 13_839, 383),
+    ("fm1_device/fm1_device", 103_504, 62),
+    ("iss_modules/iss_modules", 24_546, 905),
+    ("pdb_1d66/pdb_1d66", 136_880, 156),
+    ("jacksboro/jacksboro", 275_772, 143),
+];
+
+#[test]
+fn other_models_load_whole_where_they_are() {
+    let Some(folder) = std::env::var_os("CULLSCOPE_SCENES").map(PathBuf::from) else {
+        eprintln!("skipped: CULLSCOPE_SCENES names no folder with the models that are not shipped");
+        return;
+    };
+    for (name, triangles, objects) in OTHERS {
+        let path = folder.join(format!("{name}.obj"));
+        if !path.is_file() {
+            eprintln!("skipped: {} is not there", path.display());
+            continue;
+        }
+        let scene = solid(&path);
+        println!("{name}: {} polygons, {} views, {:?}", scene.faces().len(), scene.paths()[0].views.len(), scene.report());
+        assert_eq!((scene.prim_count(), scene.objects().len()), (triangles, objects), "{name}");
+        assert!(!scene.paths().is_empty(), "{name}");
+    }
+}
