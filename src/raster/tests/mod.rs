@@ -2,8 +2,6 @@
 
 mod equal;
 
-
-
 use glam::{DVec3, Vec2, Vec3};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;

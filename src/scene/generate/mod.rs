@@ -35,8 +35,10 @@ pub struct Generator {
     pub meaning: &'static str,
     /// Its parameters.
     pub params: &'static [GeneratorParam],
-    make: fn(&Values, &str, &LoadOptions, &dyn Progress) -> Result<Parts<Solid>, SceneError>,
+    make: Make,
 }
+
+type Make = fn(&Values, &str, &LoadOptions, &dyn Progress) -> Result<Parts<Solid>, SceneError>;
 
 /// Values of all parameters of a generator, in the order of its list.
 struct Values {
