@@ -1,0 +1,223 @@
+//! Scene, film and marks as the words of vertex buffers.
+//!
+//! A triangle takes 48 bytes once a scene (three points, each with the packed look of the triangle) and 12
+//! once a film (its stamp at each vertex); a node takes 36 once a film. Nothing is indexed and nothing
+//! needs storage buffers, so GL draws it as well.
+
+use glam::Vec3;
+
+use crate::culling::Verdict;
+use crate::drawing::{Drawing, Layer, Mark, Role};
+use crate::geometry::{NodeId, PrimId, Solid};
+use crate::index::Hierarchy;
+use crate::scene::Scene;
+use crate::trace::{Stamp, Stamps};
+
+/// Words of a triangle's corner: x, y, z, look.
+pub(super) type CornerWords = [u32; 4];
+/// Words of a node: least corner, greatest corner, step entered, stamp, 1 for a leaf.
+pub(super) type NodeWords = [u32; 9];
+/// Words of a segment: ends, then role, kind and radius.
+pub(super) type SegmentWords = [u32; 7];
+/// Words of an area's corner: x, y, z, role.
+pub(super) type AreaWords = [u32; 4];
+
+/// Kinds of segment, as in the shader.
+const DOT: u32 = 16;
+const HEAD: u32 = 32;
+
+/// What a verdict looks like.
+fn role_of(verdict: Verdict) -> Role {
+    match verdict {
+        Verdict::Outside => Role::Outside,
+        Verdict::Hidden => Role::Hidden,
+        Verdict::Partial => Role::Partial,
+        Verdict::Visible => Role::Visible,
+        Verdict::Approximated | Verdict::OverBudget => Role::Approximated,
+    }
+}
+
+/// Step in the upper 28 bits (a film is capped far below), role in the lower four.
+fn stamp_word(stamp: Stamp, wrong: bool) -> u32 {
+    let role = if wrong && stamp.verdict != Verdict::Visible { Role::Wrong } else { role_of(stamp.verdict) };
+    step_word(stamp.step) << 4 | role as u32
+}
+/// A step that the shader can compare; what never happens stays later than every step.
+pub(super) fn step_word(step: u32) -> u32 {
+    step.min(NEVER)
+}
+/// Later than every step.
+pub(super) const NEVER: u32 = (1 << 28) - 1;
+
+/// Stamps of three corners for each of `prims`; `wrong` is ascending.
+pub(super) fn stamps(prims: &[PrimId], stamps: Option<&Stamps>, wrong: &[PrimId]) -> Vec<[u32; 3]> {
+    let word = |p: &PrimId| stamps.map_or(NEVER << 4, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()));
+    prims.iter().map(|p| [word(p); 3]).collect()
+}
+
+/// Three corners for each of `prims`, flat-shaded. `inner` are the bits of sides inside faces, by id.
+pub(super) fn corners(scene: &Scene<Solid>, prims: &[PrimId], inner: &[u8]) -> Vec<[CornerWords; 3]> {
+    let corner = |p: Vec3, look: u32| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), look];
+    prims
+        .iter()
+        .map(|&prim| {
+            let look = look_word(scene.color_of(prim), scene.normal(prim), inner[prim.at()]);
+            let mut points = scene.prim_points(prim);
+            std::array::from_fn(|_| corner(points.next().unwrap_or_default(), look))
+        })
+        .collect()
+}
+
+/// Toward the light. The shade depends on the plane alone and not on which side is its front, since many
+/// models wind their triangles either way; the three axes get three shades.
+const LIGHT: Vec3 = Vec3::new(0.36, 0.80, 0.48);
+/// Shade of planes along the light.
+const AMBIENT: f32 = 0.62;
+
+/// Seven bits a channel of the sRGB color, eight of shade, three of inner sides.
+fn look_word(linear: [f32; 3], normal: Vec3, inner: u8) -> u32 {
+    let shade = AMBIENT + (1.0 - AMBIENT) * normal.normalize_or(LIGHT).dot(LIGHT).abs().min(1.0);
+    let channels = linear.map(|c| (encode(c) * 127.0).round() as u32);
+    channels[0] | channels[1] << 7 | channels[2] << 14 | ((shade * 255.0).round() as u32) << 21 | u32::from(inner & 7) << 29
+}
+/// Linear light to an sRGB value, 0..1.
+fn encode(linear: f32) -> f32 {
+    let c = linear.clamp(0.0, 1.0);
+    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// For each primitive the bits of sides that lie inside a face: bit `i` is the side opposite corner `i`.
+/// Wires leave these out, so a wall is drawn as the polygon it is.
+pub(super) fn inner_sides(scene: &Scene<Solid>) -> Vec<u8> {
+    let mut bits = vec![0u8; scene.prim_count()];
+    let mut rim = Vec::new();
+    for face in scene.faces().iter().filter(|f| f.prims.len() > 1) {
+        let n = face.corners.len();
+        rim.clear();
+        rim.extend((0..n).map(|i| ordered(face.corners[i], face.corners[(i + 1) % n])));
+        rim.sort_unstable();
+        for &prim in &face.prims {
+            let Some(c) = scene.corners(prim) else { continue };
+            for side in 0..3 {
+                let edge = ordered(c[(side + 1) % 3], c[(side + 2) % 3]);
+                bits[prim.at()] |= u8::from(rim.binary_search(&edge).is_err()) << side;
+            }
+        }
+    }
+    bits
+}
+fn ordered(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+/// Nodes ordered by level, and where each level begins (one more entry than levels).
+pub(super) fn nodes(stamps: &Stamps, hierarchy: &dyn Hierarchy<Solid>) -> (Vec<NodeWords>, Vec<u32>) {
+    let mut ids: Vec<NodeId> = (0..hierarchy.node_count() as u32).map(NodeId).collect();
+    ids.sort_by_key(|&n| hierarchy.level(n));
+    let mut starts = vec![0];
+    let words = ids.iter().enumerate().map(|(i, &n)| {
+        while starts.len() <= hierarchy.level(n) as usize {
+            starts.push(i as u32);
+        }
+        let (low, high) = (hierarchy.bounds(n).min, hierarchy.bounds(n).max);
+        let leaf = hierarchy.children(n).is_empty();
+        let [a, b] = [low, high].map(|v| v.to_array().map(f32::to_bits));
+        [a[0], a[1], a[2], b[0], b[1], b[2], step_word(stamps.entered(n)), stamp_word(stamps.nodes()[n.at()], false), leaf.into()]
+    });
+    let words: Vec<_> = words.collect();
+    starts.push(ids.len() as u32);
+    (words, starts)
+}
+
+/// A segment between two points in a role.
+pub(super) fn segment(a: Vec3, b: Vec3, role: Role) -> SegmentWords {
+    words(a, b, role as u32)
+}
+fn words(a: Vec3, b: Vec3, word: u32) -> SegmentWords {
+    let [a, b] = [a, b].map(|v| v.to_array().map(f32::to_bits));
+    [a[0], a[1], a[2], b[0], b[1], b[2], word]
+}
+
+/// Marks by layer, in the order in which they are painted.
+#[derive(Default)]
+pub(super) struct MarkWords {
+    /// Segments, dots and heads.
+    pub segments: Vec<SegmentWords>,
+    /// Triangles of areas.
+    pub areas: Vec<AreaWords>,
+    /// Layer, first segment, first corner of an area; ascending.
+    pub layers: Vec<(Layer, u32, u32)>,
+}
+
+/// Turns marks in the world into segments and areas. Text and images are left to whoever paints over the
+/// viewport: they are flat on the screen.
+pub(super) fn marks(drawing: &Drawing<Vec3>) -> MarkWords {
+    let mut to = MarkWords::default();
+    for item in drawing.painted() {
+        if to.layers.last().is_none_or(|(layer, ..)| *layer != item.layer) {
+            to.layers.push((item.layer, to.segments.len() as u32, to.areas.len() as u32));
+        }
+        let mut polyline = |points: &[Vec3], closed: bool| {
+            to.segments.extend(points.windows(2).map(|w| segment(w[0], w[1], item.role)));
+            if let ([first, .., last], true) = (points, closed) {
+                to.segments.push(segment(*last, *first, item.role));
+            }
+        };
+        match &item.mark {
+            Mark::Line { points, closed } => polyline(points, *closed),
+            Mark::Arrow(from, end) => {
+                polyline(&[*from, *end], false);
+                to.segments.push(words(*from, *end, item.role as u32 | HEAD));
+            }
+            Mark::Dot { at, radius_pt } => {
+                let radius = (radius_pt * 16.0).round().clamp(1.0, 255.0) as u32;
+                to.segments.push(words(*at, *at, item.role as u32 | DOT | radius << 8));
+            }
+            Mark::Area(points) => {
+                polyline(points, true);
+                let corner = |p: Vec3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), item.role as u32];
+                for i in 2..points.len() {
+                    to.areas.extend([points[0], points[i - 1], points[i]].map(corner));
+                }
+            }
+            Mark::Text { .. } | Mark::Image { .. } => {}
+        }
+    }
+    to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Subject;
+
+    #[test]
+    fn a_stamp_keeps_order_and_role() {
+        let stamp = |step, verdict| stamp_word(Stamp { step, verdict }, false);
+        assert!(stamp(7, Verdict::OverBudget) >> 4 == 7 && stamp(7, Verdict::Hidden) & 15 == Role::Hidden as u32);
+        assert!(stamp(Stamp::NEVER, Verdict::Partial) >> 4 > 10_000_000);
+        assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Outside }, true) & 15, Role::Wrong as u32);
+        assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Visible }, true) & 15, Role::Visible as u32);
+    }
+
+    #[test]
+    fn shade_ignores_the_side_and_tells_the_axes_apart() {
+        let shade = |n: Vec3| look_word([0.5; 3], n, 0) >> 21 & 255;
+        assert_eq!(shade(Vec3::new(1.0, 2.0, 3.0)), shade(Vec3::new(-1.0, -2.0, -3.0)));
+        let mut axes = [Vec3::X, Vec3::Y, Vec3::Z].map(shade);
+        axes.sort_unstable();
+        assert!(axes[0] + 8 <= axes[1] && axes[1] + 8 <= axes[2], "{axes:?}");
+    }
+
+    #[test]
+    fn marks_become_segments_layer_by_layer() {
+        let mut drawing = Drawing::default();
+        let p = |x: f32| Vec3::new(x, 0.0, 0.0);
+        drawing.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Arrow(p(0.0), p(1.0)));
+        drawing.push(Layer::Areas, Role::Evidence, Subject::None, Mark::Area(vec![p(0.0), p(1.0), p(2.0), p(3.0)]));
+        drawing.outline(Layer::Frustum, Role::Eye, Subject::Eye, [p(0.0), p(1.0), p(2.0)]);
+        let words = marks(&drawing);
+        assert_eq!(words.layers, [(Layer::Areas, 0, 0), (Layer::Frustum, 4, 6), (Layer::Eye, 7, 6)]);
+        assert_eq!((words.segments.len(), words.areas.len()), (9, 6));
+    }
+}

@@ -1,0 +1,178 @@
+//! What a viewport shows, and what roles look like in it. No color is written here: a [`Palette`] brings them.
+
+use glam::Vec3;
+
+use crate::drawing::{Layer, Role, Subject};
+
+/// A pattern over surfaces and areas.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pattern {
+    /// None.
+    #[default]
+    None,
+    /// Parallel lines that rise to the right.
+    Diagonal,
+    /// Lines in both directions.
+    Cross,
+    /// A grid of dots.
+    Dots,
+}
+
+/// What a role looks like. Colors are sRGB bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Paint {
+    /// Surfaces in full light.
+    pub flat: [u8; 3],
+    /// Lines, outlines and patterns.
+    pub stroke: [u8; 3],
+    /// Width of lines.
+    pub width_pt: f32,
+    /// Two dashes with the gap after each; zeros for a solid line.
+    pub dash_pt: [f32; 4],
+    /// Inside of areas and its opacity, 0..1.
+    pub fill: ([u8; 3], f32),
+    /// Band on either side of lines, and its width; 0 for none.
+    pub halo: ([u8; 3], f32),
+    /// Inside of dots.
+    pub dot: [u8; 3],
+    /// Pattern over surfaces and areas.
+    pub pattern: Pattern,
+}
+
+/// The look of every role.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Palette {
+    /// Behind everything.
+    pub paper: [u8; 3],
+    /// By role, in the order of [`Role::ALL`].
+    pub paints: [Paint; 16],
+}
+
+/// What triangles are colored by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorBy {
+    /// What was decided about them.
+    #[default]
+    State,
+    /// Their material.
+    Material,
+}
+
+/// How triangles are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Surface {
+    /// Filled.
+    #[default]
+    Solid,
+    /// Their edges only; sides inside a flat face are left out.
+    Wireframe,
+    /// Filled, with edges.
+    Both,
+    /// Not at all.
+    Hidden,
+}
+
+/// How triangles of one state are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shown {
+    /// As the [`Surface`] says.
+    #[default]
+    Solid,
+    /// See-through, hiding nothing.
+    Ghost,
+    /// Not at all.
+    Not,
+}
+
+/// Which node boxes are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum NodeBoxes {
+    /// None.
+    #[default]
+    None,
+    /// Where the traversal stands: nodes decided as a whole, leaves, and those still open.
+    Frontier,
+    /// All that were entered, from one level to another, both included.
+    Levels(u32, u32),
+}
+
+/// What a viewport shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceStyle {
+    /// The step whose state is shown; scrubbing changes only this.
+    pub step: usize,
+    /// What triangles are colored by.
+    pub color_by: ColorBy,
+    /// How triangles are drawn.
+    pub surface: Surface,
+    /// Triangles in the answer.
+    pub kept: Shown,
+    /// Triangles culled, approximated or left out.
+    pub culled: Shown,
+    /// Triangles not yet decided.
+    pub undecided: Shown,
+    /// Leave out triangles that turn their back to the camera: opens rooms to a look from above.
+    pub only_fronts: bool,
+    /// Cut away points with `n·p + d < 0`.
+    pub section: Option<(Vec3, f32)>,
+    /// Node boxes.
+    pub nodes: NodeBoxes,
+    /// Layers of the marks that are left out.
+    pub without: Vec<Layer>,
+    /// Triangles, nodes and objects outlined in a role, such as selected and current ones.
+    pub highlights: Vec<(Subject, Role)>,
+    /// Opacity of ghosts, 0..1.
+    pub ghost: f32,
+    /// Opacity of lines behind surfaces, 0..1.
+    pub behind: f32,
+    /// Pixels a point: widths and patterns scale with it.
+    pub pixels_per_point: f32,
+    /// Leave the background transparent.
+    pub transparent: bool,
+    /// What roles look like.
+    pub palette: Palette,
+}
+
+impl SpaceStyle {
+    /// For an Observer: everything, what was culled as ghosts, the frontier of nodes.
+    pub fn observer(step: usize, palette: Palette) -> Self {
+        Self {
+            step,
+            color_by: ColorBy::State,
+            surface: Surface::Solid,
+            kept: Shown::Solid,
+            culled: Shown::Ghost,
+            undecided: Shown::Solid,
+            only_fronts: false,
+            section: None,
+            nodes: NodeBoxes::Frontier,
+            without: Vec::new(),
+            highlights: Vec::new(),
+            ghost: 0.16,
+            behind: 0.25,
+            pixels_per_point: 1.0,
+            transparent: false,
+            palette,
+        }
+    }
+    /// For the Eye: only what the answer holds so far, with no help lines.
+    pub fn eye(step: usize, palette: Palette) -> Self {
+        Self {
+            culled: Shown::Not,
+            undecided: Shown::Not,
+            nodes: NodeBoxes::None,
+            without: vec![Layer::Frustum, Layer::Eye, Layer::Evidence, Layer::Areas],
+            ..Self::observer(step, palette)
+        }
+    }
+    /// Whether and how triangles of a role are drawn.
+    pub(super) fn shown(&self, role: Role) -> Shown {
+        match role {
+            Role::Visible => self.kept,
+            Role::Scene | Role::Undecided => self.undecided,
+            // What was culled wrongly is never only a ghost.
+            Role::Wrong if self.culled == Shown::Ghost => Shown::Solid,
+            _ => self.culled,
+        }
+    }
+}
