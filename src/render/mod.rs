@@ -5,6 +5,8 @@
 //! figure, which [`recipe`] reads back.
 
 mod face;
+#[cfg(feature = "gui")]
+pub mod gpu;
 mod hatch;
 mod pdf;
 mod piece;

@@ -62,8 +62,7 @@ impl SpaceCamera {
 mod tests {
     use super::*;
 
-    const CAMERA: SpaceCamera =
-        SpaceCamera { position: Vec3::new(3.0, 2.0, 5.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.9, near: 0.1, far: 5000.0 };
+    const CAMERA: SpaceCamera = SpaceCamera { position: Vec3::new(3.0, 2.0, 5.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.9, near: 0.1, far: 5000.0 };
 
     #[test]
     fn a_ray_goes_through_what_is_projected_on_its_pixel() {
@@ -86,7 +85,7 @@ mod tests {
         assert!((z(CAMERA, 0.1) - 1.0).abs() < 1e-5);
         assert!(z(CAMERA, 5000.0).abs() < 1e-9);
         let open = SpaceCamera { far: f32::INFINITY, ..CAMERA };
-        assert_eq!((z(open, 0.1), z(open, 1000.0)), (1.0, 0.0001));
+        assert!((z(open, 0.1) - 1.0).abs() < 1e-6 && (z(open, 1000.0) - 1e-4).abs() < 1e-9);
         // Two surfaces a millimeter apart at ten units differ by many steps of the buffer.
         let steps = z(CAMERA, 10.0).to_bits() - z(CAMERA, 10.001).to_bits();
         assert!(steps > 500, "{steps}");

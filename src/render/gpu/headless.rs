@@ -61,7 +61,8 @@ pub fn headless() -> Result<Headless, GpuError> {
     let info = adapter.get_info();
     let limits = adapter.limits();
     // No more than WebGL offers, apart from sizes, so that what works here works wherever the explorer does.
-    let required_limits = wgpu::Limits { max_buffer_size: limits.max_buffer_size, ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(limits) };
+    let required_limits =
+        wgpu::Limits { max_buffer_size: limits.max_buffer_size, ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(limits) };
     let request = adapter.request_device(&wgpu::DeviceDescriptor { label: Some("headless"), required_limits, ..Default::default() });
     let (device, queue) = wait(request).map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
     Ok(Headless { device, queue, adapter: format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info) })
@@ -75,7 +76,7 @@ fn wait<T>(future: impl Future<Output = T>) -> T {
         if let Poll::Ready(value) = future.as_mut().poll(&mut context) {
             return value;
         }
-        std::thread::yield_now();
+        std::hint::spin_loop();
     }
 }
 
@@ -92,7 +93,10 @@ pub(super) fn read(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::T
     let mut encoder = device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
         texture.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None } },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+        },
         wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     queue.submit([encoder.finish()]);

@@ -21,7 +21,7 @@ mod target;
 pub use camera::SpaceCamera;
 pub use headless::{GpuError, Headless, headless};
 pub use snapshot::Picture;
-pub use style::{ColorBy, NodeBoxes, Paint, Palette, Pattern, Shown, SpaceStyle, Surface};
+pub use style::{ColorBy, NodeBoxes, Paint, Palette, Shown, SpaceStyle, Surface};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -164,7 +164,8 @@ impl SpaceLayer {
     ) -> bool {
         let most = device.limits().max_texture_dimension_2d;
         let size_px = size_px.map(|v| v.clamp(1, most));
-        let mut target = self.targets.remove(&viewport).filter(|t| t.size_px == size_px).unwrap_or_else(|| Target::new(device, &self.pipelines, size_px));
+        let mut target =
+            self.targets.remove(&viewport).filter(|t| t.size_px == size_px).unwrap_or_else(|| Target::new(device, &self.pipelines, size_px));
         let same = target.shows.as_ref().is_some_and(|(c, s, r)| c == camera && s == style && *r == self.revision);
         if !same {
             let tile = Tile { whole_px: size_px, origin_px: [0, 0], size_px };

@@ -40,7 +40,11 @@ impl Pipelines {
     pub fn new(device: &wgpu::Device, blit_format: wgpu::TextureFormat) -> Self {
         let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("frame"),
-            entries: &[entry(0, ShaderStages::VERTEX_FRAGMENT, wgpu::BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None })],
+            entries: &[entry(
+                0,
+                ShaderStages::VERTEX_FRAGMENT,
+                wgpu::BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None },
+            )],
         });
         let layout = pipeline_layout(device, &frame_layout);
         let space = module(device, "space", concat!(include_str!("frame.wgsl"), include_str!("space.wgsl")));
@@ -66,7 +70,14 @@ impl Pipelines {
             whole: triangles(("vs_opaque", "fs_whole"), true),
             cut: triangles(("vs_opaque", "fs_cut"), true),
             ghost: triangles(("vs_ghost", "fs_ghost"), false),
-            areas: build(Plan { module: &lines, entries: ("vs_area", "fs_area"), buffers: &area, backs: true, opaque: false, depth: CompareFunction::GreaterEqual }),
+            areas: build(Plan {
+                module: &lines,
+                entries: ("vs_area", "fs_area"),
+                buffers: &area,
+                backs: true,
+                opaque: false,
+                depth: CompareFunction::GreaterEqual,
+            }),
             segments: over("vs_segment", &segment),
             nodes: over("vs_node", &node),
             blit,
@@ -98,7 +109,12 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::PipelineLayout, plan: &Plan<'_
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(plan.entries.1),
         layout: Some(layout),
-        vertex: wgpu::VertexState { module: plan.module, entry_point: Some(plan.entries.0), compilation_options: Default::default(), buffers: plan.buffers },
+        vertex: wgpu::VertexState {
+            module: plan.module,
+            entry_point: Some(plan.entries.0),
+            compilation_options: Default::default(),
+            buffers: plan.buffers,
+        },
         primitive: wgpu::PrimitiveState { cull_mode: (!plan.backs).then_some(Face::Back), ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
@@ -141,7 +157,12 @@ fn blit(device: &wgpu::Device, format: wgpu::TextureFormat) -> (wgpu::BindGroupL
         primitive: Default::default(),
         depth_stencil: None,
         multisample: Default::default(),
-        fragment: Some(wgpu::FragmentState { module: &module, entry_point: Some(fragment), compilation_options: Default::default(), targets: &[Some(target)] }),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(fragment),
+            compilation_options: Default::default(),
+            targets: &[Some(target)],
+        }),
         multiview_mask: None,
         cache: None,
     });

@@ -5,11 +5,11 @@
 
 use eframe::wgpu;
 
+use super::SpaceLayer;
 use super::camera::SpaceCamera;
 use super::headless::{GpuError, read};
 use super::style::SpaceStyle;
 use super::target::{Target, Tile};
-use super::SpaceLayer;
 
 /// Width, height and RGBA bytes, not premultiplied, row 0 at the top.
 pub type Picture = (u32, u32, Vec<u8>);

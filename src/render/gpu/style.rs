@@ -1,25 +1,12 @@
-//! What a viewport shows, and what roles look like in it. No color is written here: a [`Palette`] brings them.
+//! What a viewport shows, and what roles look like in it. Colors come from the theme.
 
 use glam::Vec3;
 
 use crate::drawing::{Layer, Role, Subject};
-
-/// A pattern over surfaces and areas.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pattern {
-    /// None.
-    #[default]
-    None,
-    /// Parallel lines that rise to the right.
-    Diagonal,
-    /// Lines in both directions.
-    Cross,
-    /// A grid of dots.
-    Dots,
-}
+use crate::render::theme::{Hatch, Look};
 
 /// What a role looks like. Colors are sRGB bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Paint {
     /// Surfaces in full light.
     pub flat: [u8; 3],
@@ -31,12 +18,12 @@ pub struct Paint {
     pub dash_pt: [f32; 4],
     /// Inside of areas and its opacity, 0..1.
     pub fill: ([u8; 3], f32),
-    /// Band on either side of lines, and its width; 0 for none.
-    pub halo: ([u8; 3], f32),
+    /// Band under lines and around dots, and how far it reaches beyond them; 0 for none.
+    pub halo_pt: ([u8; 3], f32),
     /// Inside of dots.
     pub dot: [u8; 3],
     /// Pattern over surfaces and areas.
-    pub pattern: Pattern,
+    pub hatch: Hatch,
 }
 
 /// The look of every role.
@@ -46,6 +33,30 @@ pub struct Palette {
     pub paper: [u8; 3],
     /// By role, in the order of [`Role::ALL`].
     pub paints: [Paint; 16],
+}
+
+impl Palette {
+    /// The palette of a theme, as certain eyes see it.
+    pub fn of(look: impl Into<Look>) -> Self {
+        let look = look.into();
+        let paint = |role| {
+            let style = look.style(role);
+            let mut dash_pt = [0.0; 4];
+            dash_pt.iter_mut().zip(style.dash).for_each(|(to, from)| *to = *from);
+            let (halo, width_pt) = style.halo.unwrap_or((look.paper(), 0.0));
+            Paint {
+                flat: look.flat(role),
+                stroke: style.stroke,
+                width_pt: style.width_pt,
+                dash_pt,
+                fill: style.fill.unwrap_or((look.paper(), 0.0)),
+                halo_pt: (halo, ((width_pt - style.width_pt) * 0.5).max(0.0)),
+                dot: style.dot,
+                hatch: style.hatch,
+            }
+        };
+        Self { paper: look.paper(), paints: Role::ALL.map(paint) }
+    }
 }
 
 /// What triangles are colored by.

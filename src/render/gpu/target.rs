@@ -7,6 +7,7 @@ use super::pack::{SegmentWords, step_word};
 use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, Pipelines};
 use super::style::{ColorBy, NodeBoxes, Shown, SpaceStyle, Surface};
 use crate::drawing::Role;
+use crate::render::theme::Hatch;
 
 /// Words of the uniform `Frame`.
 const FRAME_WORDS: usize = 4 * (11 + 6 * 16);
@@ -80,7 +81,15 @@ impl Target {
     }
 
     /// Hands over what one picture needs: uniforms and outlines.
-    pub fn prepare(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, camera: &SpaceCamera, style: &SpaceStyle, tile: Tile, outlines: &[SegmentWords]) {
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        camera: &SpaceCamera,
+        style: &SpaceStyle,
+        tile: Tile,
+        outlines: &[SegmentWords],
+    ) {
         queue.write_buffer(&self.uniforms, 0, bytemuck::cast_slice(&frame_words(camera, style, tile)));
         let bytes = bytemuck::cast_slice(outlines);
         if bytes.len() as u64 > self.outlines.size() {
@@ -105,6 +114,16 @@ pub(super) fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu:
 fn color(c: [u8; 3], w: f32) -> [u32; 4] {
     let c = c.map(|v| (f32::from(v) / 255.0).to_bits());
     [c[0], c[1], c[2], w.to_bits()]
+}
+
+/// Number of a hatch, as in the shader.
+fn hatch(hatch: Hatch) -> f32 {
+    match hatch {
+        Hatch::None => 0.0,
+        Hatch::Diagonal => 1.0,
+        Hatch::Cross => 2.0,
+        Hatch::Dots => 3.0,
+    }
 }
 
 /// The uniform `Frame` of the shaders, word for word.
@@ -140,8 +159,8 @@ fn frame_words(camera: &SpaceCamera, style: &SpaceStyle, tile: Tile) -> Vec<u32>
     words.extend(paints.iter().flat_map(|p| color(p.flat, 1.0)));
     words.extend(paints.iter().flat_map(|p| color(p.stroke, p.width_pt * ppp)));
     words.extend(paints.iter().flat_map(|p| p.dash_pt.map(|d| (d * ppp).to_bits())));
-    words.extend(paints.iter().flat_map(|p| color(p.dot, p.halo.1 * ppp)));
-    words.extend(paints.iter().flat_map(|p| color(p.halo.0, p.pattern as u32 as f32)));
+    words.extend(paints.iter().flat_map(|p| color(p.dot, p.halo_pt.1 * ppp)));
+    words.extend(paints.iter().flat_map(|p| color(p.halo_pt.0, hatch(p.hatch))));
     words.extend(paints.iter().flat_map(|p| color(p.fill.0, p.fill.1)));
     words
 }
