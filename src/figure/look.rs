@@ -1,9 +1,12 @@
 //! A step of a film as marks in the world: primitives and nodes by state, the Eye, the evidence.
 
+use glam::Vec3;
+
 use crate::culling::{Film, Verdict};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
-use crate::geometry::{Frustum, NodeId, Space, Vector};
+use crate::geometry::{Frustum, NodeId, Solid, Space, Vector, View};
 use crate::index::Hierarchy;
+use crate::scene::{Scene, framing_view};
 use crate::trace::{Stamps, State};
 
 /// What is shown of a step.
@@ -96,6 +99,18 @@ fn eye<S: Space>(film: &dyn Film<S>, to: &mut Drawing<S::Vector>) {
     let ahead = view.eye.position + view.eye.forward() * ((view.eye.far - view.eye.near) * 0.06);
     to.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Arrow(view.eye.position, ahead));
     to.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Dot { at: view.eye.position, radius_pt: 4.0 });
+}
+
+/// An observer who looks down on a scene of space from outside, all of it in view; `aspect` is width over height.
+pub fn observer_above(scene: &Scene<Solid>, aspect: f32) -> View<Solid> {
+    let height = 720;
+    let mut view = framing_view::<Solid>(&scene.bounds(), (height as f32 * aspect) as u32, height);
+    // Steeper than the framing view: a floor plan is read from above.
+    let center = scene.bounds().center();
+    let distance = (view.eye.position - center).length();
+    view.eye.position = center + Vec3::new(0.35, 0.85, 0.55).normalize() * distance * 0.75;
+    view.eye.near = distance * 0.01;
+    view
 }
 
 fn selected<S: Space>(film: &dyn Film<S>, subject: Subject, to: &mut Drawing<S::Vector>) {

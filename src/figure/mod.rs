@@ -8,6 +8,6 @@ mod panels;
 mod place;
 
 pub use clip::clip;
-pub use look::{Look, role_of, world};
+pub use look::{Look, observer_above, role_of, world};
 pub use panels::{Panel, Picture, panels};
 pub use place::{Sheet, project};

@@ -5,6 +5,7 @@
 
 mod about;
 mod assemble;
+mod example;
 mod flat;
 mod generate;
 mod gltf;
@@ -24,6 +25,7 @@ mod views;
 
 pub use about::{About, Expectation};
 pub use assemble::{MAX_COORDINATE, MAX_PRIMS};
+pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
 pub use load::{LoadOptions, Recenter, load};
 pub use paths::{figure_eight_path, random_views};

@@ -1,0 +1,21 @@
+//! Flatland scenes that travel inside the program, for its built-in figures and its start screen.
+
+use std::sync::Arc;
+
+use super::{LoadOptions, Scene, SceneError, flat};
+use crate::geometry::Flat;
+
+/// Name and file of each.
+const EXAMPLES: &[(&str, &str, &[u8])] =
+    &[("freedoom_e1m1", "scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json", include_bytes!("../../scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json"))];
+
+/// A flatland scene by name.
+///
+/// # Errors
+/// [`SceneError::Format`] if there is none of this name.
+pub fn example(name: &str) -> Result<Arc<Scene<Flat>>, SceneError> {
+    match EXAMPLES.iter().find(|e| e.0 == name) {
+        Some((_, source, bytes)) => flat::read(bytes, source, &LoadOptions::default()).map(Arc::new),
+        None => Err(SceneError::Format { path: name.to_owned(), why: "there is no example scene of this name".into() }),
+    }
+}
