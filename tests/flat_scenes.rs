@@ -1,0 +1,128 @@
+//! Every fact in the flatland scenes, checked against exact visibility by an angular sweep in 64 bits.
+//!
+//! Between two neighboring directions to end points (or crossings) the order of segments along a ray does not
+//! change, so one ray in the middle tells what is seen there.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cullscope::geometry::{Flat, PrimId, View};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
+use glam::DVec2;
+
+/// Angles between two directions below which nothing counts as seen, radians: what 32-bit rounding moves things by.
+const LEAST_ANGLE: f64 = 1e-6;
+
+fn scenes() -> Vec<(PathBuf, Arc<Scene<Flat>>)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes2d");
+    let entries = std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path());
+    let mut files: Vec<PathBuf> = entries.filter(|p| p.extension().is_some_and(|e| e == "json")).collect();
+    files.sort();
+    let open = |p: PathBuf| match load(&p.to_string_lossy(), &LoadOptions::default(), &Quiet) {
+        Ok(AnyScene::Flat(scene)) => (p, scene),
+        other => panic!("{other:?}"),
+    };
+    files.into_iter().map(open).collect()
+}
+
+struct Seen {
+    visible: BTreeSet<PrimId>,
+    hidden: BTreeSet<PrimId>,
+}
+
+fn look(scene: &Scene<Flat>, view: &View<Flat>) -> Seen {
+    let eye = view.eye.position.as_dvec2();
+    let forward = (view.eye.target - view.eye.position).as_dvec2();
+    let half = f64::from(view.eye.fov) * 0.5;
+    let segments: Vec<(PrimId, DVec2, DVec2)> = scene
+        .live()
+        .iter()
+        .map(|&p| {
+            let ends: Vec<DVec2> = scene.prim_points(p).map(|v| v.as_dvec2()).collect();
+            (p, ends[0], ends[1])
+        })
+        .collect();
+    let mut points: Vec<DVec2> = segments.iter().flat_map(|s| [s.1, s.2]).collect();
+    for (i, a) in segments.iter().enumerate() {
+        points.extend(segments[..i].iter().filter_map(|b| crossing((a.1, a.2), (b.1, b.2))));
+    }
+    let angle = |p: DVec2| forward.angle_to(p - eye);
+    let mut angles: Vec<f64> = points.into_iter().map(angle).filter(|a| a.abs() < half).chain([-half, half]).collect();
+    angles.sort_by(f64::total_cmp);
+    let (mut visible, mut hit) = (BTreeSet::new(), BTreeSet::new());
+    for w in angles.windows(2).filter(|w| w[1] - w[0] > LEAST_ANGLE) {
+        let ray = DVec2::from_angle((w[0] + w[1]) * 0.5).rotate(forward.normalize());
+        let mut nearest = (f64::INFINITY, None);
+        for &(id, a, b) in &segments {
+            if let Some(t) = distance(eye, ray, a, b) {
+                hit.insert(id);
+                nearest = if t < nearest.0 { (t, Some(id)) } else { nearest };
+            }
+        }
+        visible.extend(nearest.1);
+    }
+    Seen { hidden: hit.difference(&visible).copied().collect(), visible }
+}
+
+fn distance(eye: DVec2, ray: DVec2, a: DVec2, b: DVec2) -> Option<f64> {
+    let along = b - a;
+    let across = ray.perp_dot(along);
+    let (t, u) = ((a - eye).perp_dot(along) / across, (a - eye).perp_dot(ray) / across);
+    (across != 0.0 && t > 0.0 && (0.0..=1.0).contains(&u)).then_some(t)
+}
+
+fn crossing(a: (DVec2, DVec2), b: (DVec2, DVec2)) -> Option<DVec2> {
+    let (u, v) = (a.1 - a.0, b.1 - b.0);
+    let across = u.perp_dot(v);
+    let (s, t) = ((b.0 - a.0).perp_dot(v) / across, (b.0 - a.0).perp_dot(u) / across);
+    (across.abs() > 1e-15 && (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.0 + u * s)
+}
+
+#[test]
+fn every_scene_says_what_it_teaches_and_has_eyes_and_facts() {
+    let all = scenes();
+    assert!(all.len() >= 8, "{}", all.len());
+    for (path, scene) in &all {
+        let (about, name) = (scene.about(), path.display());
+        assert!(!about.title.is_empty() && about.teaches.ends_with('.'), "{name}");
+        assert!(!about.expect.is_empty() && !about.license.is_empty(), "{name}");
+        assert_eq!(scene.paths()[0].name, "eyes", "{name}");
+        assert_eq!(scene.report().dropped_total() + scene.report().notes.len(), 0, "{name}: {:?}", scene.report());
+    }
+}
+
+#[test]
+fn every_fact_is_true_and_none_is_missing() {
+    for (path, scene) in scenes() {
+        for fact in &scene.about().expect {
+            let seen = look(&scene.posed(fact.frame), &scene.paths()[0].views[fact.eye]);
+            let what = format!("{}, eye {}, frame {}", path.display(), fact.eye, fact.frame);
+            let set = |list: &[PrimId]| list.iter().copied().collect::<BTreeSet<_>>();
+            assert_eq!(set(&fact.visible), seen.visible, "visible: {what}");
+            assert_eq!(set(&fact.hidden), seen.hidden, "hidden: {what}");
+            assert_eq!(fact.visible.len() + fact.hidden.len() + fact.outside.len(), scene.prim_count(), "{what}");
+        }
+    }
+}
+
+#[test]
+fn what_a_scene_is_for_is_in_its_facts() {
+    let find = |name: &str| scenes().into_iter().find(|(p, _)| p.ends_with(name)).expect("a scene of this name").1;
+    // Both walls together hide the box; without either of them it is seen.
+    let fusion = find("fusion.json");
+    let view = &fusion.paths()[0].views[0];
+    let hidden = |scene: &Scene<Flat>, prim: u32| look(scene, view).hidden.contains(&PrimId(prim));
+    assert!((2..6).all(|p| hidden(&fusion, p)));
+    for gone in [0, 1] {
+        let mut parts = (*fusion).clone().into_parts();
+        parts.prims[gone] = None;
+        let without = Scene::new(parts).expect("a scene");
+        assert!(!hidden(&without, 2), "the box stays hidden without wall {gone}");
+    }
+    // A door that opens shows more and more.
+    let door = find("moving_door.json");
+    assert_eq!(door.frame_count(), 10);
+    let seen = |frame| look(&door.posed(frame), &door.paths()[0].views[0]).visible;
+    assert!(!seen(0).contains(&PrimId(13)) && seen(9).contains(&PrimId(13)), "the chair comes into view");
+}
