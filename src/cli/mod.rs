@@ -1,1 +1,80 @@
-//! Room cli.
+//! The command line: one file a subcommand. Parses, calls the rooms below, prints.
+//!
+//! Results go to standard output or to `--out`, messages and progress to standard error. Exit status: 0 done,
+//! 1 the work failed, 2 the words of the call are off. An error is one line, `error: WHAT: WHY`, and if it
+//! helps one line `help: …`.
+
+mod convert;
+mod cull;
+mod error;
+mod methods;
+mod output;
+mod progress;
+mod scene;
+mod step;
+mod suggest;
+mod trace;
+mod view;
+mod words;
+
+pub use error::CliError;
+
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
+
+use crate::culling::Methods;
+use crate::raster::Drawable;
+
+/// A space in which commands work.
+trait World: Methods + Drawable {}
+impl<S: Methods + Drawable> World for S {}
+
+#[derive(Parser)]
+#[command(
+    name = "cullscope",
+    version,
+    about = "A visual explorer and step-through debugger of visibility culling",
+    after_help = "Examples:\n  cullscope                                     open the explorer\n  cullscope cull model.obj --method frustum --truth\n  cullscope step scenes2d/street.json --method frustum | head\n\nA SCENE is a path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…].",
+    disable_help_subcommand = true
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Cull a scene for each view and print what was drawn, how long it took and how right it is
+    Cull(cull::Args),
+    /// Write a run step by step, as JSON Lines
+    Step(step::Args),
+    /// List the methods and their parameters
+    Methods(methods::Args),
+    /// Look into scenes and convert them
+    #[command(subcommand)]
+    Scene(scene::Command),
+    /// Check recorded runs
+    #[command(subcommand)]
+    Trace(trace::Command),
+}
+
+/// Runs the command line with these words, the program's name first.
+///
+/// # Errors
+/// What the caller should print and exit with; see [`CliError`].
+pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
+    let cli = match Cli::try_parse_from(words) {
+        Ok(cli) => cli,
+        Err(e) => return words::explain(&e),
+    };
+    match cli.command {
+        None => words::explain(&Cli::command().error(ErrorKind::MissingSubcommand, "a command is missing")),
+        Some(Command::Cull(args)) => cull::run(&args),
+        Some(Command::Step(args)) => step::run(&args),
+        Some(Command::Methods(args)) => methods::run(&args),
+        Some(Command::Scene(command)) => scene::run(&command),
+        Some(Command::Trace(command)) => trace::run(&command),
+    }
+}

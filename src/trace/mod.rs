@@ -4,6 +4,7 @@
 //! step, usable in a shader), *folds* (counts: O(log n)), and *keyframes* under large state, which the
 //! film itself keeps. Step `k` is the state after the first `k` events.
 
+pub mod format;
 mod moves;
 mod stamps;
 #[cfg(test)]

@@ -1,1 +1,114 @@
-//! Room truth.
+//! What is really visible, how wrong an answer is, and an independent checker of certificates.
+//!
+//! Truth is an item buffer: a primitive is visible if it owns at least one pixel of the whole scene's image
+//! at the view's resolution. An answer is right if its image is that of the whole scene, byte for byte.
+
+pub mod certificate;
+mod flip;
+
+pub use flip::flip_mean;
+
+use crate::geometry::{PrimId, View, faces_away};
+use crate::raster::{Drawable, Options, Target, shade, visible};
+use crate::scene::Scene;
+
+/// The exact answer of views of one scene; keeps its buffers from view to view.
+pub struct Truth {
+    prims: Vec<PrimId>,
+    facing: Vec<PrimId>,
+    backface_culling: bool,
+    options: Options,
+    all: Target,
+    background: [f32; 3],
+}
+
+/// How an answer compares with the exact one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// Primitives that own a pixel of the whole scene's image, ascending.
+    pub visible: Vec<PrimId>,
+    /// Those of them that were not drawn, ascending.
+    pub missed: Vec<PrimId>,
+    /// Number of primitives drawn.
+    pub drawn: usize,
+    /// Pixels of the image.
+    pub pixels: usize,
+    /// Pixels whose color differs from the image of the whole scene.
+    pub wrong_pixels: usize,
+    /// Pixels that show another primitive, or it at another depth.
+    pub wrong_items: usize,
+    /// Mean LDR-FLIP between the two images; exactly 0 if they are equal.
+    pub flip_mean: f64,
+}
+
+impl Judgement {
+    /// Drawn visible primitives / visible primitives; 1 where nothing is visible.
+    pub fn coverage_ratio(&self) -> f64 {
+        if self.visible.is_empty() { 1.0 } else { (self.visible.len() - self.missed.len()) as f64 / self.visible.len() as f64 }
+    }
+    /// Wrong pixels / pixels.
+    pub fn wrong_pixel_ratio(&self) -> f64 {
+        self.wrong_pixels as f64 / self.pixels.max(1) as f64
+    }
+    /// Drawn primitives / visible primitives; `None` where nothing is visible.
+    pub fn overdraw(&self) -> Option<f64> {
+        (!self.visible.is_empty()).then(|| self.drawn as f64 / self.visible.len() as f64)
+    }
+    /// Whether nothing is wrong at all.
+    pub fn is_exact(&self) -> bool {
+        self.missed.is_empty() && self.wrong_pixels == 0 && self.wrong_items == 0
+    }
+}
+
+impl Truth {
+    /// Truth of a scene whose primitives have two sides, or one if `backface_culling`; drawn by `threads`.
+    /// Images have a `background` (linear).
+    pub fn new<S: Drawable>(scene: &Scene<S>, backface_culling: bool, threads: usize, background: [f32; 3]) -> Self {
+        // Sides are told by the one rule that methods use, so the rasterizer draws both.
+        let options = Options { threads, ..Options::default() };
+        Self { prims: scene.live().to_vec(), facing: Vec::new(), backface_culling, options, all: Target::default(), background }
+    }
+
+    /// Draws the whole scene; what is visible, ascending.
+    pub fn look<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>) -> Vec<PrimId> {
+        self.all.clear(view);
+        let prims = if self.backface_culling {
+            self.facing.clear();
+            self.facing.extend(self.prims.iter().copied().filter(|&p| !turns_away(scene, view, p)));
+            &self.facing
+        } else {
+            &self.prims
+        };
+        S::draw(&mut self.all, scene, view, prims, &self.options);
+        visible(&self.all)
+    }
+    /// The image that [`Truth::look`] drew last.
+    pub fn image(&self) -> &Target {
+        &self.all
+    }
+
+    /// Compares an answer, `drawn` in any order and `image` drawn of it, with the whole scene.
+    pub fn judge<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>, drawn: &[PrimId], image: &Target) -> Judgement {
+        let visible = self.look(scene, view);
+        let mut kept = vec![false; scene.prim_count()];
+        drawn.iter().for_each(|p| kept[p.at()] = true);
+        let missed = visible.iter().copied().filter(|p| !kept[p.at()]).collect();
+        let wrong_items = self.all.wrong_pixels(image);
+        let (mut wrong_pixels, mut flip) = (0, 0.0);
+        if wrong_items > 0 {
+            let [reference, test] = [&self.all, image].map(|t| shade(t, scene, view, self.background));
+            wrong_pixels = reference.chunks_exact(4).zip(test.chunks_exact(4)).filter(|(a, b)| a != b).count();
+            flip = flip_mean(&reference, &test, view.width as usize, view.height as usize);
+        }
+        let pixels = view.width as usize * view.height as usize;
+        Judgement { visible, missed, drawn: drawn.len(), pixels, wrong_pixels, wrong_items, flip_mean: flip }
+    }
+}
+
+fn turns_away<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> bool {
+    let mut corners = [S::Vector::default(); 3];
+    for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
+        *to = from;
+    }
+    faces_away::<S>(view.eye.position, &corners[..S::CORNERS])
+}

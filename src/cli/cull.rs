@@ -1,0 +1,200 @@
+//! `cullscope cull`: what a method draws for each view, how long it takes, and how right it is.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use super::methods::{find, params_json, settings};
+use super::progress::Bar;
+use super::scene::SceneArgs;
+use super::view::ViewArgs;
+use super::{CliError, World, output};
+use crate::culling::{DrawList, Run};
+use crate::drawing::Role;
+use crate::geometry::{PrimId, View};
+use crate::measure::timed;
+use crate::raster::{Options, Target, shade};
+use crate::render::Theme;
+use crate::scene::{AnyScene, Progress, Scene};
+use crate::truth::Truth;
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  cullscope cull scenes3d/freedoom_e1m1.obj --method frustum --set tree-height=10 --truth --ids --image kept.png\n\nTimes are wall clock on one thread unless --threads says otherwise; measure with a release build."
+)]
+pub(super) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    view: ViewArgs,
+    /// Compare with the exact answer at the view's resolution
+    #[arg(long)]
+    truth: bool,
+    /// Print the ids of what was drawn, and with --truth of what was missed
+    #[arg(long)]
+    ids: bool,
+    /// Write an image of what was drawn; several views give NAME-000.png, NAME-001.png, …
+    #[arg(long, value_name = "FILE.png")]
+    image: Option<PathBuf>,
+    /// Write the result to a file instead of standard output
+    #[arg(long, value_name = "FILE.json")]
+    out: Option<PathBuf>,
+    /// Threads that draw
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    threads: u32,
+}
+
+#[derive(Serialize)]
+struct Report {
+    cullscope: &'static str,
+    scene: String,
+    triangles: usize,
+    method: &'static str,
+    params: BTreeMap<&'static str, Json>,
+    build_ms: f64,
+    index_bytes: usize,
+}
+
+#[derive(Serialize)]
+struct Frame {
+    view: usize,
+    drawn_triangles: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drawn_ids: Option<Vec<u32>>,
+    cull_ms: f64,
+    draw_ms: f64,
+    stages_ms: BTreeMap<&'static str, f64>,
+    counters: BTreeMap<&'static str, u64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<TruthReport>,
+}
+
+#[derive(Serialize)]
+struct TruthReport {
+    visible_triangles: usize,
+    missed_triangles: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    missed_ids: Option<Vec<u32>>,
+    coverage_ratio: f64,
+    wrong_pixels: usize,
+    wrong_pixel_ratio: f64,
+    flip_mean: f64,
+    overdraw: Option<f64>,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    match args.scene.load()? {
+        AnyScene::Flat(scene) => of(args, &scene),
+        AnyScene::Solid(scene) => of(args, &scene),
+    }
+}
+
+fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
+    let entry = find::<S>(&args.scene.method)?;
+    let settings = settings(&args.scene.set)?;
+    entry.knobs(&settings)?;
+    let views = args.view.views(scene)?.views;
+    let bar = Bar::new();
+    let (ready, build_ms) = timed(|| entry.ready(scene, &settings, &bar));
+    let Some(mut run) = ready? else { return Err(CliError::Interrupted) };
+    let pool = (args.threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
+    let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
+    let mut work = || frames(args, scene, &mut *run, &views, &bar);
+    let frames = match &pool {
+        Some(pool) => pool.install(&mut work)?,
+        None => work()?,
+    };
+    drop(bar);
+    let report = Report {
+        cullscope: env!("CARGO_PKG_VERSION"),
+        scene: scene.source().to_owned(),
+        triangles: scene.prim_count(),
+        method: run.card().key,
+        params: params_json(&run.knobs()),
+        build_ms: rounded(build_ms),
+        index_bytes: run.hierarchy().bytes(),
+    };
+    output::emit(args.out.as_deref(), |to| write_report(&report, &frames, to).map(|()| true))
+}
+
+/// Every frame twice: timed, then counted, each time from no memory, so that what a method keeps from frame
+/// to frame is what it would keep.
+fn frames<S: World>(args: &Args, scene: &Scene<S>, run: &mut dyn Run<S>, views: &[View<S>], bar: &Bar) -> Result<Vec<Frame>, CliError> {
+    let backface_culling = run.knobs().iter().any(|(k, v)| k.name == "backface-culling" && v.to_string() == "true");
+    let background = Theme::Print.flat_linear(Role::Paper);
+    let mut truth = args.truth.then(|| Truth::new(scene, backface_culling, args.threads as usize, background));
+    let mut target = Target::default();
+    let options = Options { threads: args.threads as usize, ..Options::default() };
+    let mut frames = Vec::with_capacity(views.len());
+    run.forget();
+    for (i, view) in views.iter().enumerate() {
+        bar.report(i as f32 / (views.len() + 1) as f32, "culling and drawing");
+        if bar.cancelled() {
+            return Err(CliError::Interrupted);
+        }
+        let (list, cull_ms) = timed(|| run.cull(view));
+        let ((), draw_ms) = timed(|| {
+            target.clear(view);
+            S::draw(&mut target, scene, view, &list.prims, &options);
+        });
+        if let Some(path) = &args.image {
+            let rgba = shade(&target, scene, view, background);
+            output::write_png(&output::numbered(path, i, views.len()), view.width, view.height, &rgba)?;
+        }
+        let truth = truth.as_mut().map(|t| truth_report(args, t.judge(scene, view, &list.prims, &target)));
+        frames.push(Frame {
+            view: i,
+            drawn_triangles: list.prims.len(),
+            drawn_ids: args.ids.then(|| numbers(&list.ascending())),
+            cull_ms: rounded(cull_ms),
+            draw_ms: rounded(draw_ms),
+            stages_ms: BTreeMap::from([("cull", rounded(cull_ms))]),
+            counters: BTreeMap::new(),
+            truth,
+        });
+    }
+    run.forget();
+    for (frame, view) in frames.iter_mut().zip(views) {
+        let (DrawList { prims }, tally) = run.count(view);
+        debug_assert_eq!(prims.len(), frame.drawn_triangles, "a counted run draws the same");
+        frame.counters = tally.named();
+    }
+    Ok(frames)
+}
+
+/// One object; each frame on a line of its own.
+fn write_report(report: &Report, frames: &[Frame], to: &mut dyn Write) -> io::Result<()> {
+    let head = serde_json::to_string(report)?;
+    write!(to, "{},\n\"frames\":[", head.trim_end_matches('}'))?;
+    for (i, frame) in frames.iter().enumerate() {
+        to.write_all(if i == 0 { b"\n" } else { b",\n" })?;
+        serde_json::to_writer(&mut *to, frame)?;
+    }
+    to.write_all(b"\n]}\n")
+}
+
+fn truth_report(args: &Args, judged: crate::truth::Judgement) -> TruthReport {
+    TruthReport {
+        visible_triangles: judged.visible.len(),
+        missed_triangles: judged.missed.len(),
+        missed_ids: args.ids.then(|| numbers(&judged.missed)),
+        coverage_ratio: judged.coverage_ratio(),
+        wrong_pixels: judged.wrong_pixels,
+        wrong_pixel_ratio: judged.wrong_pixel_ratio(),
+        flip_mean: judged.flip_mean,
+        overdraw: judged.overdraw(),
+    }
+}
+
+fn numbers(ids: &[PrimId]) -> Vec<u32> {
+    ids.iter().map(|p| p.0).collect()
+}
+
+/// Milliseconds to the tenth of a microsecond.
+fn rounded(ms: f64) -> f64 {
+    (ms * 1e4).round() / 1e4
+}

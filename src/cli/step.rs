@@ -1,0 +1,88 @@
+//! `cullscope step`: a run step by step, as JSON Lines.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde_json::{Map, Value as Json};
+
+use super::methods::{find, params_json, settings};
+use super::progress::Bar;
+use super::scene::SceneArgs;
+use super::view::ViewArgs;
+use super::{CliError, World, output};
+use crate::geometry::ViewPath;
+use crate::scene::{AnyScene, Progress, Scene, write_views};
+use crate::trace::Detail;
+use crate::trace::format::{Header, write_film, write_header};
+
+/// Events of a frame that are recorded before the rest is only counted.
+const FILM_CAP: usize = 10_000_000;
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  cullscope step scenes2d/street.json --method frustum --detail coarse --out street.jsonl\n  cullscope trace check street.jsonl"
+)]
+pub(super) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    view: ViewArgs,
+    /// `coarse` leaves out the lines of pseudocode
+    #[arg(long, value_enum, default_value = "full")]
+    detail: Fineness,
+    /// Write to a file instead of standard output
+    #[arg(long, value_name = "FILE.jsonl")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Fineness {
+    Coarse,
+    Full,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    match args.scene.load()? {
+        AnyScene::Flat(scene) => of(args, &scene),
+        AnyScene::Solid(scene) => of(args, &scene),
+    }
+}
+
+fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
+    let entry = find::<S>(&args.scene.method)?;
+    let settings = settings(&args.scene.set)?;
+    entry.knobs(&settings)?;
+    let path = args.view.views(scene)?;
+    let bar = Bar::new();
+    let Some(mut run) = entry.ready(scene, &settings, &bar)? else { return Err(CliError::Interrupted) };
+    let (detail, name) = match args.detail {
+        Fineness::Coarse => (Detail::Coarse, "coarse"),
+        Fineness::Full => (Detail::Full, "full"),
+    };
+    let params = params_json(&run.knobs()).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    let header = header(scene, entry.card().key, params, &path, name);
+    output::emit(args.out.as_deref(), |mut to| {
+        write_header(&header, &mut to)?;
+        for (frame, view) in path.views.iter().enumerate() {
+            let film = run.record(view, FILM_CAP).film;
+            let (done, part, events) = (frame as f32, 1.0 / path.views.len() as f32, film.events().len().max(1) as f32);
+            let stop = |at: usize| {
+                bar.report((done + at as f32 / events) * part, "writing steps");
+                bar.cancelled()
+            };
+            write_film(&*film, frame as u64, detail, &mut to, &stop)?;
+            if bar.cancelled() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    })
+}
+
+fn header<S: World>(scene: &Scene<S>, method: &str, params: Map<String, Json>, path: &ViewPath<S>, detail: &str) -> Header {
+    // The text of a view file is an object.
+    let view = serde_json::from_str(&write_views(path, scene.origin())).unwrap_or_default();
+    let more = [("space", S::NAME), ("scene_sha256", &scene.hash_hex()), ("cullscope", env!("CARGO_PKG_VERSION")), ("detail", detail)];
+    let more = more.iter().map(|(key, value)| ((*key).to_owned(), Json::from(*value))).collect();
+    Header { scene: scene.source().to_owned(), method: method.to_owned(), params, view, more }
+}

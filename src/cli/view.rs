@@ -1,0 +1,157 @@
+//! Which views: a file, a path of the scene, random ones, or a single one by options.
+
+use glam::DVec3;
+
+use super::{CliError, World, output, suggest};
+use crate::geometry::{Eye, Vector, View, ViewPath};
+use crate::raster::Target;
+use crate::scene::{Scene, framing_view, random_views, read_views};
+
+/// Options that choose views.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Views (one of)")]
+pub(super) struct ViewArgs {
+    /// A view or path in a JSON file
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "random_views", "eye"])]
+    view: Option<String>,
+    /// A path that the scene brought, such as `walk`
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["random_views", "eye"])]
+    path: Option<String>,
+    /// So many random views, the same for the same --seed
+    #[arg(long, value_name = "N", conflicts_with = "eye", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    random_views: Option<u32>,
+    /// Seed of random views
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// A single view: where the eye stands
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "target", value_parser = numbers)]
+    eye: Option<Numbers>,
+    /// What it looks at
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "eye", value_parser = numbers)]
+    target: Option<Numbers>,
+    /// Roughly up (space only) [default: 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "eye", value_parser = numbers)]
+    up: Option<Numbers>,
+    /// Whole angle of view: vertical in space, across the image in flatland [default: 60; in flatland 90]
+    #[arg(long, value_name = "DEGREES", requires = "eye")]
+    fov: Option<f64>,
+    /// Depth of the near plane [default: 0.1]
+    #[arg(long, requires = "eye")]
+    near: Option<f64>,
+    /// Depth of the far plane [default: 1000]
+    #[arg(long, requires = "eye")]
+    far: Option<f64>,
+    /// Image size in pixels, for any views [default: that of the views, else 1024x1024]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+}
+
+/// Numbers with commas between them.
+#[derive(Clone, Debug)]
+struct Numbers(Vec<f64>);
+
+fn numbers(text: &str) -> Result<Numbers, String> {
+    let one = |part: &str| part.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+    text.split(',').map(one).collect::<Option<_>>().map(Numbers).ok_or_else(|| "expected numbers such as 1.5,0,-2".into())
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, "1"));
+    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
+    let both = side(width).zip(side(height));
+    both.ok_or_else(|| format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX))
+}
+
+impl ViewArgs {
+    /// The views that were asked for, at least one.
+    pub fn views<S: World>(&self, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
+        let flat = S::Vector::AXES == 2;
+        if flat && self.size.is_some_and(|(_, height)| height != 1) {
+            return Err(CliError::words("--size", "a flatland image has height 1").with_help("give the width alone, such as --size 1024"));
+        }
+        let mut path = self.chosen(scene)?;
+        if let Some((width, height)) = self.size {
+            path.views.iter_mut().for_each(|v| (v.width, v.height) = (width, height));
+        }
+        if self.view.is_none() && self.path.is_none() && self.random_views.is_none() && self.eye.is_none() {
+            output::say(&format!("view: {}", in_words(&path.views[0], scene.origin())));
+        }
+        Ok(path)
+    }
+
+    fn chosen<S: World>(&self, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
+        if let Some(file) = &self.view {
+            return Ok(read_views(file, scene.origin())?);
+        }
+        if let Some(name) = &self.path {
+            return scene.paths().iter().find(|p| p.name == *name).cloned().ok_or_else(|| no_path(scene, name));
+        }
+        if let Some(count) = self.random_views {
+            let views = random_views(scene, count as usize, self.seed);
+            return Ok(ViewPath { name: "random".into(), views });
+        }
+        let (width, height) = self.size.unwrap_or((1024, 1024));
+        if let Some(eye) = &self.eye {
+            return Ok(ViewPath::single(self.single(scene, eye, width, height)?));
+        }
+        Ok(ViewPath::single(match scene.paths().first() {
+            Some(path) => path.views[0],
+            None => framing_view(&scene.bounds(), width, height),
+        }))
+    }
+
+    fn single<S: World>(&self, scene: &Scene<S>, eye: &Numbers, width: u32, height: u32) -> Result<View<S>, CliError> {
+        let flat = S::Vector::AXES == 2;
+        let vector = |option: &str, given: &Numbers, origin: DVec3| {
+            if given.0.len() != S::Vector::AXES {
+                let (want, got) = (S::Vector::AXES, given.0.len());
+                return Err(CliError::words(option, format!("needs {want} numbers in {}, not {got}", S::NAME)));
+            }
+            Ok(S::Vector::from_fn(|a| (given.0[a] - origin[a]) as f32))
+        };
+        if flat && self.up.is_some() {
+            return Err(CliError::words("--up", "there is no up in flatland"));
+        }
+        let upright = Numbers((0..S::Vector::AXES).map(|a| f64::from(u8::from(a == 1))).collect());
+        // `requires` makes sure that there is a target; the eye itself would be refused below.
+        let target = self.target.as_ref().unwrap_or(eye);
+        let eye = Eye {
+            position: vector("--eye", eye, scene.origin())?,
+            target: vector("--target", target, scene.origin())?,
+            up: vector("--up", self.up.as_ref().unwrap_or(&upright), DVec3::ZERO)?,
+            fov: self.fov.unwrap_or(if flat { 90.0 } else { 60.0 }).to_radians() as f32,
+            near: self.near.unwrap_or(0.1) as f32,
+            far: self.far.unwrap_or(1000.0) as f32,
+        };
+        match eye.fault() {
+            Some(why) => Err(CliError::words("--eye", why)),
+            None => Ok(View { eye, width, height: if flat { 1 } else { height } }),
+        }
+    }
+}
+
+fn no_path<S: World>(scene: &Scene<S>, name: &str) -> CliError {
+    let names: Vec<&str> = scene.paths().iter().map(|p| p.name.as_str()).collect();
+    let error = CliError::words("--path", format!("the scene brought no path `{name}`"));
+    if names.is_empty() { error.with_help("it brought none; give --view FILE") } else { error.with_help(suggest::help(name, &names, "paths")) }
+}
+
+/// A view in the words of the command line, so that it can be given again.
+fn in_words<S: World>(view: &View<S>, origin: DVec3) -> String {
+    let vector = |v: S::Vector, origin: DVec3| {
+        let number = |a: usize| if origin[a] == 0.0 { v.get(a).to_string() } else { (f64::from(v.get(a)) + origin[a]).to_string() };
+        (0..S::Vector::AXES).map(number).collect::<Vec<_>>().join(",")
+    };
+    let eye = &view.eye;
+    let up = if S::Vector::AXES == 3 { format!(" --up {}", vector(eye.up, DVec3::ZERO)) } else { String::new() };
+    format!(
+        "--eye {} --target {}{up} --fov {:.3} --near {} --far {} --size {}x{}",
+        vector(eye.position, origin),
+        vector(eye.target, origin),
+        f64::from(eye.fov).to_degrees(),
+        eye.near,
+        eye.far,
+        view.width,
+        view.height
+    )
+}

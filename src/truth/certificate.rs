@@ -1,0 +1,240 @@
+//! An independent checker: is what a method culled outside the view really outside?
+//!
+//! A certificate is what a film recorded as evidence of a cull: the plane, the box and its distance. The
+//! checker derives the planes anew from the Eye's definition, in f64, and shares no arithmetic with
+//! [`crate::geometry::Frustum`]; it asks that the box holds every point it stands for, that every corner lies
+//! strictly outside the plane named, and that the recorded distances are right within their recorded error.
+//! Of a primitive that faces away it asks that the eye lies strictly behind the primitive's plane, in exact
+//! arithmetic. Cost: O(events + primitives culled).
+
+use glam::{DVec2, DVec3};
+
+use crate::culling::{Event, Field, Film, Value, Verdict};
+use crate::drawing::Subject;
+use crate::geometry::{NodeId, PrimId, Space, Vector, View, orient2d, orient3d};
+use crate::index::Hierarchy;
+use crate::scene::Scene;
+
+/// Evidence that something cannot be seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Certificate {
+    /// The step that showed the evidence.
+    pub step: usize,
+    /// A node or a primitive.
+    pub subject: Subject,
+    /// What is claimed of it.
+    pub claim: Claim,
+}
+
+/// What a certificate claims.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Claim {
+    /// Its box lies outside a plane of the view volume.
+    Beyond {
+        /// Name of the plane, such as `left`.
+        plane: String,
+        /// Signed distance of the corner that reaches farthest in, world units, negative.
+        far_corner: f64,
+        /// Bound on that distance's error, world units.
+        error: f64,
+        /// Least corner of the box.
+        box_min: Vec<f64>,
+        /// Greatest corner of the box.
+        box_max: Vec<f64>,
+    },
+    /// It turns its back to the eye.
+    FacesAway {
+        /// Signed distance of the eye from its plane, world units, negative.
+        eye_distance: f64,
+    },
+}
+
+/// Why a film or certificate was not accepted.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("step {step}: {why}")]
+pub struct Rejection {
+    /// The step of the certificate, or of the decision that has none.
+    pub step: usize,
+    /// What does not hold.
+    pub why: String,
+}
+
+/// The certificates of a film, in order.
+pub fn certificates<S: Space>(film: &dyn Film<S>) -> Vec<Certificate> {
+    let noted = film.events().iter().enumerate().filter(|(_, e)| matches!(e, Event::Noted(_)));
+    noted.filter_map(|(i, _)| certificate(i + 1, &film.fields(i).1)).collect()
+}
+
+fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
+    let get = |name: &str| fields.iter().find(|f| f.name == name).map(|f| &f.value);
+    let id = |name: &str| if let Some(Value::Integer(v)) = get(name) { u32::try_from(*v).ok() } else { None };
+    let last = |name: &str| if let Some(Value::List(list)) = get(name) { list.last().copied() } else { None };
+    let list = |name: &str| if let Some(Value::List(list)) = get(name) { Some(list.clone()) } else { None };
+    let subject = id("node").map(|n| Subject::Node(NodeId(n))).or_else(|| id("prim").map(|p| Subject::Prim(PrimId(p))))?;
+    let claim = match (get("result"), get("eye_distance_units")) {
+        (Some(Value::Word(result)), _) if result == "outside" => {
+            let Some(Value::Word(planes)) = get("planes") else { return None };
+            Claim::Beyond {
+                plane: planes.split(' ').next_back()?.to_owned(),
+                far_corner: last("far_corner_units")?,
+                error: last("error_units")?,
+                box_min: list("box_min")?,
+                box_max: list("box_max")?,
+            }
+        }
+        (None, Some(Value::Number(distance))) if *distance < 0.0 => Claim::FacesAway { eye_distance: *distance },
+        _ => return None,
+    };
+    Some(Certificate { step, subject, claim })
+}
+
+/// Checks every certificate of a film, and that nothing was called outside without one. Returns how many
+/// certificates it accepted.
+///
+/// # Errors
+/// The first that does not hold.
+pub fn check_film<S: Space>(film: &dyn Film<S>) -> Result<usize, Rejection> {
+    let checker = Checker::new(film.scene(), film.hierarchy(), film.view());
+    let certificates = certificates(film);
+    for certificate in &certificates {
+        checker.check(certificate)?;
+    }
+    let mut shown = certificates.iter().peekable();
+    let mut proven = Vec::new();
+    for (i, event) in film.events().iter().enumerate() {
+        let step = i + 1;
+        while shown.peek().is_some_and(|c| c.step <= step) {
+            proven.extend(shown.next().map(|c| c.subject));
+        }
+        let subject = match *event {
+            Event::DecidedNode(n, Verdict::Outside) => Subject::Node(n),
+            Event::DecidedPrim(p, Verdict::Outside) => Subject::Prim(p),
+            _ => continue,
+        };
+        // Evidence stands right before the decision that rests on it.
+        if proven.iter().rev().take(8).all(|s| *s != subject) {
+            return Err(Rejection { step, why: format!("{subject:?} is called outside without a certificate") });
+        }
+    }
+    Ok(certificates.len())
+}
+
+/// Checks certificates of one view of one scene.
+pub struct Checker<'a, S: Space> {
+    scene: &'a Scene<S>,
+    hierarchy: &'a dyn Hierarchy<S>,
+    eye: DVec3,
+    /// Name, unit inward normal and offset of each plane: inside is `n·(x − eye) + d ≥ 0`.
+    planes: Vec<(&'static str, DVec3, f64)>,
+}
+
+impl<'a, S: Space> Checker<'a, S> {
+    /// Derives the planes of the view volume from the Eye.
+    pub fn new(scene: &'a Scene<S>, hierarchy: &'a dyn Hierarchy<S>, view: &View<S>) -> Self {
+        let eye = &view.eye;
+        let position = widened(eye.position);
+        let forward = (widened(eye.target) - position).normalize();
+        let tan = (f64::from(eye.fov) * 0.5).tan();
+        let mut planes = Vec::new();
+        let mut pair = |names: [&'static str; 2], axis: DVec3, slope: f64| {
+            planes.push((names[0], (forward * slope + axis).normalize(), 0.0));
+            planes.push((names[1], (forward * slope - axis).normalize(), 0.0));
+        };
+        if S::Vector::AXES == 2 {
+            pair(["left", "right"], DVec3::new(forward.y, -forward.x, 0.0), tan);
+        } else {
+            let across = forward.cross(widened(eye.up));
+            // An `up` along the line of sight says nothing: any axis will do, and it is this one.
+            let right = across.try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
+            pair(["left", "right"], right, tan * f64::from(view.width) / f64::from(view.height));
+            pair(["bottom", "top"], right.cross(forward), tan);
+        }
+        planes.push(("near", forward, -f64::from(eye.near)));
+        planes.push(("far", -forward, f64::from(eye.far)));
+        Self { scene, hierarchy, eye: position, planes }
+    }
+
+    /// Checks one certificate.
+    ///
+    /// # Errors
+    /// What does not hold.
+    pub fn check(&self, certificate: &Certificate) -> Result<(), Rejection> {
+        let checked = match (&certificate.claim, certificate.subject) {
+            (Claim::FacesAway { eye_distance }, Subject::Prim(prim)) if self.is_live(prim) => self.faces_away(prim, *eye_distance),
+            (Claim::Beyond { plane, far_corner, error, box_min, box_max }, subject) => {
+                self.points(subject).and_then(|points| self.beyond(&points, plane, *far_corner, *error, &[box_min, box_max]))
+            }
+            _ => Err("the subject is not in the scene, or cannot face away".into()),
+        };
+        checked.map_err(|why| Rejection { step: certificate.step, why })
+    }
+
+    fn is_live(&self, prim: PrimId) -> bool {
+        prim.at() < self.scene.prim_count() && self.scene.corners(prim).is_some()
+    }
+
+    /// Every point that a subject stands for.
+    fn points(&self, subject: Subject) -> Result<Vec<DVec3>, String> {
+        let prims = match subject {
+            Subject::Node(node) if node.at() < self.hierarchy.node_count() => self.hierarchy.prims(node).to_vec(),
+            Subject::Prim(prim) if self.is_live(prim) => vec![prim],
+            other => return Err(format!("{other:?} is not in the scene")),
+        };
+        Ok(prims.iter().flat_map(|&p| self.scene.prim_points(p)).map(widened).collect())
+    }
+
+    fn beyond(&self, points: &[DVec3], plane: &str, far_corner: f64, error: f64, bounds: &[&Vec<f64>; 2]) -> Result<(), String> {
+        let Some((_, normal, offset)) = self.planes.iter().find(|(name, ..)| *name == plane) else {
+            return Err(format!("the view volume has no plane `{plane}`"));
+        };
+        if bounds.iter().any(|b| b.len() != S::Vector::AXES) {
+            return Err("the box has another number of axes than the space".into());
+        }
+        let [low, high] = bounds.map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
+        if points.iter().any(|p| p.cmplt(low).any() || p.cmpgt(high).any()) {
+            return Err("the box does not hold everything that it stands for".into());
+        }
+        let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
+        let distance = normal.dot(corner - self.eye) + offset;
+        if distance >= 0.0 {
+            return Err(format!("a corner of the box lies {distance} units inside the {plane} plane"));
+        }
+        if !(far_corner < -error && error >= 0.0) {
+            return Err(format!("the recorded distance {far_corner} does not exceed its error {error}"));
+        }
+        if (distance - far_corner).abs() > error {
+            return Err(format!("the recorded distance from the {plane} plane is {far_corner}, the true one {distance}"));
+        }
+        Ok(())
+    }
+
+    fn faces_away(&self, prim: PrimId, recorded: f64) -> Result<(), String> {
+        let p: Vec<DVec3> = self.scene.prim_points(prim).map(widened).collect();
+        let to_eye = self.eye - p[0];
+        let (sign, normal, edges) = if S::Vector::AXES == 2 {
+            let edge = p[1] - p[0];
+            (orient2d(flat(p[0]), flat(p[1]), flat(self.eye)), DVec3::new(-edge.y, edge.x, 0.0), edge.length())
+        } else {
+            let (u, v) = (p[1] - p[0], p[2] - p[0]);
+            (orient3d(p[0], p[1], p[2], self.eye), u.cross(v), u.length() * v.length())
+        };
+        let distance = normal.dot(to_eye) / normal.length();
+        // Two differences, a product of edges and an inner product, each rounded to 24 bits.
+        let error = 16.0 * f64::from(f32::EPSILON) * edges * to_eye.length() / normal.length();
+        if sign >= 0.0 {
+            return Err(format!("the eye lies {distance} units before the plane, or in it"));
+        }
+        if (distance - recorded).abs() > error || recorded >= 0.0 {
+            return Err(format!("the recorded distance of the eye is {recorded}, the true one {distance}"));
+        }
+        Ok(())
+    }
+}
+
+fn widened<V: Vector>(v: V) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|a| if a < V::AXES { f64::from(v.get(a)) } else { 0.0 }))
+}
+
+fn flat(v: DVec3) -> DVec2 {
+    DVec2::new(v.x, v.y)
+}

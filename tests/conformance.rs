@@ -1,0 +1,288 @@
+//! Every listed method × both spaces × scenes × seeds keeps the promises that all methods make.
+//!
+//! - plain = counted = recorded: a watched run decides the same;
+//! - told = answered: what the film says was kept is what was drawn;
+//! - stamps = a naive fold of the events, at every step;
+//! - any way to a step shows the same evidence;
+//! - truth ⊆ answer, and the same image, if the method says that it is conservative;
+//! - it culls at least what it culled before (culling nothing is conservative too);
+//! - every certificate is accepted by the independent checker.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use cullscope::culling::{Entry, Event, Film, Methods, Run, Settings, Verdict};
+use cullscope::drawing::Drawing;
+use cullscope::geometry::{Flat, PrimId, Solid, Space, Vector, View};
+use cullscope::raster::{Drawable, Options, Target};
+use cullscope::scene::{AnyScene, LoadOptions, Parts, Quiet, Scene, framing_view, load, random_views};
+use cullscope::trace::{Stamp, Stamps};
+use cullscope::truth::Truth;
+use cullscope::truth::certificate::check_film;
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+trait World: Methods + Drawable {}
+impl<S: Methods + Drawable> World for S {}
+
+/// Views from one seed a scene.
+const VIEWS: usize = 4;
+const SEEDS: [u64; 3] = [1, 2, 3];
+
+/// Random primitives of mixed sizes, among them tiny ones and some that share planes.
+fn soup<S: Space>(seed: u64, n: u32, make: fn([u32; 3]) -> S::Corners) -> Arc<Scene<S>> {
+    let mut rng = Pcg32::new(seed, 71);
+    let mut unit = move || (rng.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
+    let (mut points, mut prims) = (Vec::new(), Vec::new());
+    for k in 0..n {
+        let middle = S::Vector::from_fn(|_| unit() * 20.0 - 10.0);
+        let size = [0.01, 0.5, 3.0, 12.0][k as usize % 4];
+        let level = if k % 5 == 0 { Some(middle.get(1).round()) } else { None };
+        let first = points.len() as u32;
+        for _ in 0..S::CORNERS {
+            let around = S::Vector::from_fn(|_| (unit() - 0.5) * size);
+            let point = middle + around;
+            points.push(S::Vector::from_fn(|a| match level {
+                Some(y) if a == 1 => y,
+                _ => point.get(a),
+            }));
+        }
+        prims.push(make([first, first + 1, first + 2]));
+    }
+    Arc::new(Scene::new(Parts::simple(&format!("soup {seed}"), points, prims)).expect("a valid scene"))
+}
+
+fn file(path: &str) -> AnyScene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    load(&path.display().to_string(), &LoadOptions::default(), &Quiet).expect("a committed scene loads")
+}
+
+fn flat_scenes() -> Vec<Arc<Scene<Flat>>> {
+    let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Flat>(s, 60, |[a, b, _]| [a, b])).collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes2d");
+    let mut files: Vec<_> = std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path()).collect();
+    files.retain(|p| p.extension().is_some_and(|e| e == "json"));
+    files.sort();
+    for path in files {
+        match load(&path.display().to_string(), &LoadOptions::default(), &Quiet).expect("a committed scene loads") {
+            AnyScene::Flat(scene) => scenes.push(scene),
+            AnyScene::Solid(_) => panic!("{} is not flat", path.display()),
+        }
+    }
+    scenes
+}
+
+fn solid_scenes() -> Vec<Arc<Scene<Solid>>> {
+    let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Solid>(s, 80, |c| c)).collect();
+    let building = load("generate:building?polygons=2000&seed=5", &LoadOptions::default(), &Quiet).expect("a building");
+    for scene in [building, file("scenes3d/freedoom_e1m1/freedoom_e1m1.obj")] {
+        match scene {
+            AnyScene::Solid(scene) => scenes.push(scene),
+            AnyScene::Flat(_) => panic!("a model in space"),
+        }
+    }
+    scenes
+}
+
+/// Parameters to run a method with: the defaults, back faces culled, and each whole number at its least.
+fn settings<S: World>(entry: &dyn Entry<S>) -> Vec<Settings> {
+    use cullscope::culling::KnobValue;
+    let mut all = vec![Settings::default()];
+    for (knob, value) in entry.knobs(&Settings::default()).expect("defaults fit") {
+        let text = match value {
+            KnobValue::Switch(on) => (!on).to_string(),
+            KnobValue::Integer(_, range) => range.start().to_string(),
+            KnobValue::Budget(_) => "0".to_owned(),
+        };
+        all.push(Settings([(knob.name.to_owned(), text)].into()));
+    }
+    all
+}
+
+/// Small views: from outside, from random places inside, and the first of the scene's own.
+fn views<S: World>(scene: &Scene<S>, seed: u64) -> Vec<View<S>> {
+    let mut views = random_views(scene, VIEWS, seed);
+    views.push(framing_view(&scene.bounds(), 96, 96));
+    views.extend(scene.paths().first().map(|p| p.views[0]));
+    for view in &mut views {
+        (view.width, view.height) = (96, view.height.min(96));
+    }
+    views
+}
+
+fn ready<S: World>(entry: &dyn Entry<S>, scene: &Arc<Scene<S>>, settings: &Settings) -> Box<dyn Run<S>> {
+    entry.ready(scene, settings, &Quiet).expect("settings fit").expect("not cancelled")
+}
+
+fn each_case<S: World>(scenes: &[Arc<Scene<S>>], mut check: impl FnMut(&dyn Entry<S>, &Arc<Scene<S>>, &Settings)) {
+    for entry in S::methods() {
+        for settings in settings(*entry) {
+            scenes.iter().for_each(|scene| check(*entry, scene, &settings));
+        }
+    }
+}
+
+fn watched_runs_decide_the_same<S: World>(scenes: &[Arc<Scene<S>>]) {
+    each_case(scenes, |entry, scene, settings| {
+        let what = format!("{} {settings:?} on {}", entry.card().key, scene.name());
+        let views = views(scene, 1);
+        let [mut plain, mut counted, mut recorded, mut capped] = [(); 4].map(|()| ready(entry, scene, settings));
+        for view in &views {
+            let list = plain.cull(view);
+            assert_eq!(list, counted.count(view).0, "{what}: counted");
+            let film = recorded.record(view, usize::MAX);
+            assert_eq!(list, film.list, "{what}: recorded");
+            assert_eq!(list, capped.record(view, 5).list, "{what}: recorded in part");
+            told_is_answered(&*film.film, &list.prims, &what);
+            if let Err(why) = check_film(&*film.film) {
+                panic!("{what}: {why}");
+            }
+        }
+        plain.forget();
+        let again: Vec<_> = views.iter().map(|v| plain.cull(v)).collect();
+        plain.forget();
+        assert_eq!(again, views.iter().map(|v| plain.cull(v)).collect::<Vec<_>>(), "{what}: after forgetting");
+    });
+}
+
+fn told_is_answered<S: Space>(film: &dyn Film<S>, drawn: &[PrimId], what: &str) {
+    let stamps = Stamps::new(film);
+    let mut kept = drawn.to_vec();
+    kept.sort_unstable();
+    assert!(kept.windows(2).all(|w| w[0] < w[1]), "{what}: each primitive is drawn at most once");
+    let decided = |p: &&PrimId| {
+        let stamp = stamps.prims()[p.at()];
+        assert_ne!(stamp.step, Stamp::NEVER, "{what}: the fate of primitive {p} is told");
+        stamp.verdict == Verdict::Visible
+    };
+    let told: Vec<PrimId> = film.scene().live().iter().filter(decided).copied().collect();
+    assert_eq!(told, kept, "{what}: told and answered");
+}
+
+#[test]
+fn watched_runs_decide_the_same_in_flatland() {
+    watched_runs_decide_the_same(&flat_scenes());
+}
+#[test]
+fn watched_runs_decide_the_same_in_space() {
+    watched_runs_decide_the_same(&solid_scenes());
+}
+
+/// Films at every step against the plainest reading of their events.
+fn films_replay<S: World>(scenes: &[Arc<Scene<S>>]) {
+    for entry in S::methods() {
+        for scene in scenes.iter().filter(|s| s.live().len() < 200) {
+            let mut run = ready(*entry, scene, &Settings::default());
+            let view = views(scene, 2)[0];
+            let film = run.record(&view, usize::MAX).film;
+            stamps_are_the_fold(&*film);
+            any_way_leads_to_the_same_step(&*film, &*run.record(&view, usize::MAX).film);
+        }
+    }
+}
+
+fn stamps_are_the_fold<S: Space>(film: &dyn Film<S>) {
+    let stamps = Stamps::new(film);
+    let mut fold = vec![None; film.scene().prim_count()];
+    for step in 0..=film.events().len() {
+        if let Some(at) = step.checked_sub(1) {
+            match film.events()[at] {
+                Event::DecidedNode(n, v) if v != Verdict::Partial => film.hierarchy().prims(n).iter().for_each(|p| _ = fold[p.at()].get_or_insert(v)),
+                Event::DecidedPrim(p, v) if v != Verdict::Partial => _ = fold[p.at()].get_or_insert(v),
+                _ => {}
+            }
+        }
+        let counts = stamps.counts(step);
+        for verdict in [Verdict::Outside, Verdict::Hidden, Verdict::Visible, Verdict::Approximated, Verdict::OverBudget] {
+            let folded = fold.iter().flatten().filter(|v| **v == verdict).count();
+            assert_eq!(counts.of(verdict), folded, "{}: {verdict:?} at step {step}", film.card().key);
+        }
+        let stamped = stamps.prims().iter().map(|s| (s.step as usize <= step).then_some(s.verdict));
+        assert!(stamped.eq(fold.iter().copied()), "{} at step {step}", film.card().key);
+    }
+}
+
+fn any_way_leads_to_the_same_step<S: Space>(film: &dyn Film<S>, fresh: &dyn Film<S>) {
+    let draw = |film: &dyn Film<S>, step: usize| {
+        let mut drawing = Drawing::default();
+        film.explain(step, &mut drawing);
+        drawing
+    };
+    let last = film.events().len();
+    let forward: Vec<_> = (0..=last).map(|step| draw(film, step)).collect();
+    let mut rng = Pcg32::new(last as u64, 5);
+    for _ in 0..200 {
+        let step = rng.next_u32() as usize % (last + 1);
+        // One film was walked from the start, the other one is only jumped about in.
+        assert_eq!(draw(fresh, step), forward[step], "{} at step {step}", film.card().key);
+    }
+    for step in (0..=last).rev() {
+        assert_eq!(draw(film, step), forward[step], "{} at step {step}, backwards", film.card().key);
+    }
+    for at in 0..last {
+        assert_eq!(film.fields(at), fresh.fields(at));
+        assert!(!film.sentence(at).is_empty() && film.sentence(at) == fresh.sentence(at));
+    }
+}
+
+#[test]
+fn films_replay_in_flatland() {
+    films_replay(&flat_scenes());
+}
+#[test]
+fn films_replay_in_space() {
+    films_replay(&solid_scenes());
+}
+
+/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise.
+const FLOORS: [(&str, &str, f64); 6] = [
+    ("z-buffer", "flatland", 0.0),
+    ("z-buffer", "space", 0.0),
+    ("frustum", "flatland", 0.5),
+    ("frustum", "space", 0.5),
+    ("centroid", "flatland", 0.5),
+    ("centroid", "space", 0.5),
+];
+
+fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
+    for entry in S::methods() {
+        let key = entry.card().key;
+        let (mut unseen, mut culled) = (0, 0);
+        for scene in scenes {
+            for settings in [Settings::default(), Settings([("backface-culling".to_owned(), "true".to_owned())].into())] {
+                let one_sided = !settings.0.is_empty();
+                let mut run = ready(*entry, scene, &settings);
+                let mut truth = Truth::new(scene, one_sided, 1, [1.0; 3]);
+                for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
+                    let list = run.cull(&view);
+                    let mut target = Target::new(&view);
+                    S::draw(&mut target, scene, &view, &list.prims, &Options::default());
+                    let judged = truth.judge(scene, &view, &list.prims, &target);
+                    if entry.card().conservative {
+                        assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());
+                        assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0));
+                    }
+                    if !one_sided {
+                        let seen_and_drawn = judged.visible.len() - judged.missed.len();
+                        unseen += scene.live().len() - judged.visible.len();
+                        culled += scene.live().len() - judged.visible.len() - (judged.drawn - seen_and_drawn);
+                    }
+                }
+            }
+        }
+        let share = culled as f64 / unseen as f64;
+        let floor = FLOORS.iter().find(|(method, space, _)| *method == key && *space == S::NAME);
+        let (.., floor) = *floor.unwrap_or_else(|| panic!("`{key}` in {} needs a line in FLOORS; it culls {share:.3}", S::NAME));
+        assert!(share >= floor, "{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before", S::NAME);
+        println!("{key} in {}: {share:.4}", S::NAME);
+    }
+}
+
+#[test]
+fn nothing_visible_is_missed_in_flatland() {
+    nothing_visible_is_missed(&flat_scenes());
+}
+#[test]
+fn nothing_visible_is_missed_in_space() {
+    nothing_visible_is_missed(&solid_scenes());
+}
