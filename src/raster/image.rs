@@ -2,7 +2,7 @@
 //!
 //! One thread: each triangle is set up and filled at once. Several: triangles are set up in chunks, then
 //! bands of rows are filled, each by one thread, from all chunks. Both call the same two functions,
-//! [`Frame::each_setup`] and [`fill`], and a pixel keeps its winner whatever the order, so the bytes are equal.
+//! [`Frame::set_up`] and [`fill`], and a pixel keeps its winner whatever the order, so the bytes are equal.
 //!
 //! Rows of a small triangle are one vector: three edge functions, one mask. Rows of a wide one are spans,
 //! whose ends follow from the edge functions by an exact division; then no edge is looked at per pixel.
@@ -20,6 +20,7 @@ use crate::scene::Scene;
 #[derive(Default)]
 pub(super) struct Scratch {
     vertices: Vec<Vertex>,
+    setups: Vec<Setup>,
     chunks: Vec<Chunk>,
 }
 
@@ -32,6 +33,8 @@ struct Chunk {
 
 /// Primitives in a chunk: enough that a chunk's cost hides its hand-over.
 const CHUNK_PRIMS: usize = 4096;
+/// Triangles set up before they are filled, on one thread: 25 KiB, which the first cache holds.
+const BATCH_PRIMS: usize = 256;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;
 
@@ -54,7 +57,7 @@ pub(super) fn draw(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>
     let frame = Frame { scene, view, camera, vertices: &scratch.vertices, backface_culling: options.backface_culling };
     if threads <= 1 {
         let band = Band { depth: &mut target.depth, item: &mut target.item, first_row: 0, width: view.width as usize };
-        simd::run(options.isa, DrawAll { frame: &frame, prims, band });
+        simd::run(options.isa, DrawAll { frame: &frame, prims, setups: &mut scratch.setups, band });
     } else {
         draw_in_bands(&mut scratch.chunks, &frame, prims, target, options);
     }
@@ -90,33 +93,40 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Sets up the primitives that may cover a pixel, several times where clipping cuts one up.
+    /// Appends the primitives that may cover a pixel, several times where clipping cuts one up.
     #[inline(always)]
-    fn each_setup(&self, prims: &[PrimId], mut emit: impl FnMut(&Setup)) {
+    fn set_up(&self, prims: &[PrimId], setups: &mut Vec<Setup>) {
         let (width, height) = (self.view.width as i32, self.view.height as i32);
         for &prim in prims {
             let Some(corners) = self.scene.corners(prim) else { continue };
-            let vertices = if self.vertices.is_empty() {
-                corners.map(|c| self.camera.vertex(self.camera.clip(self.scene.points()[c as usize])))
+            let own;
+            let [a, b, c] = if self.vertices.is_empty() {
+                own = self.project(corners);
+                [&own[0], &own[1], &own[2]]
             } else {
-                corners.map(|c| self.vertices[c as usize])
+                [&self.vertices[corners[0] as usize], &self.vertices[corners[1] as usize], &self.vertices[corners[2] as usize]]
             };
-            let [a, b, c] = vertices.map(|v| v.outside);
-            if a & b & c & REJECTS != 0 || self.backface_culling && !self.shows_front(corners) {
+            if a.outside & b.outside & c.outside & REJECTS != 0 || self.backface_culling && !self.shows_front(corners) {
                 continue;
             }
-            if (a | b | c) & NEEDS_CLIP == 0 {
-                if let Some(setup) = Setup::new(vertices, prim.0, width, height) {
-                    emit(&setup);
-                }
+            if (a.outside | b.outside | c.outside) & NEEDS_CLIP == 0 {
+                setups.extend(Setup::new([a, b, c], prim.0, width, height));
             } else {
-                for triangle in clip(&self.camera, corners.map(|c| self.camera.clip(self.scene.points()[c as usize]))) {
-                    if let Some(setup) = Setup::new(triangle, prim.0, width, height) {
-                        emit(&setup);
-                    }
-                }
+                self.set_up_clipped(prim, corners, setups);
             }
         }
+    }
+
+    #[inline(never)]
+    fn project(&self, corners: [u32; 3]) -> [Vertex; 3] {
+        corners.map(|c| self.camera.vertex(self.camera.clip(self.scene.points()[c as usize])))
+    }
+
+    #[inline(never)]
+    fn set_up_clipped(&self, prim: PrimId, corners: [u32; 3], setups: &mut Vec<Setup>) {
+        let (width, height) = (self.view.width as i32, self.view.height as i32);
+        let corners = corners.map(|c| self.camera.clip(self.scene.points()[c as usize]));
+        setups.extend(clip(&self.camera, corners).filter_map(|[a, b, c]| Setup::new([&a, &b, &c], prim.0, width, height)));
     }
 
     /// Whether the eye lies strictly on the side from which the corners run counter-clockwise.
@@ -128,7 +138,6 @@ impl Frame<'_> {
 }
 
 /// The triangles of what clipping leaves of a triangle, as a fan.
-#[inline(never)]
 pub(super) fn clip(camera: &Camera, corners: [Clip; 3]) -> impl Iterator<Item = [Vertex; 3]> {
     let polygon = camera.clipped(&corners);
     let mut fan = [Vertex::default(); 8];
@@ -162,32 +171,37 @@ fn fill<L: Lanes>(l: L, s: &Setup, band: &mut Band) {
 #[inline(always)]
 fn fill_small<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     let columns = (s.x1 - s.x0) as usize;
-    let mut edge: [L::I; 3] = std::array::from_fn(|i| l.ramp(s.edge[i] as i32 + s.edge_dy[i] * (y0 - s.y0), s.edge_dx[i]));
-    let step: [L::I; 3] = std::array::from_fn(|i| l.splat_i(s.edge_dy[i]));
+    // Closures would not be compiled for the instruction set, so the three edges are written out.
+    let [a, b, c] = &s.edges;
+    let skipped = y0 - s.y0;
+    let mut edge_a = l.ramp(a.at as i32 + a.dy * skipped, a.dx);
+    let mut edge_b = l.ramp(b.at as i32 + b.dy * skipped, b.dx);
+    let mut edge_c = l.ramp(c.at as i32 + c.dy * skipped, c.dx);
+    let (step_a, step_b, step_c) = (l.splat_i(a.dy), l.splat_i(b.dy), l.splat_i(c.dy));
     let along = l.mul(l.splat(s.plane.dx), l.ramp_f(center(s.x0) - s.plane.x, 1 << SUBPIXEL_BITS));
     let (low, high) = (l.splat(s.plane.low), l.splat(s.plane.high));
     for y in y0..y1 {
         let at = (y - band.first_row) as usize * band.width + s.x0 as usize;
-        let inside = l.none_negative(edge[0], edge[1], edge[2]);
+        let inside = l.none_negative(edge_a, edge_b, edge_c);
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
         l.merge(&mut band.depth[at..at + columns], &mut band.item[at..at + columns], inside, z, s.id);
-        edge = std::array::from_fn(|i| l.add_i(edge[i], step[i]));
+        (edge_a, edge_b, edge_c) = (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
     }
 }
 
 /// Rows of any width, from the exact ends of their spans.
 #[inline(always)]
 fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
-    let inverse = s.edge_dx.map(|dx| 1.0 / f64::from(dx.abs()));
+    let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
     for y in y0..y1 {
         let (mut begin, mut end) = (0, s.x1 - s.x0);
-        for i in 0..3 {
-            let e = s.edge[i] + i64::from(s.edge_dy[i]) * i64::from(y - s.y0);
-            if s.edge_dx[i] > 0 {
-                begin = begin.max(-quotient(e, inverse[i]));
-            } else if s.edge_dx[i] < 0 {
-                end = end.min(quotient(e, inverse[i]) + 1);
+        for (edge, &inverse) in s.edges.iter().zip(&inverse) {
+            let e = edge.at + i64::from(edge.dy) * i64::from(y - s.y0);
+            if edge.dx > 0 {
+                begin = begin.max(-quotient(e, inverse));
+            } else if edge.dx < 0 {
+                end = end.min(quotient(e, inverse) + 1);
             } else if e < 0 {
                 end = 0;
             }
@@ -213,7 +227,7 @@ fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
 fn quotient(e: i64, inverse: f64) -> i32 {
     const LIMIT: f64 = 65536.0;
     const NUDGE: f64 = 1.0 / (1 << 26) as f64;
-    let q = (e as f64 * inverse + NUDGE).max(-LIMIT).min(LIMIT);
+    let q = (e as f64 * inverse + NUDGE).clamp(-LIMIT, LIMIT);
     // Truncation rounds down once the value is not negative.
     (q + LIMIT) as i32 - LIMIT as i32
 }
@@ -236,13 +250,20 @@ impl Work for Project<'_> {
 struct DrawAll<'a> {
     frame: &'a Frame<'a>,
     prims: &'a [PrimId],
+    setups: &'a mut Vec<Setup>,
     band: Band<'a>,
 }
 
 impl Work for DrawAll<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self, l: L) {
-        self.frame.each_setup(self.prims, |setup| fill(l, setup, &mut self.band));
+        for prims in self.prims.chunks(BATCH_PRIMS) {
+            self.setups.clear();
+            self.frame.set_up(prims, self.setups);
+            for setup in self.setups.iter() {
+                fill(l, setup, &mut self.band);
+            }
+        }
     }
 }
 
@@ -256,11 +277,11 @@ impl Work for SetUp<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         let Chunk { setups, bands } = self.chunk;
-        self.frame.each_setup(self.prims, |setup| {
+        self.frame.set_up(self.prims, setups);
+        for (number, setup) in setups.iter().enumerate() {
             let (first, last) = (setup.y0 as usize / BAND_ROWS, (setup.y1 - 1) as usize / BAND_ROWS);
-            bands[first..=last].iter_mut().for_each(|band| band.push(setups.len() as u32));
-            setups.push(*setup);
-        });
+            bands[first..=last].iter_mut().for_each(|band| band.push(number as u32));
+        }
     }
 }
 

@@ -30,11 +30,11 @@ pub(super) fn draw_image(target: &mut Target, scene: &Scene<Solid>, view: &View<
 }
 
 fn draw_triangle(target: &mut Target, v: [Vertex; 3], id: u32) {
-    let area = area(&v);
+    let area = area([&v[0], &v[1], &v[2]]);
     if area == 0 {
         return;
     }
-    let plane = Plane::of(&v, area);
+    let plane = Plane::of([&v[0], &v[1], &v[2]], area);
     let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
     let range = |low: i32, high: i32, size: u32| (low / 256 - 1).max(0)..(high / 256 + 2).min(size as i32);
     for y in range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), target.height) {

@@ -31,15 +31,20 @@ const STEEPEST: f32 = 1e28;
 impl Plane {
     /// The plane through three vertices with twice the signed area `area`, not zero.
     #[inline(always)]
-    pub fn of(v: &[Vertex; 3], area: i64) -> Self {
-        let far = if v[1].z < v[0].z { 1 } else { 0 };
-        let far = if v[2].z < v[far].z { 2 } else { far };
-        let (o, p, q) = (v[far], v[(far + 1) % 3], v[(far + 2) % 3]);
+    pub fn of(v: [&Vertex; 3], area: i64) -> Self {
+        let [a, b, c] = v;
+        let (o, p, q) = if c.z < a.z.min(b.z) {
+            (c, a, b)
+        } else if b.z < a.z {
+            (b, c, a)
+        } else {
+            (a, b, c)
+        };
         let (pz, qz) = (f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z));
         let per_area = 1.0 / area as f64;
         let dx = (pz * f64::from(q.y - o.y) - qz * f64::from(p.y - o.y)) * per_area;
         let dy = (qz * f64::from(p.x - o.x) - pz * f64::from(q.x - o.x)) * per_area;
-        Self::new(o, dx as f32, dy as f32, o.z, p.z.max(q.z))
+        Self::new(*o, dx as f32, dy as f32, o.z, p.z.max(q.z))
     }
     /// The plane of a flatland segment between vertices of different columns.
     pub fn of_segment(a: Vertex, b: Vertex) -> Self {
@@ -73,10 +78,38 @@ pub(super) fn pixels(low: i32, high: i32, size: i32) -> (i32, i32) {
 
 /// Twice the signed area; positive if clockwise on the screen (y down).
 #[inline(always)]
-pub(super) fn area(v: &[Vertex; 3]) -> i64 {
+pub(super) fn area(v: [&Vertex; 3]) -> i64 {
     let (ux, uy) = (i64::from(v[1].x - v[0].x), i64::from(v[1].y - v[0].y));
     let (vx, vy) = (i64::from(v[2].x - v[0].x), i64::from(v[2].y - v[0].y));
     ux * vy - uy * vx
+}
+
+/// An edge function over the pixel centers, divided by 256 and rounded down; the top-left rule is in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    /// Its value at the first pixel of the triangle's box.
+    pub at: i64,
+    /// Its change per column.
+    pub dx: i32,
+    /// Its change per row.
+    pub dy: i32,
+}
+
+impl Edge {
+    /// The edge from `a` to `b` with the triangle on its right (y down), first pixel centered at `(x, y)`.
+    #[inline(always)]
+    fn new(a: &Vertex, b: &Vertex, x: i32, y: i32) -> Self {
+        let (dx, dy) = (b.x - a.x, b.y - a.y);
+        // A center on the edge belongs to the triangle to its right or below it.
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        let e = i64::from(dx) * i64::from(y - a.y) - i64::from(dy) * i64::from(x - a.x) - i64::from(!top_left);
+        Self { at: e >> SUBPIXEL_BITS, dx: -dy, dy: dx }
+    }
+    /// One over the size of the change per column; infinite for a horizontal edge.
+    #[inline(always)]
+    pub fn inverse(&self) -> f64 {
+        1.0 / f64::from(self.dx.abs())
+    }
 }
 
 /// A triangle ready to be filled.
@@ -87,13 +120,8 @@ pub(super) struct Setup {
     pub x1: i32,
     pub y0: i32,
     pub y1: i32,
-    /// Edge functions at the center of pixel `(x0, y0)`, divided by 256 and rounded down; a center is
-    /// covered where none is negative. The top-left rule is in them.
-    pub edge: [i64; 3],
-    /// Their change per column.
-    pub edge_dx: [i32; 3],
-    /// Their change per row.
-    pub edge_dy: [i32; 3],
+    /// Its edge functions; a center is covered where none is negative.
+    pub edges: [Edge; 3],
     /// Whether the edge functions fit 32 bits all over the triangle's box.
     pub narrow: bool,
     pub plane: Plane,
@@ -106,7 +134,7 @@ const NARROW: i32 = 1024 << SUBPIXEL_BITS;
 impl Setup {
     /// Makes a triangle ready for an image of `width` by `height` pixels; `None` if it covers no center.
     #[inline(always)]
-    pub fn new(mut v: [Vertex; 3], id: u32, width: i32, height: i32) -> Option<Self> {
+    pub fn new(v: [&Vertex; 3], id: u32, width: i32, height: i32) -> Option<Self> {
         let (low_x, high_x) = (v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x));
         let (low_y, high_y) = (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y));
         let (x0, x1) = pixels(low_x, high_x, width);
@@ -114,25 +142,15 @@ impl Setup {
         if x0 >= x1 || y0 >= y1 {
             return None;
         }
-        let area = area(&v);
+        let area = area(v);
         if area == 0 {
             return None;
         }
-        let plane = Plane::of(&v, area);
-        if area < 0 {
-            v.swap(1, 2);
-        }
-        let (px, py) = (center(x0), center(y0));
-        let (mut edge, mut edge_dx, mut edge_dy) = ([0; 3], [0; 3], [0; 3]);
-        for i in 0..3 {
-            let (a, b) = (v[i], v[(i + 1) % 3]);
-            let (dx, dy) = (b.x - a.x, b.y - a.y);
-            // A center on the edge belongs to the triangle to its right or below it.
-            let top_left = dy < 0 || (dy == 0 && dx > 0);
-            let e = i64::from(dx) * i64::from(py - a.y) - i64::from(dy) * i64::from(px - a.x) - i64::from(!top_left);
-            (edge[i], edge_dx[i], edge_dy[i]) = (e >> SUBPIXEL_BITS, -dy, dx);
-        }
+        let plane = Plane::of(v, area);
+        let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
+        let (x, y) = (center(x0), center(y0));
+        let edges = [Edge::new(a, b, x, y), Edge::new(b, c, x, y), Edge::new(c, a, x, y)];
         let narrow = high_x - low_x <= NARROW && high_y - low_y <= NARROW;
-        Some(Self { x0, x1, y0, y1, edge, edge_dx, edge_dy, narrow, plane, id })
+        Some(Self { x0, x1, y0, y1, edges, narrow, plane, id })
     }
 }

@@ -74,8 +74,10 @@ impl Camera {
     /// Clip coordinates of a world point.
     #[inline(always)]
     pub fn clip<V: Vector>(&self, point: V) -> Clip {
-        let r: [f64; 3] = std::array::from_fn(|a| if a < V::AXES { f64::from(point.get(a)) - self.eye[a] } else { 0.0 });
-        std::array::from_fn(|i| (self.rows[i][0] * r[0] + self.rows[i][1] * r[1]) + self.rows[i][2] * r[2])
+        // Written out: a closure would not be compiled for the caller's instruction set.
+        let z = if V::AXES == 3 { f64::from(point.get(2)) - self.eye[2] } else { 0.0 };
+        let r = [f64::from(point.get(0)) - self.eye[0], f64::from(point.get(1)) - self.eye[1], z];
+        [dot(self.rows[0], r), dot(self.rows[1], r), dot(self.rows[2], r)]
     }
 
     /// The vertex of a point in clip space.
@@ -86,8 +88,8 @@ impl Camera {
         let near = w < self.near;
         let off_grid = !near & ((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) > GUARD);
         let beyond_far = !near & (z < self.depth_far);
-        let bits = [x < -w, x > w, y < -w, y > w, beyond_far, near, off_grid];
-        let outside = bits.iter().enumerate().fold(0, |o, (i, &b)| o | u32::from(b) << i);
+        let sides = u32::from(x < -w) | u32::from(x > w) << 1 | u32::from(y < -w) << 2 | u32::from(y > w) << 3;
+        let outside = sides | u32::from(beyond_far) << 4 | u32::from(near) << 5 | u32::from(off_grid) << 6;
         let on_grid = outside & NEEDS_CLIP == 0;
         Vertex { x: if on_grid { round(at[0]) } else { 0 }, y: if on_grid { round(at[1]) } else { 0 }, z, outside }
     }
@@ -166,6 +168,11 @@ fn crossing(a: Clip, b: Clip, da: f64, db: f64) -> Clip {
     let ((a, da), (b, db)) = if a <= b { ((a, da), (b, db)) } else { ((b, db), (a, da)) };
     let t = da / (da - db);
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+#[inline(always)]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 /// Nearest integer, ties to even, for |v| < 2⁵⁰: the sum's last mantissa bit is worth one.

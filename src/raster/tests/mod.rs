@@ -1,6 +1,8 @@
 //! Tests of the z-buffer: against the plain reference, against rays, and of the rules it keeps.
 
 mod equal;
+mod limits;
+mod rules;
 
 use glam::{DVec3, Vec2, Vec3};
 use rand_pcg::Pcg64Mcg;
@@ -23,12 +25,11 @@ impl Dice {
     }
     /// Uniform in low..high.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * (self.0.next_u32() >> 8) as f32 / (1 << 24) as f32
+        low + (high - low) * ((self.0.next_u32() >> 8) as f32 / (1 << 24) as f32)
     }
     pub fn point(&mut self, reach: f32) -> Vec3 {
         Vec3::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
     }
-    #[allow(dead_code)]
     pub fn shuffle<T>(&mut self, list: &mut [T]) {
         for i in (1..list.len()).rev() {
             list.swap(i, self.below(i as u32 + 1) as usize);
