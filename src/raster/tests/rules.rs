@@ -49,8 +49,8 @@ fn left_rule_of_segments_by_hand() {
     assert_eq!(shown(1.5, 3.5), [1, 2]);
     assert_eq!(shown(3.5, 1.5), [1, 2]);
     assert_eq!(shown(1.51, 3.51), [2, 3]);
-    assert_eq!(shown(1.6, 2.4), []);
-    assert_eq!(shown(2.5, 2.5), []);
+    assert!(shown(1.6, 2.4).is_empty());
+    assert!(shown(2.5, 2.5).is_empty());
     assert_eq!(shown(-100.0, 100.0), [0, 1, 2, 3, 4, 5, 6, 7]);
 }
 
