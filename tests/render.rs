@@ -8,6 +8,8 @@ mod sample;
 use std::path::Path;
 
 use cullscope::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
+use cullscope::figure::{Page, Paper, axis, page::legend};
+use cullscope::geometry::PrimId;
 use cullscope::render::{self, Look, PngSize, SvgOptions, Theme, theme::Sight};
 use glam::{Vec2, vec2};
 use sample::every_mark;
@@ -117,4 +119,52 @@ fn odd_drawings_harm_nothing() {
     assert!(render::pdf(&d, Theme::Print, None).is_ok());
     assert!(render::pdf(&Drawing::default(), Theme::Print, None).is_err());
     assert!(render::png(&Drawing::default(), Theme::Print, PngSize::WidthPx(10), None).is_err());
+}
+
+/// A flatland scene in every state, on a page.
+fn page(paper: Paper) -> Drawing {
+    let mut page = Page { paper, title: "View-frustum culling over a kD-tree".into(), ..Page::default() };
+    page.caption = "Frustum culling of scenes2d/street.json, step 412 of 1,093: node 37 lies outside plane 2 (−3.5 m), so its 12 walls are \
+                    culled without a further test. ρ = 0.75, height 8, back-face culling on."
+        .into();
+    let mut picture = Drawing { size_pt: vec2(228.0, 150.0), ..Drawing::default() };
+    picture.title = "Step 412".into();
+    let mut states = Role::STATES.into_iter().cycle();
+    for i in 0..24u32 {
+        let at = vec2(12.0 + (i % 6) as f32 * 36.0, 14.0 + (i / 6) as f32 * 32.0);
+        let role = states.next().expect("a cycle never ends");
+        let corners = vec![at, at + vec2(24.0, 2.0), at + vec2(22.0, 18.0), at + vec2(2.0, 16.0)];
+        picture.push(Layer::Scene, role, Subject::Prim(PrimId(i)), Mark::Area(corners));
+    }
+    let eye = vec2(20.0, 130.0);
+    for far in [vec2(226.0, 20.0), vec2(226.0, 130.0)] {
+        picture.line(Layer::Frustum, Role::Eye, Subject::Eye, [eye, far]);
+    }
+    picture.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Dot { at: eye, radius_pt: 3.0 });
+    picture.push(Layer::Evidence, Role::Evidence, Subject::Plane(2), Mark::Arrow(vec2(120.0, 75.0), vec2(128.0, 52.0)));
+    picture.outline(Layer::Emphasis, Role::Current, Subject::None, [vec2(116.0, 74.0), vec2(150.0, 74.0), vec2(150.0, 100.0), vec2(116.0, 100.0)]);
+    axis::scale_bar(&mut picture, vec2(150.0, 146.0), 7.3, 70.0, "m");
+    page.legend = legend(&picture);
+    page.compose(&picture)
+}
+
+#[test]
+fn a_page_is_the_golden_text() {
+    let column = page(Paper::Column);
+    golden("page-column.svg", &render::svg(&column, Theme::Print, &SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() }));
+    for (name, paper) in [("column", Paper::Column), ("two", Paper::TwoColumns), ("slide", Paper::Slide)] {
+        look_at(&format!("page-{name}.png"), &render::png(&page(paper), Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"));
+        look_at(&format!("page-{name}.pdf"), &render::pdf(&page(paper), Theme::Print, None).expect("a document"));
+    }
+}
+
+#[test]
+fn axes_can_be_read() {
+    let mut d = Drawing { size_pt: vec2(240.0, 160.0), ..Drawing::default() };
+    let (x, y) = (axis::Axis::of("triangles", [120.0, 2.0e6], true), axis::Axis::of("time in ms", [0.4, 37.0], false));
+    let [min, max] = axis::axes(&mut d, &x, &y, Vec2::splat(4.0), vec2(236.0, 156.0));
+    let at = |t: f64, ms: f64| vec2(min.x + x.place(t) * (max.x - min.x), max.y - y.place(ms) * (max.y - min.y));
+    d.line(Layer::Scene, Role::Visible, Subject::None, [at(120.0, 0.4), at(1.3e4, 3.0), at(2.0e6, 37.0)]);
+    golden("axes.svg", &render::svg(&d, Theme::Print, &SvgOptions { outline_text: true, metadata: None }));
+    look_at("axes.png", &render::png(&d, Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"));
 }

@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn the_fonts_cover_what_figures_say() {
         let european = "ÄÖÜäöüßÀÉÈÊËÇÑñçåøæœłńśźżőűčřšžğışțș¿¡«»„“”‘’–—…€£§°";
-        let technical = "−·×÷±≥≤≠≈→←↑↓ρεσπλθΔΩ²³½µ∞√∑∂%‰◀▶●■□▲▼";
+        let technical = "−·×÷±≥≤≠≈→←↑↓ρεσπλθΔΩ²³½µ∞√∑∂%‰◀▶●■□▲▼⁰¹⁴⁵⁶⁷⁸⁹⁻";
         for font in Font::ALL {
             for c in (' '..='~').chain(european.chars()).chain(technical.chars()) {
                 assert!(covers(font, c), "{font:?} lacks {c:?}");
