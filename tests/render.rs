@@ -3,6 +3,8 @@
 //! `UPDATE_FIGURES=1 cargo test --test render` writes tests/figures anew; with `FIGURES_OUT=folder` the
 //! pictures are written there too, to be looked at.
 
+#[path = "sample/pdf_text.rs"]
+mod pdf_text;
 mod sample;
 
 use std::path::Path;
@@ -73,6 +75,13 @@ fn pdf_is_the_same_each_time_and_embeds_its_fonts() {
     assert_eq!(bytes, render::pdf(&d, Theme::Print, Some(RECIPE)).expect("a document"));
     look_at("roles-print.pdf", &bytes);
     look_at("roles-dark.pdf", &render::pdf(&d, Theme::Dark, None).expect("a document"));
+    let mut wanted: Vec<String> =
+        d.painted().iter().filter_map(|i| if let Mark::Text { text, .. } = &i.mark { Some(text.clone()) } else { None }).collect();
+    let mut shown = pdf_text::text_of(&bytes);
+    shown.retain(|t| t != "!");
+    wanted.sort();
+    shown.sort();
+    assert_eq!(shown, wanted, "text can be copied from the document");
     let has = |what: &[u8]| bytes.windows(what.len()).any(|w| w == what);
     assert!(has(b"/FontFile2") && has(b"Inter") && has(b"JetBrainsMono"), "fonts are embedded");
     assert!(!has(b"/CreationDate") && !has(b"xmp:CreateDate"), "no date");

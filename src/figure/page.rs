@@ -217,18 +217,39 @@ fn legend_rows(entries: &[Entry], size: f32, width: f32, most: f32) -> Legend {
     legend
 }
 
-/// The legend in as many columns as fit, entries in rows.
+/// The legend in as many columns as fit; where columns waste rows, one entry after another.
 fn legend_at(entries: &[Entry], size: f32, width: f32) -> Legend {
-    let lead = (SWATCH + SWATCH_GAP) * size;
+    let (lead, gap) = ((SWATCH + SWATCH_GAP) * size, ENTRY_GAP * size);
     let labels: Vec<String> = entries.iter().map(|e| metrics::elide(&e.label, Font::Regular, size, width - lead)).collect();
     let wide: Vec<f32> = labels.iter().map(|l| lead + metrics::width_pt(l, Font::Regular, size)).collect();
+    let (tidy, dense) = (in_columns(&wide, gap, width), in_flow(&wide, gap, width));
+    let rows = |places: &[(usize, f32)]| places.last().map_or(0, |(row, _)| row + 1);
+    let places = if rows(&tidy) <= rows(&dense) + 1 { tidy } else { dense };
+    Legend { rows: rows(&places), places, labels, size }
+}
+
+/// Row and left end of each entry, in the most columns that fit.
+fn in_columns(wide: &[f32], gap: f32, width: f32) -> Vec<(usize, f32)> {
     let columns_of = |n: usize| (0..n).map(|c| wide.iter().skip(c).step_by(n).copied().fold(0.0, f32::max)).collect::<Vec<f32>>();
-    let taken = |columns: &[f32]| columns.iter().sum::<f32>() + ENTRY_GAP * size * columns.len().saturating_sub(1) as f32;
-    let columns = (1..=entries.len()).rev().map(columns_of).find(|c| taken(c) <= width).unwrap_or_else(|| columns_of(1));
-    let n = columns.len();
-    let left = |column: usize| columns[..column].iter().map(|w| w + ENTRY_GAP * size).sum::<f32>();
-    let places = (0..entries.len()).map(|i| (i / n, left(i % n))).collect();
-    Legend { places, labels, rows: entries.len().div_ceil(n.max(1)), size }
+    let fits = |columns: &Vec<f32>| columns.iter().sum::<f32>() + gap * (columns.len() - 1) as f32 <= width;
+    let columns = (1..=wide.len()).rev().map(columns_of).find(fits).unwrap_or_else(|| columns_of(1));
+    let left = |column: usize| columns[..column].iter().map(|w| w + gap).sum::<f32>();
+    (0..wide.len()).map(|i| (i / columns.len(), left(i % columns.len()))).collect()
+}
+
+/// Row and left end of each entry, each where the one before ends.
+fn in_flow(wide: &[f32], gap: f32, width: f32) -> Vec<(usize, f32)> {
+    let (mut row, mut x) = (0, 0.0);
+    wide.iter()
+        .map(|w| {
+            if x > 0.0 && x + w > width {
+                (row, x) = (row + 1, 0.0);
+            }
+            let place = (row, x);
+            x += w + gap;
+            place
+        })
+        .collect()
 }
 
 struct Layout<'a> {
@@ -298,15 +319,15 @@ fn placed(mark: &Mark<Vec2>, f: impl Fn(Vec2) -> Vec2) -> Mark<Vec2> {
 pub fn label(role: Role) -> Option<&'static str> {
     Some(match role {
         Role::Ink | Role::Faint | Role::Paper => return None,
-        Role::Scene => "scene, nothing said yet",
-        Role::Undecided => "not yet decided",
-        Role::Partial => "entered, in part visible",
-        Role::Visible => "kept as visible",
-        Role::Hidden => "culled: occluded",
-        Role::Outside => "culled: outside or facing away",
+        Role::Scene => "not yet looked at",
+        Role::Undecided => "undecided",
+        Role::Partial => "entered, part visible",
+        Role::Visible => "visible: kept",
+        Role::Hidden => "occluded: culled",
+        Role::Outside => "outside, back-facing: culled",
         Role::Occluder => "occluder",
-        Role::Approximated => "approximated or over budget",
-        Role::Wrong => "wrongly culled",
+        Role::Approximated => "approximated, over budget",
+        Role::Wrong => "visible, yet culled",
         Role::Current => "current",
         Role::Selected => "selected",
         Role::Eye => "Eye and its frustum",
@@ -345,7 +366,7 @@ mod tests {
     fn random_page(rng: &mut Pcg32) -> Page {
         let custom = Paper::Custom {
             width_mm: 30.0 + (rng.next_u32() % 200) as f32,
-            height_mm: (rng.next_u32() % 2 == 0).then_some(60.0 + (rng.next_u32() % 200) as f32),
+            height_mm: rng.next_u32().is_multiple_of(2).then_some(60.0 + (rng.next_u32() % 200) as f32),
         };
         let paper = [Paper::Column, Paper::TwoColumns, Paper::Slide, custom][rng.next_u32() as usize % 4];
         let legend = Role::STATES[..rng.next_u32() as usize % 9].iter().enumerate();
