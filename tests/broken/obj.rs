@@ -166,20 +166,36 @@ fn polygons_are_cut_by_their_shape() {
 
 #[test]
 fn a_polygon_of_a_hundred_thousand_corners_loads() {
-    let n = 100_000;
-    let mut text = String::new();
+    // A comb: teeth of two corners and a gap, along a back.
+    let teeth = 33_333;
+    let mut text = format!("v {} -1 0\n", 2 * teeth);
+    for k in (0..teeth).rev() {
+        text += &format!("v {} 0 0\nv {} {} 0\nv {} 0 0\n", 2 * k + 2, 2 * k + 1, 5 + k % 7, 2 * k);
+    }
+    text += "v 0 -1 0\nf";
+    let corners = 3 * teeth + 2;
+    (1..=corners).for_each(|k| text += &format!(" {k}"));
+    let scene = solid("comb.obj", text.as_bytes());
+    assert_eq!(scene.prim_count(), corners - 2);
+    let area: f64 = scene.live().iter().map(|p| f64::from(scene.normal(*p).length()) * 0.5).sum();
+    let want = 2.0 * teeth as f64 + (0..teeth).map(|k| 5.0 + (k % 7) as f64).sum::<f64>();
+    assert!((area / want - 1.0).abs() < 1e-6, "{area} instead of {want}");
+}
+
+#[test]
+fn a_polygon_too_long_to_be_cut_is_left_out_and_told() {
+    let n = 140_000;
+    let mut text = String::from("v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
     for k in 0..n {
         let angle = std::f64::consts::TAU * f64::from(k) / f64::from(n);
         let radius = if k % 2 == 0 { 100.0 } else { 90.0 };
         text += &format!("v {} {} 0\n", radius * angle.cos(), radius * angle.sin());
     }
     text += "f";
-    (1..=n).for_each(|k| text += &format!(" {k}"));
+    (4..n + 4).for_each(|k| text += &format!(" {k}"));
     let scene = solid("star.obj", text.as_bytes());
-    assert_eq!(scene.prim_count(), n as usize - 2);
-    let area: f64 = scene.live().iter().map(|p| f64::from(scene.normal(*p).length()) * 0.5).sum();
-    let want = f64::from(n) * 0.5 * 100.0 * 90.0 * (std::f64::consts::TAU / f64::from(n)).sin();
-    assert!((area / want - 1.0).abs() < 1e-2, "{area} instead of {want}");
+    assert_eq!(counts(&scene), (n as usize - 1, 1, vec![(Malformed, n as usize - 2)]));
+    assert_eq!(scene.report().notes, ["a concave polygon of 140000 corners is too long to be cut, so it was left out"]);
 }
 
 #[test]
