@@ -117,7 +117,7 @@ fn broken_files_are_refused() {
         (changed("\"byteOffset\":48,", "\"byteOffset\":49,"), "m.gltf: mesh 0, primitive 0: accessor 1: buffer view 1 lies outside of buffer 0"),
         (
             changed("\"type\":\"VEC3\"", "\"type\":\"VEC2\"").replace("\"min\":[0,0,0],\"max\":[1,1,0]", "\"min\":[0,0],\"max\":[1,1]"),
-            "m.gltf: mesh 0, primitive 0: accessor 0: needs 3 numbers an item",
+            "m.gltf: meshes[0].primitives[0].attributes[\"POSITION\"].min: Invalid value (2 faults)",
         ),
         (
             changed("\"componentType\":5123", "\"componentType\":5126"),
