@@ -1,1 +1,41 @@
-//! Room app.
+//! The explorer without its window: state, commands, the worker thread, sessions.
+//!
+//! Views are functions of [`State`] and answer in [`Command`]s; [`State::apply`] is the only way that
+//! anything changes. Nothing here knows a GUI, so every behavior is tested without one.
+
+mod any;
+mod apply;
+mod camera;
+mod command;
+mod filter;
+mod lanes;
+mod open;
+mod outline;
+mod pick;
+mod recall;
+mod session;
+mod stage;
+mod start;
+mod state;
+mod steps;
+#[cfg(test)]
+mod tests;
+mod undo;
+mod why;
+mod worker;
+
+#[allow(unused_imports)]
+pub(crate) use any::each;
+pub use any::{Any, AnyStage, AnyView};
+pub use camera::ObserverCamera;
+pub use command::{Action, Command, Gesture, Info, Menu, fuzzy};
+pub use filter::{kind_name, subject_at, verdict_of};
+pub use lanes::{Cell, Lane, lanes};
+pub use open::{Example, examples};
+pub use outline::Outline;
+pub use session::{Bookmark, Session, SessionError, write_file};
+pub use stage::{Recorded, Stage, Staged, short};
+pub use start::{Shot, Start};
+pub use state::{Breakpoint, Dialog, Effect, Layout, Notice, Shown, State, Surface, Theme};
+pub use why::{Because, spoken, why};
+pub use worker::{Busy, FILM_CAP_EVENTS};

@@ -42,6 +42,8 @@ pub trait Run<S: Space>: Send {
     fn record(&mut self, view: &View<S>, cap: usize) -> Recording<S>;
     /// Forgets all earlier frames.
     fn forget(&mut self);
+    /// Whether earlier frames can matter at all.
+    fn remembers(&self) -> bool;
 }
 
 /// A recorded frame.
@@ -160,6 +162,9 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
     }
     fn forget(&mut self) {
         self.memory = M::Memory::default();
+    }
+    fn remembers(&self) -> bool {
+        size_of::<M::Memory>() > 0
     }
 }
 

@@ -1,1 +1,58 @@
-//! Room views.
+//! The explorer's window: panels that read [`State`](crate::app::State) and answer in commands.
+//!
+//! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds what the person asked for.
+//! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`window::App`].
+
+mod canvas;
+mod code;
+mod dialogs;
+mod dock;
+mod events;
+mod handles;
+mod icons;
+mod inspector;
+mod keys;
+mod legend;
+mod menu;
+mod palette;
+mod parameters;
+mod reach;
+mod space;
+mod status;
+mod strip;
+mod timeline;
+mod welcome;
+mod why;
+pub mod window;
+
+use eframe::egui;
+
+use crate::app::{Action, Command, State};
+
+/// What a person asked for in a frame.
+pub type Answers = Vec<Command>;
+
+/// A button with a sign for an action.
+fn icon_button(state: &State, ui: &mut egui::Ui, action: Action, icon: icons::Icon, answers: &mut Answers) -> egui::Response {
+    let info = action.info();
+    let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
+    let button = icons::button(ui, icon, state.can(action)).on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, state.can(action), info.title));
+    if button.clicked() {
+        answers.push(action.into());
+    }
+    button
+}
+
+/// A button for an action: its title (or `text`), its help and key on hover, gray when it cannot be done.
+fn action_button(state: &State, ui: &mut egui::Ui, action: Action, text: &str, answers: &mut Answers) -> egui::Response {
+    let info = action.info();
+    let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
+    let button = ui.add_enabled(state.can(action), egui::Button::new(text));
+    let button = button.on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
+    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, state.can(action), info.title));
+    if button.clicked() {
+        answers.push(action.into());
+    }
+    button
+}

@@ -1,0 +1,102 @@
+//! Things of either space, for code that has not asked which.
+
+use serde::{Deserialize, Serialize};
+
+use super::stage::{Recorded, Stage, Staged};
+use crate::geometry::{Eye, Flat, Solid, Space, Vector, View};
+
+/// A thing of flatland or a thing of space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Any<F, S> {
+    /// Of flatland.
+    Flat(F),
+    /// Of space.
+    Solid(S),
+}
+
+/// A stage of either space.
+pub type AnyStage = Any<Stage<Flat>, Stage<Solid>>;
+/// A view of either space.
+pub type AnyView = Any<View<Flat>, View<Solid>>;
+/// A recorded film of either space.
+pub type AnyRecorded = Any<Recorded<Flat>, Recorded<Solid>>;
+
+/// Runs the same expression on a thing of either space.
+macro_rules! each {
+    ($any:expr, $it:ident => $body:expr) => {
+        match $any {
+            $crate::app::Any::Flat($it) => $body,
+            $crate::app::Any::Solid($it) => $body,
+        }
+    };
+}
+pub(crate) use each;
+
+impl AnyStage {
+    /// The stage without its space.
+    pub fn get(&self) -> &dyn Staged {
+        each!(self, s => s)
+    }
+    /// The Eye that culling uses.
+    pub fn view(&self) -> AnyView {
+        match self {
+            Any::Flat(s) => Any::Flat(s.view),
+            Any::Solid(s) => Any::Solid(s.view),
+        }
+    }
+    /// Sets the Eye, if it is of this space and can see. Says whether it was.
+    pub fn set_view(&mut self, view: &AnyView) -> bool {
+        match (self, view) {
+            (Any::Flat(s), Any::Flat(v)) if v.eye.fault().is_none() => s.view = *v,
+            (Any::Solid(s), Any::Solid(v)) if v.eye.fault().is_none() => s.view = *v,
+            _ => return false,
+        }
+        true
+    }
+    /// Goes to a view of a path.
+    pub fn go(&mut self, path: usize, frame: usize) {
+        each!(self, s => s.go(path, frame));
+    }
+}
+
+/// A view as a session file keeps it: every bit of every number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ViewRecord {
+    eye: Vec<f32>,
+    target: Vec<f32>,
+    up: Vec<f32>,
+    fov_radians: f32,
+    near: f32,
+    far: f32,
+    width: u32,
+    height: u32,
+}
+
+impl ViewRecord {
+    fn of<S: Space>(view: &View<S>) -> Self {
+        let list = |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a)).collect();
+        let e = &view.eye;
+        let (eye, target, up) = (list(e.position), list(e.target), list(e.up));
+        Self { eye, target, up, fov_radians: e.fov, near: e.near, far: e.far, width: view.width, height: view.height }
+    }
+    fn view<S: Space>(&self) -> Option<View<S>> {
+        let vector = |v: &[f32]| (v.len() == S::Vector::AXES).then(|| S::Vector::from_fn(|a| v[a]));
+        let (position, target, up) = (vector(&self.eye)?, vector(&self.target)?, vector(&self.up)?);
+        let eye = Eye { position, target, up, fov: self.fov_radians, near: self.near, far: self.far };
+        let fits = |n: u32| (1..=16384).contains(&n);
+        (eye.fault().is_none() && fits(self.width) && fits(self.height)).then_some(View { eye, width: self.width, height: self.height })
+    }
+    /// The view again; `None` if it could not see.
+    pub fn any(&self) -> Option<AnyView> {
+        match self.eye.len() {
+            2 => self.view().map(Any::Flat),
+            _ => self.view().map(Any::Solid),
+        }
+    }
+}
+
+impl From<&AnyView> for ViewRecord {
+    fn from(view: &AnyView) -> Self {
+        each!(view, v => Self::of(v))
+    }
+}

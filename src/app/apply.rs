@@ -1,0 +1,444 @@
+//! The only way that anything changes.
+
+use std::sync::Arc;
+
+use super::any::{Any, AnyStage};
+use super::command::{Action, Command};
+use super::session::Session;
+use super::stage::Stage;
+use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
+use super::undo::Wanted;
+use super::worker::{Done, Job, Request};
+use crate::drawing::Subject;
+use crate::scene::{AnyPath, AnyScene};
+
+/// Selections that are remembered.
+const SELECTIONS: usize = 200;
+
+impl State {
+    /// Does what is asked.
+    pub fn apply(&mut self, command: impl Into<Command>) {
+        match command.into() {
+            Command::Do(action) => self.act(action),
+            Command::Open(source) => self.open(&source, None),
+            Command::GoTo(step) => {
+                self.is_playing = false;
+                self.go_to(step);
+            }
+            Command::Select(subject) => self.select(subject),
+            Command::Method(key) => self.change(0, |s| {
+                s.settings.0.clear();
+                s.method = key;
+            }),
+            Command::Set(name, value, gesture) => self.change(gesture, |s| {
+                s.settings.0.insert(name, value);
+            }),
+            Command::Eye(view, gesture) if !self.is_eye_locked => self.change(gesture, |s| {
+                let moved = s.stage.as_mut().is_some_and(|stage| stage.set_view(&view));
+                if !moved {
+                    s.tell("The Eye cannot look from there.");
+                }
+            }),
+            Command::Eye(..) => self.tell("The Eye is locked; press L to unlock it."),
+            Command::Frame(path, frame) => self.go_frame(path, frame),
+            Command::Observe(camera) if camera.is_sound() => self.observer = camera,
+            Command::Observe(_) => {}
+            Command::Filter(text) => self.filter = text,
+            Command::Fold(at) => self.outline.toggle(at),
+            Command::Detail(detail) => self.detail = detail,
+            Command::Speed(speed) => self.speed = speed.clamp(0.25, 1e6),
+            Command::Dialog(dialog) => self.dialog = dialog,
+            Command::BreakLine(line) => self.flip(Breakpoint::Line(line)),
+            Command::BreakVerdict(verdict) => self.flip(Breakpoint::Verdict(verdict)),
+            Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
+            Command::Note(i, text) => {
+                if let Some(mark) = self.bookmarks.get_mut(i) {
+                    mark.note = text;
+                }
+            }
+            Command::Unmark(i) if i < self.bookmarks.len() => {
+                self.bookmarks.remove(i);
+            }
+            Command::Unmark(_) => {}
+            Command::Surface(surface) => self.shown.surface = surface,
+            Command::Layout(layout) => self.set_layout(layout),
+            Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
+            Command::SaveTo(path) => self.save(&path),
+            Command::Dismiss(i) if i < self.notices.len() => {
+                self.notices.remove(i);
+            }
+            Command::Dismiss(_) => {}
+        }
+        self.is_dirty = true;
+        self.refresh();
+    }
+
+    /// Brings what is derived up to date.
+    pub(super) fn refresh(&mut self) {
+        if let Some(stage) = &self.stage {
+            self.outline.refresh(stage.get(), self.detail, &self.filter);
+        }
+    }
+
+    /// Whether an action can be done now.
+    pub fn can(&self, action: Action) -> bool {
+        use super::command::Menu;
+        let open = self.stage.is_some();
+        match action {
+            Action::Undo => self.can_undo().0,
+            Action::Redo => self.can_undo().1,
+            Action::SelectBack => !self.selected_before.is_empty(),
+            Action::SelectForward => !self.selected_after.is_empty(),
+            Action::Why | Action::SelectNone | Action::NextOnSelected | Action::PreviousOnSelected | Action::RunToCursor | Action::BackToCursor => {
+                self.selection != Subject::None
+            }
+            Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
+            Action::SelectCurrent => self.current_subject() != Subject::None,
+            Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
+            Action::EyeHere => matches!(self.stage, Some(Any::Solid(_))) && !self.is_eye_locked,
+            Action::Cancel => self.busy().is_some() || self.dialog != Dialog::None || !self.notices.is_empty(),
+            Action::ResetSettings => !self.settings.0.is_empty(),
+            Action::Slower | Action::Faster | Action::ToggleDetail => true,
+            Action::Start | Action::Reload | Action::Save | Action::SaveAs | Action::ExportSvg | Action::ExportPdf | Action::ExportPng => open,
+            Action::Report | Action::About | Action::FrameSelection | Action::Swap => open,
+            _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => self.bookmarks.len() > action as usize - Action::Bookmark1 as usize,
+            _ if action.info().menu == Menu::Step => !self.is_empty(),
+            _ if action.info().menu == Menu::Edit => open,
+            _ => true,
+        }
+    }
+
+    fn act(&mut self, action: Action) {
+        if !self.can(action) || self.do_step(action) || self.edit(action) || self.show(action) {
+            return;
+        }
+        match action {
+            Action::Open => {
+                self.dialog = Dialog::Open;
+            }
+            Action::Start => {
+                self.worker.cancel();
+                self.stage = None;
+                self.step = 0;
+                self.selection = Subject::None;
+            }
+            Action::Reload => {
+                if let Some(source) = self.staged().map(|s| s.source().to_owned()) {
+                    self.recall = Some(self.session());
+                    self.load(&source, None);
+                }
+            }
+            Action::Save => match self.session_path.clone() {
+                Some(path) => self.save(&path),
+                None => self.dialog = Dialog::SaveAs,
+            },
+            Action::SaveAs => self.dialog = Dialog::SaveAs,
+            Action::ExportSvg => self.effects.push(Effect::Export("svg")),
+            Action::ExportPdf => self.effects.push(Effect::Export("pdf")),
+            Action::ExportPng => self.effects.push(Effect::Export("png")),
+            Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
+            Action::Cancel if self.busy().is_some() => {
+                self.worker.cancel();
+                self.recall = None;
+                self.tell("Cancelled.");
+            }
+            Action::Cancel => {
+                self.notices.pop();
+            }
+            Action::Quit => self.effects.push(Effect::Quit),
+            _ => {}
+        }
+    }
+
+    /// Actions of the menu Edit.
+    fn edit(&mut self, action: Action) -> bool {
+        match action {
+            Action::Undo | Action::Redo => self.undo(action == Action::Undo),
+            Action::SelectBack => {
+                if let Some(subject) = self.selected_before.pop() {
+                    self.selected_after.push(self.selection);
+                    self.selection = subject;
+                }
+            }
+            Action::SelectForward => {
+                if let Some(subject) = self.selected_after.pop() {
+                    self.selected_before.push(self.selection);
+                    self.selection = subject;
+                }
+            }
+            Action::SelectNone => self.select(Subject::None),
+            Action::SelectCurrent => self.select(self.current_subject()),
+            Action::SelectEye => self.select(Subject::Eye),
+            Action::SelectParent => {
+                let Some(stage) = self.staged() else { return true };
+                let above = match self.selection {
+                    Subject::Node(node) => stage.parent(node),
+                    Subject::Prim(prim) => stage.leaf_of(prim),
+                    _ => None,
+                };
+                match above {
+                    Some(node) => self.select(Subject::Node(node)),
+                    None => self.tell("There is no node above it."),
+                }
+            }
+            Action::Why => {
+                let Some(stage) = self.staged() else { return true };
+                let step = super::why::why(stage, self.selection, usize::MAX).into_iter().find_map(|b| b.step);
+                match step {
+                    Some(step) => self.go_to(step),
+                    None => self.tell("Nothing was decided about it in this film."),
+                }
+            }
+            Action::CopyEye => {
+                let text = self.staged().map(|s| s.eye_text()).unwrap_or_default();
+                self.effects.push(Effect::Copy(text));
+                self.tell("The Eye was copied in the words of the command line.");
+            }
+            Action::EyeHome => self.change(0, |s| {
+                if let Some(stage) = &mut s.stage {
+                    let (path, frame) = stage.get().place();
+                    stage.go(path, frame);
+                }
+            }),
+            Action::EyeHere => {
+                let camera = self.observer;
+                self.change(0, |s| {
+                    if let Some(Any::Solid(stage)) = &mut s.stage {
+                        let look = camera.view(1, 1).eye;
+                        (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) = (look.position, look.target, look.up);
+                    }
+                });
+            }
+            Action::LockEye => self.is_eye_locked = !self.is_eye_locked,
+            Action::ResetSettings => self.change(0, |s| s.settings.0.clear()),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Actions of the menus View and Help.
+    fn show(&mut self, action: Action) -> bool {
+        let shown = &mut self.shown;
+        match action {
+            Action::Find => self.effects.push(Effect::FocusFilter),
+            Action::FoldAll | Action::UnfoldAll => {
+                if let Some(stage) = &self.stage {
+                    self.outline.fold_all(stage.get(), action == Action::FoldAll);
+                }
+            }
+            Action::FrameSelection => self.effects.push(Effect::Frame),
+            Action::Swap => self.is_swapped = !self.is_swapped,
+            Action::ShowPrims => shown.prims = !shown.prims,
+            Action::ShowNodes => shown.nodes = !shown.nodes,
+            Action::ShowEye => shown.eye = !shown.eye,
+            Action::ShowEvidence => shown.evidence = !shown.evidence,
+            Action::SurfaceSolid => shown.surface = Surface::Solid,
+            Action::SurfaceWire => shown.surface = Surface::Wire,
+            Action::SurfaceClear => shown.surface = Surface::Translucent,
+            Action::CycleSurface => shown.surface = Surface::ALL[(shown.surface as usize + 1) % 3],
+            Action::ThemeLight => shown.theme = Theme::Light,
+            Action::ThemeDark => shown.theme = Theme::Dark,
+            Action::ThemePrint => shown.theme = Theme::Print,
+            Action::LayoutDebug => self.set_layout(Layout::Debug),
+            Action::LayoutLecture => self.set_layout(Layout::Lecture),
+            Action::LayoutFigure => self.set_layout(Layout::Figure),
+            Action::ResetLayout => self.effects.push(Effect::ResetLayout),
+            Action::ScaleUp => shown.scale = (shown.scale * 1.1).min(4.0),
+            Action::ScaleDown => shown.scale = (shown.scale / 1.1).max(0.5),
+            Action::ScaleReset => shown.scale = 1.0,
+            Action::FullScreen => self.effects.push(Effect::FullScreen),
+            Action::GoTo => self.dialog = Dialog::GoTo,
+            Action::Palette => self.dialog = Dialog::Palette,
+            Action::Keys => self.dialog = Dialog::Keys,
+            Action::Report => self.dialog = Dialog::Report,
+            Action::About => self.dialog = Dialog::About,
+            _ => return false,
+        }
+        true
+    }
+
+    fn set_layout(&mut self, layout: Layout) {
+        self.shown.layout = layout;
+        self.effects.push(Effect::ResetLayout);
+    }
+
+    fn select(&mut self, subject: Subject) {
+        if subject == self.selection {
+            return;
+        }
+        self.selected_before.push(self.selection);
+        if self.selected_before.len() > SELECTIONS {
+            self.selected_before.remove(0);
+        }
+        self.selected_after.clear();
+        self.selection = subject;
+    }
+
+    fn wanted(&self) -> Option<Wanted> {
+        let stage = self.stage.as_ref()?;
+        Some(Wanted { method: self.method.clone(), settings: self.settings.clone(), place: stage.get().place(), view: stage.view() })
+    }
+
+    /// Changes something that culling depends on: undoable, and the film is recorded again.
+    fn change(&mut self, gesture: u64, change: impl FnOnce(&mut Self)) {
+        let before = self.wanted();
+        change(self);
+        if before != self.wanted()
+            && let Some(before) = before
+        {
+            self.history.push(before, gesture);
+            self.record();
+        }
+    }
+
+    fn undo(&mut self, back: bool) {
+        let Some(now) = self.wanted() else { return };
+        let Some(wanted) = (if back { self.history.undo(now) } else { self.history.redo(now) }) else { return };
+        if let Some(stage) = &mut self.stage {
+            stage.go(wanted.place.0, wanted.place.1);
+            stage.set_view(&wanted.view);
+        }
+        (self.method, self.settings) = (wanted.method, wanted.settings);
+        self.record();
+    }
+
+    pub(super) fn go_frame(&mut self, path: usize, frame: usize) {
+        self.change(0, |s| {
+            if let Some(stage) = &mut s.stage {
+                stage.go(path, frame);
+            }
+        });
+    }
+
+    /// Opens a scene or a session file.
+    pub(super) fn open(&mut self, source: &str, views: Option<String>) {
+        self.dialog = Dialog::None;
+        if Session::is_named(source) {
+            match Session::read(source) {
+                Ok(session) => {
+                    self.session_path = Some(source.to_owned());
+                    self.restore(session);
+                }
+                Err(error) => self.fail(error.to_string()),
+            }
+            return;
+        }
+        self.recall = None;
+        self.load(source, views);
+    }
+
+    pub(super) fn load(&mut self, source: &str, views: Option<String>) {
+        self.is_playing = false;
+        self.worker.ask(&format!("Opening {source}"), Job::Load { source: source.to_owned(), views });
+    }
+
+    /// Records the film of what is wanted now.
+    pub(super) fn record(&mut self) {
+        let Some(stage) = &self.stage else { return };
+        let (method, settings, cap) = (self.method.clone(), self.settings.clone(), self.film_cap);
+        macro_rules! request {
+            ($s:expr, $any:path) => {
+                $any(Request {
+                    scene: $s.scene.clone(),
+                    scene_serial: $s.serial,
+                    method,
+                    settings,
+                    before: $s.views()[..$s.frame].to_vec(),
+                    view: $s.view,
+                    cap,
+                })
+            };
+        }
+        let request = match stage {
+            Any::Flat(s) => request!(s, Any::Flat),
+            Any::Solid(s) => request!(s, Any::Solid),
+        };
+        self.worker.ask("Culling", Job::Record(request));
+    }
+
+    /// Takes in what the worker has finished. Says whether anything changed.
+    pub fn poll(&mut self) -> bool {
+        self.take(false)
+    }
+
+    /// Waits until nothing is being waited for. For tests and for commands that are run one after the other.
+    pub fn block_until_idle(&mut self) {
+        while self.busy().is_some() {
+            self.take(true);
+        }
+        self.take(false);
+    }
+
+    fn take(&mut self, wait: bool) -> bool {
+        let Some(done) = self.worker.answer(wait) else { return false };
+        match done {
+            Done::Loaded(scene, path) => self.put_on_stage(scene, path),
+            Done::LoadFailed(text) => {
+                self.recall = None;
+                self.fail(text);
+            }
+            Done::Recorded(recorded) => self.take_film(recorded),
+            Done::RecordFailed(text) => self.fail(text),
+            Done::Cancelled => {}
+        }
+        self.refresh();
+        true
+    }
+
+    fn put_on_stage(&mut self, scene: AnyScene, path: Option<AnyPath>) {
+        self.serial += 1;
+        let stage: AnyStage = match (scene, path) {
+            (AnyScene::Flat(s), Some(AnyPath::Flat(p))) => Any::Flat(Stage::new(s, Some(p), self.serial)),
+            (AnyScene::Flat(s), _) => Any::Flat(Stage::new(s, None, self.serial)),
+            (AnyScene::Solid(s), Some(AnyPath::Solid(p))) => Any::Solid(Stage::new(s, Some(p), self.serial)),
+            (AnyScene::Solid(s), _) => Any::Solid(Stage::new(s, None, self.serial)),
+        };
+        let name = stage.get().scene_name().to_owned();
+        let dropped = stage.get().report().dropped_total();
+        if !stage.get().methods().iter().any(|m| m.key == self.method) {
+            self.method = "frustum".into();
+            self.settings.0.clear();
+        }
+        self.stage = Some(stage);
+        (self.step, self.selection) = (0, Subject::None);
+        self.selected_before.clear();
+        self.selected_after.clear();
+        self.bookmarks.clear();
+        self.breakpoints.clear();
+        self.history.clear();
+        self.notices.retain(|n| !n.is_error);
+        self.filter.clear();
+        self.effects.push(Effect::Frame);
+        if dropped > 0 {
+            self.tell(format!("{name}: {dropped} primitives were dropped; see the loading report."));
+        }
+        if let Some(session) = self.recall.clone() {
+            self.recall_inputs(&session);
+        }
+        self.record();
+    }
+
+    fn take_film(&mut self, recorded: super::any::AnyRecorded) {
+        // A step at the end stays at the end; any other keeps its number.
+        let was_at_end = !self.is_empty() && self.step == self.len();
+        match (&mut self.stage, recorded) {
+            (Some(Any::Flat(stage)), Any::Flat(film)) => stage.recorded = Some(film),
+            (Some(Any::Solid(stage)), Any::Solid(film)) => stage.recorded = Some(film),
+            _ => return,
+        }
+        let nodes = self.staged().map_or(0, |s| s.node_count());
+        if matches!(self.selection, Subject::Node(n) if n.at() >= nodes) {
+            self.selection = Subject::None;
+        }
+        if let Some(session) = self.recall.take() {
+            self.recall_rest(&session);
+        }
+        self.step = if was_at_end { self.len() } else { self.step.min(self.len()) };
+        self.run_commands();
+    }
+
+    /// Shared so that caches may hold on to it.
+    pub fn pseudocode(&self) -> Arc<[crate::culling::CodeLine]> {
+        self.staged().and_then(|s| s.card()).map_or_else(|| Arc::from(vec![]), |c| Arc::from(c.code.to_vec()))
+    }
+}

@@ -1,0 +1,184 @@
+//! Which events are listed: `kind:node verdict:outside under:12 depth>3 -line`.
+//!
+//! All words must hold; a word after `-` must not hold, `+` before a word changes nothing.
+//! Words without a colon are looked for in the kind, the verdict and the number of the event.
+
+use std::fmt;
+
+use super::stage::Staged;
+use crate::culling::{Event, Value, Verdict};
+use crate::drawing::Subject;
+use crate::geometry::{NodeId, PrimId};
+use crate::trace::subject;
+
+/// A parsed filter.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Filter {
+    terms: Vec<(bool, Term)>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Term {
+    Kind(String),
+    Verdict(String),
+    Node(u32),
+    Prim(u32),
+    UnderNode(u32),
+    UnderObject(String),
+    Line(String),
+    Deeper(usize),
+    Shallower(usize),
+    Word(String),
+}
+
+/// Why a filter makes no sense.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FilterError(String);
+
+impl fmt::Display for FilterError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl Filter {
+    /// Reads a filter.
+    ///
+    /// # Errors
+    /// Names the word that makes no sense and what would.
+    pub fn parse(text: &str) -> Result<Self, FilterError> {
+        let mut filter = Self::default();
+        for word in text.split_whitespace() {
+            let (wanted, word) = match word.strip_prefix('-') {
+                Some(rest) => (false, rest),
+                None => (true, word.strip_prefix('+').unwrap_or(word)),
+            };
+            if !word.is_empty() {
+                filter.terms.push((wanted, Term::parse(word)?));
+            }
+        }
+        Ok(filter)
+    }
+    /// Whether everything passes.
+    pub fn is_empty(&self) -> bool {
+        self.terms.is_empty()
+    }
+    /// The filter with what depends on the film looked up; ask it once a film.
+    pub fn on<'a>(&'a self, stage: &'a dyn Staged) -> Applied<'a> {
+        let ranges = self.terms.iter().map(|(_, term)| term.range(stage)).collect();
+        Applied { filter: self, stage, ranges }
+    }
+}
+
+impl Term {
+    fn parse(word: &str) -> Result<Self, FilterError> {
+        let number = |text: &str| text.parse().map_err(|_| FilterError(format!("`{word}`: expected a number")));
+        if let Some(text) = word.strip_prefix("depth>") {
+            return Ok(Self::Deeper(number(text)? as usize));
+        }
+        if let Some(text) = word.strip_prefix("depth<") {
+            return Ok(Self::Shallower(number(text)? as usize));
+        }
+        let Some((key, value)) = word.split_once(':') else { return Ok(Self::Word(word.to_lowercase())) };
+        match key {
+            "kind" => Ok(Self::Kind(value.to_lowercase())),
+            "verdict" => Ok(Self::Verdict(value.to_lowercase())),
+            "node" => number(value).map(Self::Node),
+            "prim" | "triangle" | "segment" => number(value).map(Self::Prim),
+            "under" => Ok(value.parse().map_or_else(|_| Self::UnderObject(value.to_lowercase()), Self::UnderNode)),
+            "line" => Ok(Self::Line(value.to_lowercase())),
+            _ => Err(FilterError(format!("`{key}:` is not known; there are kind: verdict: node: prim: under: line: depth> depth<"))),
+        }
+    }
+    /// Events between entering and leaving a node.
+    fn range(&self, stage: &dyn Staged) -> Option<(usize, usize)> {
+        let Self::UnderNode(node) = self else { return None };
+        let entered = (*node < stage.node_count() as u32).then(|| stage.node_entered(NodeId(*node))).flatten()? - 1;
+        Some((entered, stage.moves()?.over(stage.events(), entered, crate::trace::Detail::Full)))
+    }
+}
+
+/// A filter bound to a film.
+pub struct Applied<'a> {
+    filter: &'a Filter,
+    stage: &'a dyn Staged,
+    ranges: Vec<Option<(usize, usize)>>,
+}
+
+impl Applied<'_> {
+    /// Whether event `at` passes.
+    pub fn passes(&self, at: usize) -> bool {
+        let event = self.stage.events()[at];
+        self.filter.terms.iter().zip(&self.ranges).all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
+    }
+    fn holds(&self, term: &Term, range: Option<(usize, usize)>, at: usize, event: Event) -> bool {
+        let depth = || self.stage.moves().map_or(0, |m| m.depth(at));
+        match term {
+            Term::Kind(kind) => kind_name(self.stage, at, event).to_lowercase().contains(kind),
+            Term::Verdict(verdict) => verdict_of(event).is_some_and(|v| v.name().starts_with(verdict.as_str())),
+            Term::Node(n) => subject_at(self.stage, at) == Subject::Node(NodeId(*n)),
+            Term::Prim(p) => subject_at(self.stage, at) == Subject::Prim(PrimId(*p)),
+            Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
+            Term::UnderObject(name) => match subject_at(self.stage, at) {
+                Subject::Prim(p) => self.stage.object_name(self.stage.object_of(p)).to_lowercase().contains(name),
+                _ => false,
+            },
+            Term::Line(text) => match (event, self.stage.card()) {
+                (Event::Line(i), Some(card)) => card.code[i as usize].label.to_lowercase().contains(text),
+                _ => false,
+            },
+            Term::Deeper(d) => depth() > *d,
+            Term::Shallower(d) => depth() < *d,
+            Term::Word(word) => {
+                kind_name(self.stage, at, event).to_lowercase().contains(word)
+                    || verdict_of(event).is_some_and(|v| v.name().contains(word.as_str()))
+                    || word.parse().is_ok_and(|id: u32| match subject_at(self.stage, at) {
+                        Subject::Node(n) => n.0 == id,
+                        Subject::Prim(p) => p.0 == id,
+                        _ => false,
+                    })
+            }
+        }
+    }
+}
+
+/// Verdict of an event, if it is a decision.
+pub fn verdict_of(event: Event) -> Option<Verdict> {
+    match event {
+        Event::DecidedNode(_, v) | Event::DecidedPrim(_, v) => Some(v),
+        _ => None,
+    }
+}
+
+/// Kind of an event, without making its operands where that can be avoided.
+pub fn kind_name(stage: &dyn Staged, at: usize, event: Event) -> &'static str {
+    match event {
+        Event::FrameBegan => "FrameBegan",
+        Event::Entered(_) => "NodeEntered",
+        Event::Left(_) => "NodeLeft",
+        Event::Queued(..) => "NodeQueued",
+        Event::DecidedNode(..) => "NodeDecided",
+        Event::DecidedPrim(..) => "PrimDecided",
+        Event::Line(_) => "LineReached",
+        Event::Noted(_) => stage.fields(at).0,
+    }
+}
+
+/// What an event is about; of evidence, what it was gathered about.
+pub fn subject_at(stage: &dyn Staged, at: usize) -> Subject {
+    let Some(event) = stage.events().get(at) else { return Subject::None };
+    match (event, subject(event)) {
+        (_, (Some(node), _)) => Subject::Node(node),
+        (_, (_, Some(prim))) => Subject::Prim(prim),
+        (Event::Noted(_), _) => {
+            let id = |v: &Value| if let Value::Integer(i) = v { Some(*i as u32) } else { None };
+            let found = stage.fields(at).1.iter().find_map(|f| match f.name {
+                "node" => id(&f.value).map(|i| Subject::Node(NodeId(i))),
+                "prim" => id(&f.value).map(|i| Subject::Prim(PrimId(i))),
+                _ => None,
+            });
+            found.unwrap_or_default()
+        }
+        _ => Subject::None,
+    }
+}

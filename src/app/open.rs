@@ -1,0 +1,109 @@
+//! Opening a scene with its views, and the examples that are one click away.
+
+use std::path::{Path, PathBuf};
+
+use crate::scene::{self, AnyPath, AnyScene, LoadOptions, Progress, SceneError};
+
+/// A scene that the start screen offers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Example {
+    /// What it is called.
+    pub title: String,
+    /// What can be seen in it.
+    pub summary: String,
+    /// What to load.
+    pub source: String,
+}
+
+/// Loads a scene and, if named, a view file. The error is one line.
+pub(super) fn load(source: &str, views: Option<&str>, progress: &dyn Progress) -> Result<(AnyScene, Option<AnyPath>), String> {
+    let found = scene::load(source, &LoadOptions::default(), progress).or_else(|error| inside(source, error));
+    let scene = found.map_err(|e| e.to_string())?;
+    let path = views.map(|v| scene::read_views_for(v, &scene)).transpose().map_err(|e| e.to_string())?;
+    Ok((scene, path))
+}
+
+/// The scene that travels inside the program, where the file of its name is not there.
+fn inside(source: &str, error: SceneError) -> Result<AnyScene, SceneError> {
+    if Path::new(source).exists() {
+        return Err(error);
+    }
+    let name = Path::new(source).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = name.trim_end_matches(".json").trim_end_matches(".flat");
+    scene::example(name).map(AnyScene::Flat).map_err(|_| error)
+}
+
+/// Folders of examples, looked for in the working folder and above the program.
+const FOLDERS: [&str; 2] = ["scenes2d", "scenes3d"];
+/// How far above the program folders are looked for: `target/release/cullscope` lies three deep.
+const ABOVE: usize = 4;
+/// Longest description that is read, bytes.
+const DESCRIPTION_BYTES: u64 = 4 << 20;
+
+/// What the start screen offers: the scenes in the examples' folders, then the generators.
+pub fn examples() -> Vec<Example> {
+    let mut list: Vec<Example> = FOLDERS.iter().flat_map(|f| folder(f)).collect();
+    if list.is_empty() {
+        list.push(Example {
+            title: "Freedoom E1M1".into(),
+            summary: "A game level in flatland, seen from above.".into(),
+            source: "scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json".into(),
+        });
+    }
+    list.extend(scene::generators().iter().map(|g| Example {
+        title: title(g.name),
+        summary: g.meaning.to_owned(),
+        source: format!("generate:{}", g.name),
+    }));
+    list
+}
+
+/// Scenes in a folder of examples and one level below.
+fn folder(name: &str) -> Vec<Example> {
+    let here = [PathBuf::from(name)];
+    let program = std::env::current_exe().unwrap_or_default();
+    let above = program.ancestors().skip(1).take(ABOVE).map(|p| p.join(name)).collect::<Vec<_>>();
+    let Some(root) = here.into_iter().chain(above).find(|p| p.is_dir()) else { return vec![] };
+    let inner = entries(&root).into_iter().filter(|p| p.is_dir()).flat_map(|p| entries(&p));
+    let mut files: Vec<PathBuf> = entries(&root).into_iter().chain(inner).filter(|p| is_scene(p)).collect();
+    files.sort();
+    files.iter().map(|p| example(p)).collect()
+}
+
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    std::fs::read_dir(folder).map(|d| d.flatten().map(|e| e.path()).collect()).unwrap_or_default()
+}
+
+fn is_scene(path: &Path) -> bool {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_model = [".obj", ".gltf", ".glb"].iter().any(|e| name.ends_with(e));
+    is_model || (name.ends_with(".json") && !name.ends_with(".views.json") && !name.ends_with(".session.json"))
+}
+
+fn example(path: &Path) -> Example {
+    let source = path.to_string_lossy().into_owned();
+    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let stem = stem.trim_end_matches(".flat").to_owned();
+    let is_flat = source.ends_with(".json");
+    let space = if is_flat { "Flatland" } else { "Space" };
+    let (mut name, mut summary) = (title(&stem), format!("{space}."));
+    if is_flat && std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() < DESCRIPTION_BYTES) {
+        let text = std::fs::read_to_string(path).unwrap_or_default();
+        let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        let word = |key: &str| said.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
+        name = word("title").unwrap_or(name);
+        summary = word("teaches").unwrap_or(summary);
+    } else if let Some(line) = path.parent().and_then(|p| std::fs::read_to_string(p.join("SOURCE.txt")).ok()) {
+        let told = line.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with("Name:")).unwrap_or_default();
+        let told = told.split_once(": ").map_or(told, |(_, rest)| rest);
+        summary = format!("{space}. {}", told.split([',', ';', '(']).next().unwrap_or_default().trim());
+    }
+    Example { title: name, summary, source }
+}
+
+/// `freedoom_e1m1` as `Freedoom e1m1`.
+fn title(stem: &str) -> String {
+    let words = stem.replace(['_', '-'], " ");
+    let mut chars = words.chars();
+    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}

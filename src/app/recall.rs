@@ -1,0 +1,195 @@
+//! Starting with what was asked for or was open last, and saving it.
+
+use super::any::ViewRecord;
+use super::command::{Action, Command};
+use super::session::{Picked, Session, Shown as Kept, VERSION};
+use super::start::Start;
+use super::state::{Detail, Layout, Shown, State, Surface, Theme};
+use crate::culling::Settings;
+use crate::drawing::Subject;
+use crate::geometry::{NodeId, ObjectId, PrimId};
+
+impl State {
+    /// What is open, as a session.
+    pub fn session(&self) -> Session {
+        let stage = self.staged();
+        let moved = stage.is_some_and(|s| s.is_eye_moved());
+        let s = &self.shown;
+        Session {
+            cullscope_session: VERSION,
+            scene: stage.map_or(String::new(), |s| s.source().to_owned()),
+            scene_hash: stage.map_or(String::new(), |s| s.hash_hex()),
+            method: self.method.clone(),
+            settings: self.settings.0.clone(),
+            place: stage.map_or((0, 0), |s| s.place()),
+            eye: self.stage.as_ref().filter(|_| moved).map(|s| ViewRecord::from(&s.view())),
+            step: self.step,
+            coarse: self.detail == Detail::Coarse,
+            selected: picked(self.selection),
+            observer: Some(self.observer),
+            bookmarks: self.bookmarks.clone(),
+            filter: self.filter.clone(),
+            shown: Kept {
+                prims: s.prims,
+                nodes: s.nodes,
+                eye: s.eye,
+                evidence: s.evidence,
+                surface: s.surface.name().into(),
+                theme: s.theme.name().into(),
+                layout: s.layout.name().into(),
+                scale: s.scale,
+            },
+        }
+    }
+
+    pub(super) fn save(&mut self, path: &str) {
+        match self.session().write(path) {
+            Ok(()) => {
+                self.session_path = Some(path.to_owned());
+                self.dialog = super::state::Dialog::None;
+                self.tell(format!("Saved as {path}."));
+            }
+            Err(error) => self.fail(error.to_string()),
+        }
+    }
+
+    /// Opens what a session says.
+    pub fn restore(&mut self, session: Session) {
+        self.recall_look(&session);
+        if session.scene.is_empty() {
+            return;
+        }
+        let source = session.scene.clone();
+        self.recall = Some(session);
+        self.load(&source, None);
+    }
+
+    fn recall_look(&mut self, session: &Session) {
+        let kept = &session.shown;
+        let named = Shown::default();
+        self.shown = Shown {
+            prims: kept.prims,
+            nodes: kept.nodes,
+            eye: kept.eye,
+            evidence: kept.evidence,
+            surface: Surface::ALL.into_iter().find(|s| s.name() == kept.surface).unwrap_or(named.surface),
+            theme: Theme::ALL.into_iter().find(|t| t.name() == kept.theme).unwrap_or(named.theme),
+            layout: Layout::ALL.into_iter().find(|l| l.name() == kept.layout).unwrap_or(named.layout),
+            scale: if kept.scale.is_finite() { kept.scale.clamp(0.5, 4.0) } else { 1.0 },
+        };
+    }
+
+    /// What culling depends on, before the film is recorded.
+    pub(super) fn recall_inputs(&mut self, session: &Session) {
+        let Some(stage) = &mut self.stage else { return };
+        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().hash_hex() {
+            self.notices.push(super::state::Notice {
+                is_error: false,
+                text: format!("{} is not the scene that was saved: its content has changed.", session.scene),
+            });
+        }
+        let methods = stage.get().methods();
+        if methods.iter().any(|m| m.key == session.method) {
+            self.method = session.method.clone();
+            self.settings = Settings(session.settings.clone());
+        }
+        stage.go(session.place.0, session.place.1);
+        if let Some(view) = session.eye.as_ref().and_then(|v| v.any()) {
+            stage.set_view(&view);
+        }
+    }
+
+    /// What refers to the film, once it is there.
+    pub(super) fn recall_rest(&mut self, session: &Session) {
+        let Some(stage) = self.staged() else { return };
+        self.selection = match session.selected {
+            Picked::Prim(p) if stage.has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
+            Picked::Node(n) if (n as usize) < stage.node_count() => Subject::Node(NodeId(n)),
+            Picked::Object(o) if (o as usize) < stage.object_count() => Subject::Object(ObjectId(o)),
+            Picked::Eye => Subject::Eye,
+            _ => Subject::None,
+        };
+        self.detail = if session.coarse { Detail::Coarse } else { Detail::Full };
+        self.filter = session.filter.clone();
+        let end = self.len();
+        self.bookmarks = session.bookmarks.iter().filter(|b| b.step <= end && b.observer.is_sound()).cloned().collect();
+        self.bookmarks.sort_by_key(|b| b.step);
+        if let Some(observer) = session.observer.filter(|o| o.is_sound()) {
+            self.observer = observer;
+            self.effects.retain(|e| *e != super::state::Effect::Frame);
+        }
+        self.step = session.step.min(end);
+    }
+
+    /// Starts with what was asked for, or with what was open last, or with nothing.
+    pub fn start(&mut self, start: &Start, last: Option<Session>) {
+        let last = last.filter(|_| !start.fresh);
+        if let Some(key) = &start.method {
+            self.method = key.clone();
+        }
+        self.settings = start.settings.clone();
+        self.commands = start.commands.clone();
+        match (&start.session, &start.scene, last) {
+            (Some(path), _, _) => self.open(path, None),
+            (None, Some(source), last) => {
+                if let Some(last) = &last {
+                    self.recall_look(last);
+                }
+                self.open(source, start.view.clone());
+            }
+            (None, None, Some(last)) => self.restore(last),
+            (None, None, None) => {}
+        }
+        if self.stage.is_none() && self.busy().is_none() {
+            self.run_commands();
+        }
+    }
+
+    /// Runs the commands that the explorer was started with, up to one that makes it wait.
+    pub(super) fn run_commands(&mut self) {
+        while !self.commands.is_empty() && self.busy().is_none() {
+            let text = self.commands.remove(0);
+            match spoken_command(&text) {
+                Some(command) => self.apply(command),
+                None => self.fail(format!("`{text}` is not a command")),
+            }
+        }
+    }
+}
+
+/// A command by its name, `step` or `go-to:12`.
+pub(super) fn spoken_command(text: &str) -> Option<Command> {
+    if let Some(action) = Action::named(text) {
+        return Some(action.into());
+    }
+    let (word, value) = text.split_once(':')?;
+    let number = || value.parse::<u32>().ok();
+    Some(match word {
+        "go-to" => Command::GoTo(number()? as usize),
+        "frame" => Command::Frame(0, number()? as usize),
+        "method" => Command::Method(value.to_owned()),
+        "filter" => Command::Filter(value.to_owned()),
+        "scale" => Command::Scale(value.parse().ok()?),
+        "set" => {
+            let (name, value) = value.split_once('=')?;
+            Command::Set(name.to_owned(), value.to_owned(), 0)
+        }
+        "select" => match value.split_once(':')? {
+            ("node", n) => Command::Select(Subject::Node(NodeId(n.parse().ok()?))),
+            ("prim", n) => Command::Select(Subject::Prim(PrimId(n.parse().ok()?))),
+            ("object", n) => Command::Select(Subject::Object(ObjectId(n.parse().ok()?))),
+            _ => return None,
+        },
+        _ => return None,
+    })
+}
+
+fn picked(subject: Subject) -> Picked {
+    match subject {
+        Subject::Prim(p) => Picked::Prim(p.0),
+        Subject::Node(n) => Picked::Node(n.0),
+        Subject::Object(o) => Picked::Object(o.0),
+        Subject::Eye => Picked::Eye,
+        _ => Picked::None,
+    }
+}

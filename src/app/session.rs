@@ -1,0 +1,203 @@
+//! The session file: the recipe of what is open, not the film. JSON with a version.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+use super::any::ViewRecord;
+use super::camera::ObserverCamera;
+
+/// Version that this program writes; it reads no later one.
+pub const VERSION: u32 = 1;
+/// Longest session file, bytes.
+pub const LIMIT_BYTES: u64 = 16 << 20;
+
+/// A step to come back to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bookmark {
+    /// The step.
+    pub step: usize,
+    /// What the person wrote.
+    #[serde(default)]
+    pub note: String,
+    /// Where the person looked from.
+    #[serde(default)]
+    pub observer: ObserverCamera,
+}
+
+/// What is selected, in a file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Picked {
+    /// Nothing.
+    #[default]
+    None,
+    /// A primitive.
+    Prim(u32),
+    /// A node.
+    Node(u32),
+    /// An object.
+    Object(u32),
+    /// The Eye.
+    Eye,
+}
+
+/// What is shown.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Shown {
+    /// Primitives.
+    pub prims: bool,
+    /// Node boxes.
+    pub nodes: bool,
+    /// The Eye.
+    pub eye: bool,
+    /// Evidence.
+    pub evidence: bool,
+    /// Name of the surface style.
+    pub surface: String,
+    /// Name of the theme.
+    pub theme: String,
+    /// Name of the layout.
+    pub layout: String,
+    /// Size of everything.
+    pub scale: f32,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        let word = String::new;
+        Self { prims: true, nodes: true, eye: true, evidence: true, surface: word(), theme: word(), layout: word(), scale: 1.0 }
+    }
+}
+
+/// A session.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Session {
+    /// Format version.
+    pub cullscope_session: u32,
+    /// What to load.
+    pub scene: String,
+    /// Hash of the scene then.
+    #[serde(default)]
+    pub scene_hash: String,
+    /// Key of the method.
+    #[serde(default)]
+    pub method: String,
+    /// Parameters that differ from their defaults.
+    #[serde(default)]
+    pub settings: BTreeMap<String, String>,
+    /// View path and view in it.
+    #[serde(default)]
+    pub place: (usize, usize),
+    /// The Eye, if it was moved away from its path.
+    #[serde(default)]
+    pub eye: Option<ViewRecord>,
+    /// The step.
+    #[serde(default)]
+    pub step: usize,
+    /// Whether steps are coarse.
+    #[serde(default)]
+    pub coarse: bool,
+    /// What is selected.
+    #[serde(default)]
+    pub selected: Picked,
+    /// Where the person looks from.
+    #[serde(default)]
+    pub observer: Option<ObserverCamera>,
+    /// Bookmarks with notes.
+    #[serde(default)]
+    pub bookmarks: Vec<Bookmark>,
+    /// Filter of the event tree.
+    #[serde(default)]
+    pub filter: String,
+    /// What is shown.
+    #[serde(default)]
+    pub shown: Shown,
+}
+
+/// Why a session was refused. Displays as one line.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The file could not be read or written.
+    #[error("{path}: {why}")]
+    Io {
+        /// The path as given.
+        path: String,
+        /// The system's reason.
+        why: std::io::Error,
+    },
+    /// The text is not a session.
+    #[error("{path}: not a session file: {why}")]
+    Syntax {
+        /// The path as given.
+        path: String,
+        /// What is wrong, with line and column.
+        why: serde_json::Error,
+    },
+    /// The file is longer than any session.
+    #[error("{path}: too long for a session file")]
+    TooLong {
+        /// The path as given.
+        path: String,
+    },
+    /// The session was written by a later program.
+    #[error("{path}: a session of version {found}; this program reads up to version {VERSION}")]
+    TooNew {
+        /// The path as given.
+        path: String,
+        /// Its version.
+        found: u32,
+    },
+}
+
+/// Writes a file beside its place, then puts it there, so that a half-written one never stands.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_file(path: &str, bytes: &[u8]) -> Result<(), SessionError> {
+    let io = |why| SessionError::Io { path: path.into(), why };
+    let beside = format!("{path}.part");
+    std::fs::write(&beside, bytes).map_err(io)?;
+    std::fs::rename(&beside, path).map_err(io)
+}
+
+impl Session {
+    /// Reads a session out of text; `path` is named in errors.
+    ///
+    /// # Errors
+    /// If it is none, or too new.
+    pub fn parse(text: &str, path: &str) -> Result<Self, SessionError> {
+        let session: Self = serde_json::from_str(text).map_err(|why| SessionError::Syntax { path: path.into(), why })?;
+        if session.cullscope_session > VERSION {
+            return Err(SessionError::TooNew { path: path.into(), found: session.cullscope_session });
+        }
+        Ok(session)
+    }
+    /// The text of the file.
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+    /// Reads a session file.
+    ///
+    /// # Errors
+    /// If it cannot be read, is none, or is too new.
+    pub fn read(path: &str) -> Result<Self, SessionError> {
+        let io = |why| SessionError::Io { path: path.into(), why };
+        let meta = std::fs::metadata(path).map_err(io)?;
+        if !meta.is_file() || meta.len() > LIMIT_BYTES {
+            return Err(SessionError::TooLong { path: path.into() });
+        }
+        Self::parse(&std::fs::read_to_string(path).map_err(io)?, path)
+    }
+    /// Writes a session file.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, path: &str) -> Result<(), SessionError> {
+        write_file(path, self.text().as_bytes())
+    }
+    /// Whether a source is a session file by its name.
+    pub fn is_named(source: &str) -> bool {
+        source.ends_with(".session.json") || source.ends_with(".cullscope")
+    }
+}

@@ -1,0 +1,333 @@
+//! Everything that the explorer knows.
+
+use std::collections::BTreeSet;
+
+use super::any::AnyStage;
+use super::camera::ObserverCamera;
+use super::outline::Outline;
+use super::session::{Bookmark, Session};
+use super::stage::Staged;
+use super::undo::History;
+use super::worker::{Busy, Worker};
+use crate::culling::{Settings, Verdict};
+use crate::drawing::Subject;
+use crate::geometry::NodeId;
+use crate::render::theme;
+
+pub use crate::trace::Detail;
+pub use theme::Theme;
+
+/// What is asked in front of everything else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dialog {
+    /// Nothing.
+    #[default]
+    None,
+    /// The command palette.
+    Palette,
+    /// The key sheet.
+    Keys,
+    /// The number of a step.
+    GoTo,
+    /// A scene to open.
+    Open,
+    /// A name to save under.
+    SaveAs,
+    /// What was noticed while loading.
+    Report,
+    /// The method and its paper.
+    About,
+}
+
+/// A set of panels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// All panels.
+    #[default]
+    Debug,
+    /// For a room: big type, few panels, a caption.
+    Lecture,
+    /// The picture alone.
+    Figure,
+}
+
+impl Layout {
+    /// Every layout, in the order of menus.
+    pub const ALL: [Layout; 3] = [Layout::Debug, Layout::Lecture, Layout::Figure];
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Debug => "debug",
+            Self::Lecture => "lecture",
+            Self::Figure => "figure",
+        }
+    }
+}
+
+/// How surfaces in space are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Surface {
+    /// Opaque.
+    #[default]
+    Solid,
+    /// Edges only.
+    Wire,
+    /// Seen through.
+    Translucent,
+}
+
+impl Surface {
+    /// Every style, in the order of menus.
+    pub const ALL: [Surface; 3] = [Surface::Solid, Surface::Wire, Surface::Translucent];
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::Wire => "wireframe",
+            Self::Translucent => "translucent",
+        }
+    }
+}
+
+/// What is shown and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shown {
+    /// Primitives.
+    pub prims: bool,
+    /// Node boxes.
+    pub nodes: bool,
+    /// The Eye and its frustum.
+    pub eye: bool,
+    /// Evidence of the current event.
+    pub evidence: bool,
+    /// How surfaces are drawn.
+    pub surface: Surface,
+    /// Colors.
+    pub theme: Theme,
+    /// Panels.
+    pub layout: Layout,
+    /// Size of everything.
+    pub scale: f32,
+}
+
+impl Default for Shown {
+    fn default() -> Self {
+        Self { prims: true, nodes: true, eye: true, evidence: true, surface: Surface::Solid, theme: Theme::Light, layout: Layout::Debug, scale: 1.0 }
+    }
+}
+
+/// Where a run stops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Breakpoint {
+    /// At a line of pseudocode.
+    Line(u8),
+    /// At a verdict.
+    Verdict(Verdict),
+    /// At everything about a node.
+    Node(NodeId),
+    /// At everything about a primitive.
+    Prim(crate::geometry::PrimId),
+}
+
+/// Something that the person should read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// Whether something failed.
+    pub is_error: bool,
+    /// One or two sentences.
+    pub text: String,
+}
+
+/// What the window has to do, as the state cannot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Show the system's dialog to choose a scene.
+    AskOpen,
+    /// Show the system's dialog to choose a name for the session.
+    AskSave,
+    /// Write the picture on screen as `svg`, `pdf` or `png`.
+    Export(&'static str),
+    /// Put text on the clipboard.
+    Copy(String),
+    /// Fill the screen, or not.
+    FullScreen,
+    /// Put every panel back.
+    ResetLayout,
+    /// Put the cursor into the filter.
+    FocusFilter,
+    /// Bring the selection, or everything, into the picture.
+    Frame,
+    /// Close.
+    Quit,
+}
+
+/// Everything that the explorer knows.
+pub struct State {
+    /// The scene on stage, if there is one.
+    pub stage: Option<AnyStage>,
+    /// Key of the wanted method.
+    pub method: String,
+    /// Wanted parameters that differ from their defaults.
+    pub settings: Settings,
+    /// The step: 0 is before the first event.
+    pub step: usize,
+    /// How fine steps are.
+    pub detail: Detail,
+    /// Whether the film plays.
+    pub is_playing: bool,
+    /// Events a second.
+    pub speed: f32,
+    /// What is selected.
+    pub selection: Subject,
+    pub(super) selected_before: Vec<Subject>,
+    pub(super) selected_after: Vec<Subject>,
+    /// Where runs stop.
+    pub breakpoints: BTreeSet<Breakpoint>,
+    /// Steps to come back to, by step.
+    pub bookmarks: Vec<Bookmark>,
+    /// Where the person looks from.
+    pub observer: ObserverCamera,
+    /// Whether the Eye view stands where the Observer view was.
+    pub is_swapped: bool,
+    /// Whether the Eye cannot be moved.
+    pub is_eye_locked: bool,
+    /// What is shown and how.
+    pub shown: Shown,
+    /// What is asked in front of everything else.
+    pub dialog: Dialog,
+    /// Filter of the event tree.
+    pub filter: String,
+    /// Rows of the event tree.
+    pub outline: Outline,
+    /// Messages, the newest last.
+    pub notices: Vec<Notice>,
+    /// What the window has to do.
+    pub effects: Vec<Effect>,
+    /// Whether something changed since the session was saved.
+    pub is_dirty: bool,
+    /// The session file.
+    pub session_path: Option<String>,
+    pub(super) history: History,
+    pub(super) worker: Worker,
+    pub(super) recall: Option<Session>,
+    pub(super) film_cap: usize,
+    pub(super) owed: f32,
+    pub(super) serial: u64,
+    pub(super) commands: Vec<String>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl State {
+    /// Nothing open; the method is the first one that does something.
+    pub fn new() -> Self {
+        Self {
+            stage: None,
+            method: "frustum".into(),
+            settings: Settings::default(),
+            step: 0,
+            detail: Detail::Full,
+            is_playing: false,
+            speed: 10.0,
+            selection: Subject::None,
+            selected_before: vec![],
+            selected_after: vec![],
+            breakpoints: BTreeSet::new(),
+            bookmarks: vec![],
+            observer: ObserverCamera::default(),
+            is_swapped: false,
+            is_eye_locked: false,
+            shown: Shown::default(),
+            dialog: Dialog::None,
+            filter: String::new(),
+            outline: Outline::default(),
+            notices: vec![],
+            effects: vec![],
+            is_dirty: false,
+            session_path: None,
+            history: History::default(),
+            worker: Worker::start(),
+            recall: None,
+            film_cap: super::worker::FILM_CAP_EVENTS,
+            owed: 0.0,
+            serial: 0,
+            commands: vec![],
+        }
+    }
+    /// The stage as panels see it that do not care about the space.
+    pub fn staged(&self) -> Option<&dyn Staged> {
+        self.stage.as_ref().map(|s| s.get())
+    }
+    /// Number of events of the film.
+    pub fn len(&self) -> usize {
+        self.staged().map_or(0, |s| s.events().len())
+    }
+    /// Whether there is nothing to step through.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+    /// The event that happened last, if one did.
+    pub fn current(&self) -> Option<usize> {
+        self.step.checked_sub(1).filter(|&i| i < self.len())
+    }
+    /// What is being waited for.
+    pub fn busy(&self) -> Option<Busy> {
+        self.worker.busy()
+    }
+    /// Called from the worker thread whenever there is something new to show.
+    pub fn set_wake(&self, wake: impl Fn() + Send + Sync + 'static) {
+        self.worker.set_wake(wake);
+    }
+    /// What happened last, in one sentence: the status line, the caption, and what screen readers say.
+    pub fn sentence(&self) -> String {
+        match (self.staged(), self.current()) {
+            (None, _) => "Nothing is open.".into(),
+            (Some(stage), _) if !stage.has_film() => format!("{} is open; nothing is recorded yet.", stage.scene_name()),
+            (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
+            (Some(stage), Some(at)) => stage.sentence(at),
+        }
+    }
+    /// The line of pseudocode at this step.
+    pub fn line(&self) -> Option<u8> {
+        let stage = self.staged()?;
+        stage.moves()?.line(stage.events(), self.step)
+    }
+    /// What the current event, or the evidence around it, is about.
+    pub fn current_subject(&self) -> Subject {
+        let Some(stage) = self.staged() else { return Subject::None };
+        let Some(at) = self.current() else { return Subject::None };
+        match super::filter::subject_at(stage, at) {
+            Subject::None => stage.moves().and_then(|m| m.stack(stage.events(), self.step).last().copied()).map_or(Subject::None, Subject::Node),
+            subject => subject,
+        }
+    }
+    /// What is on screen in a picture of this state.
+    pub fn look(&self) -> crate::figure::Look {
+        let s = &self.shown;
+        crate::figure::Look { prims: s.prims, nodes: s.nodes, eye: s.eye, evidence: s.evidence, selected: self.selection }
+    }
+    /// Tells the person something.
+    pub fn tell(&mut self, text: impl Into<String>) {
+        self.notice(false, text.into());
+    }
+    /// Tells the person that something failed.
+    pub fn fail(&mut self, text: impl Into<String>) {
+        self.notice(true, text.into());
+    }
+    fn notice(&mut self, is_error: bool, text: String) {
+        let notice = Notice { is_error, text };
+        self.notices.retain(|n| *n != notice);
+        self.notices.push(notice);
+        // Only the newest are worth the room.
+        let extra = self.notices.len().saturating_sub(4);
+        self.notices.drain(..extra);
+    }
+    /// Whether there is anything to undo, and to redo.
+    pub fn can_undo(&self) -> (bool, bool) {
+        self.history.can()
+    }
+}

@@ -1,0 +1,340 @@
+//! The explorer without its window, driven by commands.
+
+use super::recall::spoken_command;
+use super::state::{Breakpoint, Detail, Dialog};
+use super::*;
+use crate::culling::Verdict;
+use crate::drawing::Subject;
+use crate::geometry::{NodeId, PrimId};
+
+/// A flatland scene that travels inside the program.
+const FLAT: &str = "freedoom_e1m1";
+
+fn opened(source: &str) -> State {
+    let mut state = State::new();
+    state.apply(Command::Open(source.into()));
+    state.block_until_idle();
+    assert!(state.staged().is_some_and(|s| s.has_film()), "{:?}", state.notices);
+    state
+}
+
+/// What a person sees that a step decides.
+fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
+    let stage = state.staged().expect("a stage");
+    (state.step, state.sentence(), state.line(), stage.counts(state.step))
+}
+
+#[test]
+fn forward_and_back_is_the_same_state() {
+    let mut state = opened(FLAT);
+    for there_and_back in [(Action::Forward, Action::Back), (Action::Into, Action::BackInto)] {
+        for detail in [Detail::Full, Detail::Coarse] {
+            state.apply(Command::Detail(detail));
+            state.apply(Command::GoTo(0));
+            let mut passed = vec![seen(&state)];
+            for _ in 0..60 {
+                state.apply(there_and_back.0);
+                passed.push(seen(&state));
+            }
+            while let Some(now) = passed.pop() {
+                assert_eq!(seen(&state), now, "{there_and_back:?} {detail:?}");
+                state.apply(there_and_back.1);
+            }
+            assert_eq!(state.step, 0);
+        }
+    }
+}
+
+#[test]
+fn playing_reaches_the_end_and_stops() {
+    let mut state = opened(FLAT);
+    state.apply(Command::Speed(1000.0));
+    state.apply(Action::PlayPause);
+    let mut ticks = 0;
+    while state.tick(0.1) {
+        ticks += 1;
+        assert!(ticks < 1000);
+    }
+    assert_eq!((state.step, state.is_playing), (state.len(), false));
+    // Playing from the end begins anew.
+    state.apply(Action::PlayPause);
+    assert_eq!((state.step, state.is_playing), (0, true));
+}
+
+#[test]
+fn a_run_stops_at_breakpoints_forwards_and_backwards() {
+    let mut state = opened(FLAT);
+    state.apply(Command::BreakVerdict(Verdict::Outside));
+    let mut stops = vec![];
+    while state.step < state.len() {
+        state.apply(Action::Run);
+        stops.push(state.step);
+    }
+    assert!(stops.len() > 3, "{stops:?}");
+    stops.pop();
+    while let Some(stop) = stops.pop() {
+        state.apply(Action::RunBack);
+        assert_eq!(state.step, stop);
+    }
+    state.apply(Action::RunBack);
+    assert_eq!(state.step, 0);
+    state.apply(Command::Select(Subject::Node(NodeId(3))));
+    state.apply(Action::Breakpoint);
+    assert!(state.breakpoints.contains(&Breakpoint::Node(NodeId(3))));
+    // A playing film stops there too.
+    state.breakpoints.retain(|b| matches!(b, Breakpoint::Node(_)));
+    state.apply(Command::Speed(1e6));
+    state.apply(Action::PlayPause);
+    while state.tick(0.5) {}
+    assert_eq!(state.current_subject(), Subject::Node(NodeId(3)));
+}
+
+#[test]
+fn a_parameter_and_the_eye_are_culled_again_and_undone() {
+    let mut state = opened(FLAT);
+    let first = state.staged().expect("a stage").film_serial();
+    let events = state.len();
+    state.apply(Command::Set("tree-height".into(), "3".into(), 1));
+    state.apply(Command::Set("tree-height".into(), "2".into(), 1));
+    state.block_until_idle();
+    assert!(state.len() < events);
+    assert_ne!(state.staged().expect("a stage").film_serial(), first);
+    // Both changes were one gesture.
+    state.apply(Action::Undo);
+    state.block_until_idle();
+    assert_eq!(state.len(), events);
+    state.apply(Action::Redo);
+    state.block_until_idle();
+    assert!(state.len() < events);
+    state.apply(Action::Undo);
+
+    let before = state.stage.as_ref().expect("a stage").view();
+    let Any::Flat(mut view) = before else { panic!("flatland") };
+    view.eye.position.y += 1.0;
+    state.apply(Command::Eye(Any::Flat(view), 2));
+    assert!(state.staged().expect("a stage").is_eye_moved());
+    state.apply(Action::LockEye);
+    view.eye.position.y += 1.0;
+    state.apply(Command::Eye(Any::Flat(view), 3));
+    assert_ne!(state.stage.as_ref().expect("a stage").view(), Any::Flat(view), "a locked Eye stays");
+    state.apply(Action::Undo);
+    assert_eq!(state.stage.as_ref().expect("a stage").view(), before);
+    view.eye.target = view.eye.position;
+    state.apply(Action::LockEye);
+    state.apply(Command::Eye(Any::Flat(view), 4));
+    assert_eq!(state.stage.as_ref().expect("a stage").view(), before, "an Eye that cannot see is refused");
+    state.block_until_idle();
+}
+
+#[test]
+fn a_bad_parameter_is_told_and_the_film_stays() {
+    let mut state = opened(FLAT);
+    let events = state.len();
+    state.apply(Command::Set("tree-height".into(), "enormous".into(), 0));
+    state.block_until_idle();
+    assert!(state.notices.iter().any(|n| n.is_error && n.text.contains("tree-height")), "{:?}", state.notices);
+    assert_eq!(state.len(), events);
+}
+
+#[test]
+fn a_broken_file_is_told_and_the_old_scene_stays() {
+    let mut state = opened(FLAT);
+    state.apply(Command::GoTo(20));
+    let before = seen(&state);
+    for source in ["no/such/file.obj", "Cargo.toml", "generate:nothing", "no.session.json"] {
+        state.apply(Command::Open(source.into()));
+        state.block_until_idle();
+        assert!(state.notices.last().is_some_and(|n| n.is_error), "{source}: {:?}", state.notices);
+        assert_eq!(seen(&state), before, "{source}");
+        assert!(!state.notices.last().expect("a notice").text.contains('\n'));
+    }
+}
+
+#[test]
+fn stale_answers_are_dropped() {
+    let mut state = opened(FLAT);
+    for height in 1..12 {
+        state.apply(Command::Set("tree-height".into(), height.to_string(), 0));
+    }
+    state.block_until_idle();
+    let knobs = state.staged().expect("a stage").film_knobs();
+    assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
+    // What was cancelled never arrives.
+    state.apply(Command::Set("tree-height".into(), "2".into(), 0));
+    state.apply(Action::Cancel);
+    std::thread::sleep(std::time::Duration::from_millis(100));
+    state.poll();
+    let knobs = state.staged().expect("a stage").film_knobs();
+    assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
+}
+
+#[test]
+fn why_names_the_decision_and_its_evidence() {
+    let mut state = opened(FLAT);
+    state.apply(Action::Last);
+    let stage = state.staged().expect("a stage");
+    let mut kinds = std::collections::BTreeSet::new();
+    for p in (0..400).map(PrimId).filter(|&p| stage.has_prim(p)) {
+        let (at, verdict) = stage.prim_decision(p).expect("decided");
+        kinds.insert(verdict);
+        let lines = why(stage, Subject::Prim(p), state.step);
+        assert!(lines.len() >= 3, "{lines:?}");
+        assert!(lines[0].text.contains(spoken(verdict)), "{lines:?}");
+        assert_eq!(lines[0].step, Some(at));
+        // Before that step nothing is claimed.
+        let early = why(stage, Subject::Prim(p), at - 1);
+        assert!(early[0].text.contains("yet"), "{early:?}");
+    }
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [Verdict::Outside, Verdict::Visible]);
+    for n in (0..stage.node_count() as u32).map(NodeId) {
+        assert!(!why(stage, Subject::Node(n), state.step).is_empty(), "{n}");
+    }
+    state.apply(Command::Select(Subject::Prim(PrimId(0))));
+    state.apply(Action::Why);
+    assert_eq!(Some(state.step), state.staged().expect("a stage").prim_decision(PrimId(0)).map(|d| d.0));
+}
+
+#[test]
+fn the_event_tree_folds_filters_and_reveals() {
+    let mut state = opened(FLAT);
+    let all = state.len();
+    assert_eq!(state.outline.rows().len(), all);
+    state.apply(Action::FoldAll);
+    let folded = state.outline.rows().len();
+    assert!(folded < 10, "{folded}");
+    state.apply(Command::GoTo(100));
+    assert!(state.outline.rows().contains(&99), "the current event is shown");
+    state.apply(Command::Filter("verdict:outside kind:node".into()));
+    let (rows, stage) = (state.outline.rows(), state.staged().expect("a stage"));
+    let outside = stage.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
+    assert_eq!(rows.len(), outside);
+    state.apply(Command::Filter("under:3 -line".into()));
+    let within = state.outline.rows().len();
+    assert!(within > 0 && within < all);
+    state.apply(Action::UnfoldAll);
+    state.apply(Command::Filter("depth>x".into()));
+    assert!(state.outline.error().is_some());
+    state.apply(Command::Filter("nonsense:1".into()));
+    assert!(state.outline.error().is_some_and(|e| e.to_string().contains("verdict:")));
+    assert_eq!(state.outline.rows().len(), all, "a filter that makes no sense hides nothing");
+}
+
+#[test]
+fn a_session_brings_everything_back() {
+    let mut state = opened(FLAT);
+    let (_, frames) = state.staged().expect("a stage").path_names()[0];
+    state.apply(Command::Method("centroid".into()));
+    state.apply(Command::Set("budget".into(), "50%".into(), 0));
+    state.apply(Command::Frame(0, frames.min(3) - 1));
+    state.block_until_idle();
+    let Any::Flat(mut view) = state.stage.as_ref().expect("a stage").view() else { panic!("flatland") };
+    view.eye.position.x += 0.123_456_7;
+    state.apply(Command::Eye(Any::Flat(view), 0));
+    state.block_until_idle();
+    state.apply(Command::GoTo(40));
+    state.apply(Action::Bookmark);
+    state.apply(Command::Note(0, "here it begins".into()));
+    state.apply(Command::Select(Subject::Prim(PrimId(7))));
+    state.apply(Action::ThemeDark);
+    let session = state.session();
+    let again = Session::parse(&session.text(), "test").expect("its own text");
+    assert_eq!(again, session);
+    let mut other = State::new();
+    other.restore(again);
+    other.block_until_idle();
+    assert_eq!(other.session(), session, "{:?}", other.notices);
+    assert_eq!(seen(&other), seen(&state));
+    assert!(Session::parse("{}", "x").is_err());
+    assert!(Session::parse(&session.text().replace("\"cullscope_session\": 1", "\"cullscope_session\": 9"), "x").is_err());
+}
+
+#[test]
+fn a_spoiled_session_cannot_stop_the_start() {
+    let good = opened(FLAT).session();
+    let spoil: [fn(&mut Session); 6] = [
+        |s| s.scene = "gone.obj".into(),
+        |s| s.method = "no-such-method".into(),
+        |s| s.step = usize::MAX,
+        |s| s.selected = super::session::Picked::Node(u32::MAX),
+        |s| s.place = (99, 99),
+        |s| s.shown.scale = f32::NAN,
+    ];
+    for (i, spoil) in spoil.into_iter().enumerate() {
+        let mut session = good.clone();
+        spoil(&mut session);
+        let mut state = State::new();
+        state.start(&Start::default(), Some(session));
+        state.block_until_idle();
+        assert_eq!(state.stage.is_some(), i > 0, "{i}: {:?}", state.notices);
+        assert!(state.shown.scale.is_finite());
+    }
+}
+
+#[test]
+fn every_action_runs_and_none_panics() {
+    for info in Action::ALL {
+        assert_eq!(spoken_command(info.name), Some(info.action.into()));
+        let mut closed = State::new();
+        closed.apply(info.action);
+        closed.block_until_idle();
+    }
+    let mut state = opened(FLAT);
+    state.apply(Command::Select(Subject::Node(NodeId(1))));
+    for info in Action::ALL.iter().filter(|i| !matches!(i.action, Action::Start)) {
+        state.apply(info.action);
+        state.dialog = Dialog::None;
+        state.block_until_idle();
+        assert!(state.step <= state.len(), "{}", info.name);
+    }
+}
+
+#[test]
+fn the_start_runs_its_commands_once_loaded() {
+    let commands = ["method:z-buffer", "go-to:12", "select:prim:3", "theme-dark"].map(String::from).to_vec();
+    let mut state = State::new();
+    state.start(&Start { scene: Some(FLAT.into()), commands, ..Start::default() }, None);
+    state.block_until_idle();
+    assert_eq!((state.method.as_str(), state.step, state.selection), ("z-buffer", 12, Subject::Prim(PrimId(3))));
+    assert_eq!(state.shown.theme, Theme::Dark);
+}
+
+#[test]
+fn selections_are_remembered() {
+    let mut state = opened(FLAT);
+    let things = [Subject::Node(NodeId(1)), Subject::Prim(PrimId(2)), Subject::Eye];
+    things.into_iter().for_each(|s| state.apply(Command::Select(s)));
+    state.apply(Action::SelectBack);
+    assert_eq!(state.selection, things[1]);
+    state.apply(Action::SelectForward);
+    assert_eq!(state.selection, things[2]);
+    state.apply(Command::Select(things[1]));
+    state.apply(Action::SelectParent);
+    assert!(matches!(state.selection, Subject::Node(_)));
+}
+
+#[test]
+fn the_image_of_flatland_shows_the_nearest_segments() {
+    let state = opened(FLAT);
+    let Some(Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let image = stage.image();
+    let projection = stage.view.projection();
+    let mut seen = 0;
+    for (i, cell) in image.iter().enumerate().step_by(37) {
+        let Some((prim, depth)) = cell else { continue };
+        seen += 1;
+        // The ray through the pixel's center, met by every segment one by one.
+        let x = (i as f32 + 0.5) / image.len() as f32 * 2.0 - 1.0;
+        let row = projection.rows[0];
+        let direction = projection.rows[1] + row * (x / row.length_squared());
+        let hits = stage.scene.live().iter().filter_map(|&p| {
+            let ends: Vec<_> = stage.scene.prim_points(p).collect();
+            let (a, b) = (ends[0] - projection.eye, ends[1] - projection.eye);
+            let along = -direction.perp_dot(a) / direction.perp_dot(b - a);
+            let t = (a + (b - a) * along).dot(projection.rows[1]);
+            ((0.0..=1.0).contains(&along) && t >= stage.view.eye.near).then_some((t, p))
+        });
+        let nearest = hits.min_by(|a, b| a.0.total_cmp(&b.0)).expect("a hit");
+        assert!((nearest.0 - depth).abs() < 1e-3 * depth, "{i}: {prim} at {depth}, {nearest:?}");
+    }
+    assert!(seen > 5);
+}

@@ -1,0 +1,130 @@
+//! Why a thing has the state it has, read from the film alone.
+
+use super::filter::verdict_of;
+use super::stage::Staged;
+use crate::culling::{Event, Verdict};
+use crate::drawing::Subject;
+use crate::geometry::{NodeId, PrimId};
+
+/// A sentence of an explanation, with the step that shows it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Because {
+    /// What happened.
+    pub text: String,
+    /// Where to see it.
+    pub step: Option<usize>,
+}
+
+fn because(text: impl Into<String>, step: Option<usize>) -> Because {
+    Because { text: text.into(), step }
+}
+
+/// Why `subject` has the state it has at `step`: the conclusion first, then the evidence.
+pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
+    if !stage.has_film() {
+        return vec![];
+    }
+    match subject {
+        Subject::Node(node) if node.at() < stage.node_count() => why_node(stage, node, step),
+        Subject::Prim(prim) if stage.has_prim(prim) => why_prim(stage, prim, step),
+        Subject::Object(object) => vec![because(format!("“{}” is an object; select one of its parts to see why.", stage.object_name(object)), None)],
+        Subject::Eye => vec![because("This is the Eye: what culling sees with. Drag it, and the frame is culled again.", None)],
+        Subject::Plane(_) => vec![because("This is a plane of the view frustum. What lies wholly behind one plane cannot be in view.", None)],
+        _ => vec![],
+    }
+}
+
+fn name(stage: &dyn Staged, prim: PrimId) -> String {
+    let object = stage.object_name(stage.object_of(prim));
+    let of = if object.is_empty() { String::new() } else { format!(" of {object}") };
+    format!("{} {prim}{of}", stage.prim_name())
+}
+
+fn why_prim(stage: &dyn Staged, prim: PrimId, step: usize) -> Vec<Because> {
+    let name = name(stage, prim);
+    match stage.prim_decision(prim) {
+        None if stage.lost() > 0 => vec![because(format!("Nothing is known of {name}: the film is capped and ends before it was decided."), None)],
+        None => vec![because(format!("Nothing was ever said about {name}: this method does not look at it."), None)],
+        Some((at, verdict)) if at > step => {
+            vec![because(format!("At step {step} nothing is known of {name} yet. It will be {}.", spoken(verdict)), Some(at))]
+        }
+        Some((at, verdict)) => {
+            let mut lines = vec![because(format!("The {name} is {} since step {at}.", spoken(verdict)), Some(at))];
+            match stage.events()[at - 1] {
+                Event::DecidedNode(node, _) => {
+                    lines.push(because(
+                        format!(
+                            "It lies in node {node}, which was decided as a whole, with {} others.",
+                            stage.node_prims(node).len().saturating_sub(1)
+                        ),
+                        Some(at),
+                    ));
+                    lines.extend(evidence(stage, at));
+                }
+                _ => lines.extend(evidence(stage, at)),
+            }
+            lines
+        }
+    }
+}
+
+fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
+    if let Some((at, verdict)) = stage.node_decision(node) {
+        if at > step {
+            let text = match stage.node_entered(node) {
+                Some(entered) if entered <= step => {
+                    format!("Node {node} was entered at step {entered} and is not decided yet. It will be {}.", spoken(verdict))
+                }
+                _ => format!("At step {step} node {node} has not been reached yet. It will be {}.", spoken(verdict)),
+            };
+            return vec![because(text, Some(at))];
+        }
+        let mut lines = vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
+        lines.extend(evidence(stage, at));
+        return lines;
+    }
+    // Not decided itself: some node above it was.
+    let above = std::iter::successors(stage.parent(node), |&n| stage.parent(n)).find_map(|n| {
+        let (at, verdict) = stage.node_decision(n)?;
+        (verdict != Verdict::Partial).then_some((n, at, verdict))
+    });
+    match above {
+        Some((n, at, verdict)) if at <= step => {
+            let mut lines = vec![because(
+                format!("Node {node} was never visited: node {n} above it is {} as a whole since step {at}.", spoken(verdict)),
+                Some(at),
+            )];
+            lines.extend(evidence(stage, at));
+            lines
+        }
+        Some((n, at, verdict)) => vec![because(format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict)), Some(at))],
+        None if stage.node_entered(node).is_some_and(|e| e <= step) => {
+            vec![because(format!("Node {node} was entered; nothing was decided about it as a whole."), stage.node_entered(node))]
+        }
+        None => vec![because(format!("This method says nothing about node {node}."), None)],
+    }
+}
+
+/// The evidence right before the decision that is event `at − 1`, and the decision itself.
+fn evidence(stage: &dyn Staged, at: usize) -> Vec<Because> {
+    let decision = at - 1;
+    let first = decision.saturating_sub(EVIDENCE_REACH);
+    let noted =
+        (first..decision).rev().take_while(|&i| verdict_of(stage.events()[i]).is_none()).find(|&i| matches!(stage.events()[i], Event::Noted(_)));
+    noted.into_iter().chain([decision]).map(|i| because(stage.sentence(i), Some(i + 1))).collect()
+}
+
+/// How far before a decision its evidence may lie: a line of pseudocode may come between.
+const EVIDENCE_REACH: usize = 3;
+
+/// A verdict in a sentence.
+pub fn spoken(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Outside => "outside the view (or faces away)",
+        Verdict::Hidden => "hidden",
+        Verdict::Partial => "partly in view",
+        Verdict::Visible => "drawn",
+        Verdict::Approximated => "replaced by a stand-in",
+        Verdict::OverBudget => "left out, the budget being spent",
+    }
+}

@@ -1,0 +1,249 @@
+//! The one worker thread: loads scenes, builds indexes and records films off the thread that draws.
+//!
+//! Every request gets a number. Asking again cancels what was asked before, and an answer whose
+//! number is no longer wanted is dropped.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use super::any::{Any, AnyRecorded};
+use super::open;
+use super::stage::Recorded;
+use crate::culling::{Methods, Run, Settings};
+use crate::geometry::{Flat, Solid, View};
+use crate::scene::{AnyPath, AnyScene, Progress, Scene};
+use crate::trace::{Moves, Stamps};
+
+/// Events that a film keeps: 10 million, about 160 MB, before it says that it is capped.
+pub const FILM_CAP_EVENTS: usize = 10_000_000;
+
+/// A film to record.
+pub struct Request<S: Methods> {
+    /// The scene.
+    pub scene: Arc<Scene<S>>,
+    /// Which scene on stage it is.
+    pub scene_serial: u64,
+    /// Key of the method.
+    pub method: String,
+    /// Its parameters.
+    pub settings: Settings,
+    /// Views of the path before this one, which a method may remember.
+    pub before: Vec<View<S>>,
+    /// The view to record.
+    pub view: View<S>,
+    /// Events to keep.
+    pub cap: usize,
+}
+
+pub(super) enum Job {
+    Load { source: String, views: Option<String> },
+    Record(Any<Request<Flat>, Request<Solid>>),
+}
+
+pub(super) enum Done {
+    Loaded(AnyScene, Option<AnyPath>),
+    LoadFailed(String),
+    Recorded(AnyRecorded),
+    RecordFailed(String),
+    Cancelled,
+}
+
+/// What is being waited for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Busy {
+    /// Such as `reading faces`.
+    pub what: String,
+    /// 0 to 1.
+    pub fraction: f32,
+}
+
+struct Shared {
+    /// The request that is wanted; all others are stale.
+    wanted: AtomicU64,
+    fraction: AtomicU32,
+    what: Mutex<&'static str>,
+    wake: Mutex<Option<Box<dyn Fn() + Send + Sync>>>,
+}
+
+impl Shared {
+    fn wake(&self) {
+        if let Ok(wake) = self.wake.lock()
+            && let Some(wake) = wake.as_ref()
+        {
+            wake();
+        }
+    }
+}
+
+struct Ticket {
+    number: u64,
+    shared: Arc<Shared>,
+}
+
+impl Progress for Ticket {
+    fn report(&self, fraction: f32, what: &'static str) {
+        self.shared.fraction.store(fraction.to_bits(), Ordering::Relaxed);
+        if let Ok(mut now) = self.shared.what.lock() {
+            *now = what;
+        }
+        self.shared.wake();
+    }
+    fn cancelled(&self) -> bool {
+        self.shared.wanted.load(Ordering::Relaxed) != self.number
+    }
+}
+
+/// The thread and the way to it.
+pub(super) struct Worker {
+    jobs: Sender<(u64, Job)>,
+    done: Receiver<(u64, Done)>,
+    shared: Arc<Shared>,
+    asked: u64,
+    open: Option<String>,
+}
+
+impl Worker {
+    pub(super) fn start() -> Self {
+        let (jobs, inbox) = channel::<(u64, Job)>();
+        let (outbox, done) = channel();
+        let shared = Arc::new(Shared { wanted: AtomicU64::new(0), fraction: AtomicU32::new(0), what: Mutex::new(""), wake: Mutex::new(None) });
+        let mine = shared.clone();
+        thread::spawn(move || {
+            let mut bench = Bench::default();
+            for (number, job) in inbox {
+                let ticket = Ticket { number, shared: mine.clone() };
+                let answer = if ticket.cancelled() { Done::Cancelled } else { bench.guarded(job, &ticket) };
+                if outbox.send((number, answer)).is_err() {
+                    return;
+                }
+                mine.wake();
+            }
+        });
+        Self { jobs, done, shared, asked: 0, open: None }
+    }
+    /// Called from the worker whenever there is something new to show.
+    pub(super) fn set_wake(&self, wake: impl Fn() + Send + Sync + 'static) {
+        if let Ok(mut slot) = self.shared.wake.lock() {
+            *slot = Some(Box::new(wake));
+        }
+    }
+    /// Asks for work; whatever was asked before is no longer wanted.
+    pub(super) fn ask(&mut self, what: &str, job: Job) {
+        self.asked += 1;
+        self.shared.wanted.store(self.asked, Ordering::Relaxed);
+        self.shared.fraction.store(0, Ordering::Relaxed);
+        if let Ok(mut now) = self.shared.what.lock() {
+            *now = "";
+        }
+        self.open = Some(what.to_owned());
+        if self.jobs.send((self.asked, job)).is_err() {
+            self.open = None;
+        }
+    }
+    /// Nothing is wanted any more.
+    pub(super) fn cancel(&mut self) {
+        self.asked += 1;
+        self.shared.wanted.store(self.asked, Ordering::Relaxed);
+        self.open = None;
+    }
+    /// What is being waited for.
+    pub(super) fn busy(&self) -> Option<Busy> {
+        let open = self.open.as_ref()?;
+        let stage = self.shared.what.lock().map_or("", |w| *w);
+        let what = if stage.is_empty() { open.clone() } else { format!("{open}: {stage}") };
+        Some(Busy { what, fraction: f32::from_bits(self.shared.fraction.load(Ordering::Relaxed)) })
+    }
+    /// The next wanted answer; with `wait`, blocks until it is there (if anything was asked).
+    pub(super) fn answer(&mut self, wait: bool) -> Option<Done> {
+        loop {
+            let got = if wait && self.open.is_some() { self.done.recv().ok()? } else { self.done.try_recv().ok()? };
+            if got.0 == self.asked && self.open.is_some() {
+                self.open = None;
+                return Some(got.1);
+            }
+        }
+    }
+}
+
+/// What the worker keeps between jobs: the built index of each space, so that a moved Eye is recorded at once.
+#[derive(Default)]
+struct Bench {
+    flat: Option<Ready<Flat>>,
+    solid: Option<Ready<Solid>>,
+    serial: u64,
+}
+
+struct Ready<S: Methods> {
+    scene_serial: u64,
+    method: String,
+    settings: Settings,
+    run: Box<dyn Run<S>>,
+}
+
+impl Bench {
+    /// A fault in a method must not take the window down: it is reported like any other failure.
+    fn guarded(&mut self, job: Job, ticket: &Ticket) -> Done {
+        catch_unwind(AssertUnwindSafe(|| self.work(job, ticket))).unwrap_or_else(|_| {
+            (self.flat, self.solid) = (None, None);
+            Done::RecordFailed("the work stopped on an internal fault; what was on stage is unchanged".into())
+        })
+    }
+    fn work(&mut self, job: Job, ticket: &Ticket) -> Done {
+        match job {
+            Job::Load { source, views } => match open::load(&source, views.as_deref(), ticket) {
+                Ok((scene, path)) => Done::Loaded(scene, path),
+                Err(_) if ticket.cancelled() => Done::Cancelled,
+                Err(error) => Done::LoadFailed(error),
+            },
+            Job::Record(Any::Flat(request)) => {
+                self.serial += 1;
+                self.solid = None;
+                record(&mut self.flat, request, self.serial, ticket, Any::Flat)
+            }
+            Job::Record(Any::Solid(request)) => {
+                self.serial += 1;
+                self.flat = None;
+                record(&mut self.solid, request, self.serial, ticket, Any::Solid)
+            }
+        }
+    }
+}
+
+fn record<S: Methods>(ready: &mut Option<Ready<S>>, request: Request<S>, serial: u64, ticket: &Ticket, wrap: fn(Recorded<S>) -> AnyRecorded) -> Done {
+    let fits = |r: &Ready<S>| r.scene_serial == request.scene_serial && r.method == request.method && r.settings == request.settings;
+    if !ready.as_ref().is_some_and(fits) {
+        *ready = None;
+        let Some(method) = S::method(&request.method) else {
+            return Done::RecordFailed(format!("there is no method `{}` in {}", request.method, S::NAME));
+        };
+        match method.ready(&request.scene, &request.settings, ticket) {
+            Err(error) => return Done::RecordFailed(error.to_string()),
+            Ok(None) => return Done::Cancelled,
+            Ok(Some(run)) => {
+                *ready = Some(Ready { scene_serial: request.scene_serial, method: request.method, settings: request.settings, run });
+            }
+        }
+    }
+    let Some(Ready { run, .. }) = ready else { return Done::Cancelled };
+    ticket.report(0.5, "recording");
+    run.forget();
+    if run.remembers() {
+        for view in &request.before {
+            if ticket.cancelled() {
+                return Done::Cancelled;
+            }
+            run.cull(view);
+        }
+    }
+    let recording = run.record(&request.view, request.cap);
+    if ticket.cancelled() {
+        return Done::Cancelled;
+    }
+    ticket.report(0.8, "reading the film");
+    let stamps = Arc::new(Stamps::new(&*recording.film));
+    let moves = Arc::new(Moves::new(recording.film.events()));
+    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, drawn: recording.list.prims.len(), serial }))
+}

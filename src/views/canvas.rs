@@ -1,0 +1,149 @@
+//! Flatland from above: the Observer's view. Wheel zooms to the cursor, dragging pans, the Eye can be grabbed.
+
+use eframe::egui::{self, Pos2, Sense, pos2};
+use glam::Vec2;
+
+use super::handles::{self, Handle};
+use super::window::Cache;
+use super::{Answers, palette};
+use crate::app::{Any, Command, Stage, State};
+use crate::drawing::{Drawing, Subject};
+use crate::figure::{self, Sheet};
+use crate::geometry::{Aabb, Flat};
+use crate::render::screen;
+
+/// Distance of the turning handle from the Eye, points.
+const AIM_PT: f32 = 54.0;
+
+/// Shows flatland.
+pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Observer view. {}", state.sentence())));
+    cache.picture_focused |= response.has_focus();
+    if std::mem::take(&mut cache.frame) {
+        let mut camera = state.observer;
+        camera.frame_flat(&target_box(state, stage), &stage.scene.bounds(), rect.width() / rect.height().max(1.0));
+        answers.push(Command::Observe(camera));
+    }
+    let sheet = sheet(state, rect);
+    let to_screen = |p: Vec2| {
+        let p = sheet.to_paper(p);
+        rect.min + egui::vec2(p.x, p.y)
+    };
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 0.0, palette::panel(state).canvas);
+    if let Some(recorded) = &stage.recorded {
+        let look = state.look();
+        let key = (recorded.serial, state.step, look);
+        if cache.flat.as_ref().is_none_or(|(k, _)| *k != key) {
+            cache.flat = Some((key, figure::world(&*recorded.film, &recorded.stamps, state.step, &look)));
+        }
+        if let Some((_, world)) = &cache.flat {
+            let mut paper = Drawing { size_pt: Vec2::new(rect.width(), rect.height()), ..Drawing::default() };
+            sheet.place(world, &mut paper);
+            screen::paint(&painter, &paper, state.shown.theme, rect.min, 1.0);
+        }
+    }
+    let eye = &stage.view.eye;
+    let (position, ahead) = (to_screen(eye.position), Vec2::new(eye.forward().x, -eye.forward().y) * AIM_PT);
+    let target = position + egui::vec2(ahead.x, ahead.y);
+    handles::paint(state, &painter, &response, Some(position), Some(target));
+    interact(state, stage, cache, ui, &response, &sheet, (position, target), answers);
+    focus_ring(state, ui, &response);
+}
+
+/// A ring around the picture that has the keys.
+pub fn focus_ring(state: &State, ui: &egui::Ui, response: &egui::Response) {
+    if response.has_focus() {
+        let stroke = egui::Stroke::new(2.0, palette::panel(state).accent);
+        ui.painter().rect_stroke(response.rect, 0.0, stroke, egui::StrokeKind::Inside);
+    }
+}
+
+fn sheet(state: &State, rect: egui::Rect) -> Sheet {
+    let center = Vec2::new(state.observer.pivot[0], state.observer.pivot[1]);
+    let scale = rect.height() / (2.0 * state.observer.distance).max(1e-6);
+    Sheet { center, scale, middle_pt: Vec2::new(rect.width(), rect.height()) * 0.5 }
+}
+
+/// What `F` brings into the picture.
+fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
+    let scene = &stage.scene;
+    match (state.selection, &stage.recorded) {
+        (Subject::Prim(p), _) => scene.prim_bounds(p),
+        (Subject::Object(o), _) => {
+            scene.live().iter().filter(|&&p| scene.object_of(p) == o).fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)))
+        }
+        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
+        (Subject::Eye, _) => Aabb::of([stage.view.eye.position, stage.view.eye.target]),
+        _ => scene.bounds().with(stage.view.eye.position),
+    }
+}
+
+#[allow(clippy::too_many_arguments)]
+fn interact(
+    state: &State,
+    stage: &Stage<Flat>,
+    cache: &mut Cache,
+    ui: &egui::Ui,
+    response: &egui::Response,
+    sheet: &Sheet,
+    (position, target): (Pos2, Pos2),
+    answers: &mut Answers,
+) {
+    let origin = response.rect.min;
+    let world = |p: Pos2| sheet.to_world(Vec2::new(p.x - origin.x, p.y - origin.y));
+    let mut camera = state.observer;
+    if let Some(at) = response.hover_pos() {
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
+        let factor = (-scroll * 0.004).exp() / pinch;
+        if factor != 1.0 {
+            camera.zoom_flat(factor, world(at));
+        }
+    }
+    if response.drag_started() {
+        let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
+        let primary = response.dragged_by(egui::PointerButton::Primary) && !ui.input(|i| i.modifiers.shift);
+        cache.held = handles::under(at, Some(position), Some(target)).filter(|_| primary);
+        cache.gesture += 1;
+    }
+    if response.dragged() {
+        let delta = response.drag_delta();
+        let by = Vec2::new(delta.x, -delta.y) / sheet.scale;
+        let mut view = stage.view;
+        match (cache.held, response.interact_pointer_pos()) {
+            (Some(Handle::Position), _) => {
+                view.eye.position += by;
+                view.eye.target += by;
+            }
+            (Some(Handle::Target), Some(at)) => {
+                let length = (view.eye.target - view.eye.position).length();
+                let toward = (world(at) - view.eye.position).normalize_or(view.eye.forward());
+                view.eye.target = view.eye.position + toward * length;
+            }
+            _ => camera.slide(-by),
+        }
+        if cache.held.is_some() && delta != egui::Vec2::ZERO {
+            answers.push(Command::Eye(Any::Flat(view), cache.gesture));
+        }
+    }
+    if response.drag_stopped() {
+        cache.held = None;
+    }
+    if response.clicked() {
+        response.request_focus();
+        if let Some(at) = response.interact_pointer_pos() {
+            let subject = match handles::under(at, Some(position), None) {
+                Some(_) => Subject::Eye,
+                None => stage.pick(world(at), 6.0 / sheet.scale, state.step),
+            };
+            answers.push(Command::Select(subject));
+        }
+    }
+    if response.double_clicked() {
+        answers.push(crate::app::Action::FrameSelection.into());
+    }
+    if camera != state.observer {
+        answers.push(Command::Observe(camera));
+    }
+}

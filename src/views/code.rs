@@ -1,0 +1,67 @@
+//! The pseudocode: the current line lit, the values of the current event beside it, breakpoints at lines.
+
+use eframe::egui::{self, RichText, ScrollArea, Sense};
+
+use super::icons::{self, Icon};
+use super::inspector::value;
+use super::{Answers, palette};
+use crate::app::{Breakpoint, Command, State};
+use crate::culling::Event;
+
+/// Shows the pseudocode.
+pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = state.staged() else { return };
+    let Some(card) = stage.card() else { return };
+    let lit = state.line();
+    let values = values(state);
+    ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        for (i, line) in card.code.iter().enumerate() {
+            let i = i as u8;
+            let is_lit = lit == Some(i);
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                let stops = state.breakpoints.contains(&Breakpoint::Line(i));
+                let (icon, color) = if stops { (Icon::Dot, ui.visuals().error_fg_color) } else { (Icon::Ring, palette::panel(state).border) };
+                let response = icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
+                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label)));
+                if response.clicked() {
+                    answers.push(Command::BreakLine(i));
+                }
+                let here = if is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
+                icons::plain(ui, Icon::Here, Sense::hover(), here);
+                let small = egui::TextStyle::Body.resolve(ui.style()).size;
+                let mut text = RichText::new(line.text).monospace().size(small);
+                if is_lit {
+                    text = text.background_color(palette::panel(state).lit_line);
+                }
+                let response = ui.selectable_label(false, text).on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
+                if response.clicked()
+                    && let Some(step) = next_time(state, i)
+                {
+                    answers.push(Command::GoTo(step));
+                }
+                if is_lit && !values.is_empty() {
+                    ui.label(RichText::new(format!("   {values}")).color(palette::panel(state).accent));
+                }
+            });
+        }
+    });
+}
+
+/// The next time that a line runs; from the beginning if it does not run again.
+fn next_time(state: &State, line: u8) -> Option<usize> {
+    let events = state.staged()?.events();
+    let at = |i: &usize| events[*i] == Event::Line(line);
+    (state.step..events.len()).find(at).or_else(|| (0..events.len()).find(at)).map(|i| i + 1)
+}
+
+/// The values that matter at this step: of the newest evidence or decision since the line was reached.
+fn values(state: &State) -> String {
+    let (Some(stage), Some(at)) = (state.staged(), state.current()) else { return String::new() };
+    let events = stage.events();
+    let first = at.saturating_sub(2);
+    let Some(i) = (first..=at).rev().find(|&i| !matches!(events[i], Event::Line(_) | Event::FrameBegan)) else { return String::new() };
+    let fields = stage.fields(i).1;
+    fields.iter().take(4).map(|f| format!("{} {}", f.name.replace('_', " "), value(&f.value))).collect::<Vec<_>>().join(" · ")
+}

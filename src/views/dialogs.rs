@@ -1,0 +1,215 @@
+//! What stands in front of everything else: palette, keys, go to step, open, save, report, about.
+
+use eframe::egui::{self, Grid, Key, Modal, RichText, ScrollArea, TextEdit};
+
+use super::Answers;
+use super::events::grouped;
+use super::window::Cache;
+use crate::app::{Action, Command, Dialog, Menu, State, fuzzy};
+
+/// Shows the open dialog, if there is one.
+pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut Answers) {
+    if state.dialog == Dialog::None {
+        cache.typed_for = Dialog::None;
+        return;
+    }
+    let is_new = cache.typed_for != state.dialog;
+    if is_new {
+        cache.typed_for = state.dialog;
+        cache.choice = 0;
+        cache.typed = match state.dialog {
+            Dialog::GoTo => state.step.to_string(),
+            Dialog::SaveAs => state.session_path.clone().unwrap_or_else(|| default_name(state)),
+            _ => String::new(),
+        };
+    }
+    let response = Modal::new(egui::Id::unique("dialog")).show(ctx, |ui| {
+        ui.set_max_height(ctx.content_rect().height() * 0.8);
+        match state.dialog {
+            Dialog::Palette => palette(state, cache, ui, is_new, answers),
+            Dialog::Keys => keys(ui),
+            Dialog::GoTo => go_to(state, cache, ui, is_new, answers),
+            Dialog::Open => open(cache, ui, is_new, answers),
+            Dialog::SaveAs => save(cache, ui, is_new, answers),
+            Dialog::Report => report(state, ui),
+            Dialog::About => about(state, ui),
+            Dialog::None => {}
+        }
+        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About) && ui.button("Close").clicked() {
+            answers.push(Command::Dialog(Dialog::None));
+        }
+    });
+    if response.should_close() {
+        answers.push(Command::Dialog(Dialog::None));
+    }
+}
+
+fn default_name(state: &State) -> String {
+    format!("{}.session.json", state.staged().map_or("untitled", |s| s.scene_name()))
+}
+
+fn field(ui: &mut egui::Ui, text: &mut String, label: &str, hint: &str, focus: bool) -> egui::Response {
+    let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(420.0));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, label));
+    if focus {
+        response.request_focus();
+    }
+    response
+}
+
+fn entered(ui: &egui::Ui, response: &egui::Response) -> bool {
+    response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
+}
+
+fn palette(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+    let (up, down) = ui.input_mut(|i| (i.consume_key(egui::Modifiers::NONE, Key::ArrowUp), i.consume_key(egui::Modifiers::NONE, Key::ArrowDown)));
+    let response = field(ui, &mut cache.typed, "Command", "Type a command", is_new);
+    let mut found: Vec<_> = Action::ALL.iter().filter_map(|i| Some((fuzzy(&cache.typed, i.title)?, i))).collect();
+    if !cache.typed.is_empty() {
+        found.sort_by_key(|(score, i)| (std::cmp::Reverse(*score), i.action));
+    }
+    if response.changed() {
+        cache.choice = 0;
+    }
+    cache.choice = (cache.choice + usize::from(down)).saturating_sub(usize::from(up)).min(found.len().saturating_sub(1));
+    let mut chosen = None;
+    ScrollArea::vertical().max_height(360.0).auto_shrink(false).show(ui, |ui| {
+        ui.set_width(420.0);
+        for (row, (_, info)) in found.iter().enumerate() {
+            let keys = info.keys.first().copied().unwrap_or_default();
+            let button = egui::Button::selectable(row == cache.choice, info.title).shortcut_text(keys).min_size(egui::vec2(410.0, 0.0));
+            let response = ui.add_enabled(state.can(info.action), button).on_hover_text(info.help);
+            if row == cache.choice && (up || down) {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() {
+                chosen = Some(info.action);
+            }
+        }
+    });
+    if entered(ui, &response) {
+        chosen = found.get(cache.choice).map(|(_, i)| i.action);
+    }
+    if let Some(action) = chosen {
+        answers.push(Command::Dialog(Dialog::None));
+        answers.push(action.into());
+    }
+}
+
+fn keys(ui: &mut egui::Ui) {
+    ui.heading("Keys");
+    ScrollArea::vertical().max_height(ui.ctx().content_rect().height() * 0.66).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            for menus in [&[Menu::Step][..], &[Menu::File, Menu::Edit], &[Menu::View, Menu::Help]] {
+                ui.vertical(|ui| {
+                    for menu in menus {
+                        ui.strong(menu.title());
+                        Grid::new(menu.title()).num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
+                            let bookmark = |a| (Action::Bookmark2..=Action::Bookmark10).contains(&a);
+                            for info in Action::ALL.iter().filter(|i| i.menu == *menu && !i.keys.is_empty() && !bookmark(i.action)) {
+                                ui.label(RichText::new(info.keys.join("  ")).monospace());
+                                ui.label(info.title).on_hover_text(info.help);
+                                ui.end_row();
+                            }
+                        });
+                        ui.add_space(6.0);
+                    }
+                });
+                ui.add_space(14.0);
+            }
+        });
+        ui.weak("In the Eye view of space: W A S D and Q E fly, Shift faster, Ctrl slower, dragging looks around.");
+        ui.weak("In the Observer view: drag to turn, Shift+drag or right drag to pan, wheel to zoom, Alt+drag to roll.");
+    });
+}
+
+fn go_to(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+    ui.heading("Go to step");
+    ui.label(format!("0 to {}; a share such as 50% works too.", grouped(state.len())));
+    let response = field(ui, &mut cache.typed, "Step number", "", is_new);
+    let typed = cache.typed.trim();
+    let step = match typed.strip_suffix('%') {
+        Some(share) => share.trim().parse::<f64>().ok().map(|p| (p / 100.0 * state.len() as f64).round().max(0.0) as usize),
+        None => typed.parse().ok(),
+    };
+    let enter = entered(ui, &response);
+    let button = ui.add_enabled(step.is_some(), egui::Button::new("Go"));
+    if let Some(step) = step.filter(|_| enter || button.clicked()) {
+        answers.extend([Command::GoTo(step), Command::Dialog(Dialog::None)]);
+    } else if enter {
+        response.request_focus();
+    }
+}
+
+fn open(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+    ui.heading("Open a scene");
+    ui.label("A path to .obj, .gltf, .glb, a flatland .json or a session file, or generate:NAME.");
+    let response = field(ui, &mut cache.typed, "Path of the scene", "scenes2d/street.json", is_new);
+    let enter = entered(ui, &response);
+    ui.horizontal(|ui| {
+        let typed = cache.typed.trim().to_owned();
+        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Open")).clicked() || enter) && !typed.is_empty() {
+            answers.push(Command::Open(typed));
+        }
+        if ui.add_enabled(!cache.is_asking(), egui::Button::new("Browse…")).on_hover_text("The system's dialog, where there is one").clicked() {
+            cache.ask_open();
+        }
+        if ui.button("Close").clicked() {
+            answers.push(Command::Dialog(Dialog::None));
+        }
+    });
+}
+
+fn save(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+    ui.heading("Save the session");
+    let response = field(ui, &mut cache.typed, "Path of the session", "NAME.session.json", is_new);
+    let enter = entered(ui, &response);
+    ui.horizontal(|ui| {
+        let typed = cache.typed.trim().to_owned();
+        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Save")).clicked() || enter) && !typed.is_empty() {
+            answers.push(Command::SaveTo(typed));
+        }
+        if ui.button("Close").clicked() {
+            answers.push(Command::Dialog(Dialog::None));
+        }
+    });
+}
+
+fn report(state: &State, ui: &mut egui::Ui) {
+    let Some(stage) = state.staged() else { return };
+    let report = stage.report();
+    ui.heading("Loading report");
+    ui.label(format!("{} from {}", stage.scene_name(), stage.source()));
+    ui.label(format!("{} {}s in {} objects", grouped(stage.prim_count()), stage.prim_name(), grouped(stage.object_count())));
+    if report.dropped.is_empty() {
+        ui.label("Nothing was dropped.");
+    }
+    for (why, count) in &report.dropped {
+        ui.label(format!("{} dropped: {}", grouped(*count), why.label()));
+    }
+    ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+        for note in &report.notes {
+            ui.add(egui::Label::new(note).wrap());
+        }
+        if report.unsaid > 0 {
+            ui.weak(format!("… and {} more", grouped(report.unsaid)));
+        }
+    });
+}
+
+fn about(state: &State, ui: &mut egui::Ui) {
+    let Some(card) = state.staged().and_then(|s| s.card()) else { return };
+    ui.set_max_width(460.0);
+    ui.heading(card.name);
+    ui.label(card.summary);
+    ui.add_space(4.0);
+    ui.weak(card.paper);
+    if !card.doi.is_empty() {
+        ui.hyperlink_to(format!("doi:{}", card.doi), format!("https://doi.org/{}", card.doi));
+    }
+    ui.label(if card.conservative {
+        "Conservative: it never leaves out anything that can be seen."
+    } else {
+        "Not conservative: it may leave out what can be seen."
+    });
+}

@@ -1,0 +1,155 @@
+//! Panels and where they stand.
+
+use eframe::egui;
+use egui_tiles::{Container, Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
+use serde::{Deserialize, Serialize};
+
+use super::window::Cache;
+use super::{Answers, canvas, code, events, inspector, parameters, space, strip, timeline, why};
+use crate::app::{Any, Layout, State};
+
+/// A panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Pane {
+    /// The event tree.
+    Events,
+    /// What the Eye sees.
+    Eye,
+    /// What the Observer sees.
+    Observer,
+    /// Why the selected thing has its state.
+    Why,
+    /// The current event and the selected thing.
+    Inspector,
+    /// The method and its parameters.
+    Parameters,
+    /// The film.
+    Timeline,
+    /// The pseudocode.
+    Code,
+}
+
+impl Pane {
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Events => "Events",
+            Self::Eye => "Eye view",
+            Self::Observer => "Observer view",
+            Self::Why => "Why",
+            Self::Inspector => "Inspector",
+            Self::Parameters => "Parameters",
+            Self::Timeline => "Timeline",
+            Self::Code => "Pseudocode",
+        }
+    }
+    const ALL: [Pane; 8] = [Self::Events, Self::Eye, Self::Observer, Self::Why, Self::Inspector, Self::Parameters, Self::Timeline, Self::Code];
+}
+
+/// The panels of a layout.
+pub fn tree(layout: Layout) -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let root = match layout {
+        Layout::Debug => debug(&mut tiles),
+        Layout::Lecture => {
+            let [eye, observer, code] = [Pane::Eye, Pane::Observer, Pane::Code].map(|p| tiles.insert_pane(p));
+            let right = linear(&mut tiles, LinearDir::Vertical, &[(eye, 1.0), (code, 1.2)]);
+            linear(&mut tiles, LinearDir::Horizontal, &[(observer, 2.0), (right, 1.0)])
+        }
+        Layout::Figure => tiles.insert_pane(Pane::Observer),
+    };
+    Tree::new(egui::Id::unique("panels"), root, tiles)
+}
+
+fn debug(tiles: &mut Tiles<Pane>) -> TileId {
+    let [events, eye, observer, why, inspector, parameters, timeline, code] = Pane::ALL.map(|p| tiles.insert_pane(p));
+    let pictures = linear(tiles, LinearDir::Horizontal, &[(eye, 1.0), (observer, 1.25)]);
+    let side = linear(tiles, LinearDir::Vertical, &[(why, 1.0), (inspector, 1.2), (parameters, 1.0)]);
+    let below = linear(tiles, LinearDir::Horizontal, &[(timeline, 1.3), (code, 1.0)]);
+    let middle = linear(tiles, LinearDir::Vertical, &[(pictures, 2.1), (below, 1.0)]);
+    linear(tiles, LinearDir::Horizontal, &[(events, 0.95), (middle, 3.0), (side, 1.0)])
+}
+
+fn linear(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> TileId {
+    let mut linear = Linear::new(dir, parts.iter().map(|p| p.0).collect());
+    parts.iter().for_each(|(id, share)| linear.shares.set_share(*id, *share));
+    tiles.insert_new(egui_tiles::Tile::Container(Container::Linear(linear)))
+}
+
+/// Whether a saved tree can be shown: every panel at most once, a root that is there, a picture among them.
+pub fn is_sound(tree: &Tree<Pane>) -> bool {
+    let mut panes: Vec<Pane> = tree.tiles.tiles().filter_map(|t| if let egui_tiles::Tile::Pane(p) = t { Some(*p) } else { None }).collect();
+    let count = panes.len();
+    panes.sort_unstable();
+    panes.dedup();
+    panes.len() == count && panes.contains(&Pane::Observer) && tree.root.is_some_and(|r| tree.tiles.get(r).is_some())
+}
+
+/// The panel that stands where `pane` does: swapped views stand in each other's place.
+fn seen(state: &State, pane: Pane) -> Pane {
+    match (pane, state.is_swapped) {
+        (Pane::Eye, true) => Pane::Observer,
+        (Pane::Observer, true) => Pane::Eye,
+        (other, _) => other,
+    }
+}
+
+/// Shows the panels.
+pub struct Dock<'a> {
+    /// What is shown.
+    pub state: &'a State,
+    /// What only the screen needs.
+    pub cache: &'a mut Cache,
+    /// What is asked.
+    pub answers: &'a mut Answers,
+    /// The graphics card.
+    pub gpu: Option<&'a eframe::egui_wgpu::RenderState>,
+}
+
+impl egui_tiles::Behavior<Pane> for Dock<'_> {
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
+        seen(self.state, *pane).title().into()
+    }
+    fn pane_ui(&mut self, ui: &mut egui::Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        let pane = seen(self.state, *pane);
+        let (state, answers) = (self.state, &mut *self.answers);
+        ui.push_id(pane as u8, |ui| match pane {
+            Pane::Eye | Pane::Observer => match &state.stage {
+                Some(Any::Flat(stage)) if pane == Pane::Observer => canvas::show(state, stage, self.cache, ui, answers),
+                Some(Any::Flat(stage)) => strip::show(state, stage, self.cache, ui, answers),
+                Some(Any::Solid(stage)) => space::show(state, stage, pane == Pane::Eye, self.cache, self.gpu, ui, answers),
+                None => {}
+            },
+            _ => {
+                egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| match pane {
+                    Pane::Events => events::show(state, self.cache, ui, answers),
+                    Pane::Why => why::show(state, ui, answers),
+                    Pane::Inspector => inspector::show(state, ui, answers),
+                    Pane::Parameters => parameters::show(state, self.cache, ui, answers),
+                    Pane::Timeline => timeline::show(state, self.cache, ui, answers),
+                    _ => code::show(state, ui, answers),
+                });
+            }
+        });
+        UiResponse::None
+    }
+    fn simplification_options(&self) -> SimplificationOptions {
+        // Every panel keeps a title that it can be moved by.
+        SimplificationOptions { all_panes_must_have_tabs: true, ..Default::default() }
+    }
+    fn tab_bar_height(&self, style: &egui::Style) -> f32 {
+        style.spacing.interact_size.y + 4.0
+    }
+    fn tab_bar_color(&self, visuals: &egui::Visuals) -> egui::Color32 {
+        visuals.widgets.inactive.bg_fill
+    }
+    fn tab_text_color(&self, visuals: &egui::Visuals, _: &Tiles<Pane>, _: TileId, state: &egui_tiles::TabState) -> egui::Color32 {
+        if state.active { visuals.text_color() } else { visuals.weak_text_color() }
+    }
+    fn gap_width(&self, _: &egui::Style) -> f32 {
+        3.0
+    }
+    fn min_size(&self) -> f32 {
+        90.0
+    }
+}

@@ -1,0 +1,67 @@
+//! The operands of the current event, the facts of the selected thing, and the nodes that are open.
+
+use eframe::egui::{self, Grid, RichText, ScrollArea};
+
+use super::Answers;
+use super::events::spaced;
+use super::why::{capitalized, subject_name};
+use crate::app::{Command, State, short};
+use crate::culling::Value;
+use crate::drawing::Subject;
+
+/// A value as a person reads it.
+pub fn value(value: &Value) -> String {
+    match value {
+        Value::Number(v) => short(*v as f32),
+        Value::Integer(v) => v.to_string(),
+        Value::Switch(true) => "yes".into(),
+        Value::Switch(false) => "no".into(),
+        Value::Word(w) => w.clone(),
+        Value::List(list) => list.iter().map(|v| short(*v as f32)).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// Shows the inspector.
+pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = state.staged() else { return };
+    ScrollArea::vertical().auto_shrink(false).id_salt("inspector").show(ui, |ui| {
+        match state.current() {
+            Some(at) => {
+                let (kind, fields) = stage.fields(at);
+                ui.strong(format!("Step {}: {}", state.step, spaced(kind)));
+                rows(ui, "event", fields.iter().map(|f| (f.name.replace('_', " "), value(&f.value))));
+            }
+            None => {
+                ui.strong("Step 0: before the first event");
+            }
+        }
+        let stack = stage.moves().map_or(vec![], |m| m.stack(stage.events(), state.step));
+        if !stack.is_empty() {
+            ui.add_space(6.0);
+            ui.horizontal_wrapped(|ui| {
+                ui.strong("Open nodes");
+                for node in stack {
+                    let selected = state.selection == Subject::Node(node);
+                    if ui.selectable_label(selected, node.to_string()).on_hover_text(format!("Select node {node}")).clicked() {
+                        answers.push(Command::Select(Subject::Node(node)));
+                    }
+                }
+            });
+        }
+        if state.selection != Subject::None {
+            ui.add_space(6.0);
+            ui.strong(capitalized(&subject_name(state, state.selection)));
+            rows(ui, "subject", stage.facts(state.selection).into_iter().map(|(name, text)| (name.to_owned(), text)));
+        }
+    });
+}
+
+fn rows(ui: &mut egui::Ui, id: &str, rows: impl Iterator<Item = (String, String)>) {
+    Grid::new(id).num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+        for (name, text) in rows {
+            ui.weak(name);
+            ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,184 @@
+//! The method and its parameters; a change is culled again at once, off this thread.
+
+use eframe::egui::{self, ScrollArea};
+
+use super::Answers;
+use super::window::Cache;
+use crate::app::{Action, Any, AnyView, Command, State};
+use crate::culling::{Budget, Knob, KnobValue, Methods};
+
+/// Shows the parameters.
+pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = state.staged() else { return };
+    ScrollArea::vertical().auto_shrink(false).id_salt("parameters").show(ui, |ui| {
+        for (knob, value) in wanted(state) {
+            edit(state, cache, ui, knob, &value, answers);
+        }
+        if !state.settings.0.is_empty() {
+            super::action_button(state, ui, Action::ResetSettings, "Reset", answers);
+        }
+        ui.separator();
+        eye(state, cache, ui, answers);
+        ui.add_space(4.0);
+        if let Some(card) = stage.card() {
+            ui.weak(card.summary);
+        }
+    });
+}
+
+/// Parameters as they are wanted now, which may be ahead of the film.
+fn wanted(state: &State) -> Vec<(Knob, KnobValue)> {
+    fn of<S: Methods>(state: &State) -> Vec<(Knob, KnobValue)> {
+        S::method(&state.method).and_then(|m| m.knobs(&state.settings).ok()).unwrap_or_default()
+    }
+    match &state.stage {
+        Some(Any::Flat(_)) => of::<crate::geometry::Flat>(state),
+        Some(Any::Solid(_)) => of::<crate::geometry::Solid>(state),
+        None => vec![],
+    }
+}
+
+fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: &KnobValue, answers: &mut Answers) {
+    let help = format!("{}\n{}\n--set {}={value}", knob.meaning, knob.source, knob.name);
+    let title = knob.name.replace('-', " ");
+    let set = |text: String, gesture| Command::Set(knob.name.to_owned(), text, gesture);
+    match value {
+        KnobValue::Switch(on) => {
+            let mut on = *on;
+            if ui.checkbox(&mut on, &title).on_hover_text(&help).changed() {
+                answers.push(set(on.to_string(), 0));
+            }
+        }
+        KnobValue::Integer(v, range) => {
+            let mut v = *v;
+            let label = ui.label(format!("{title} ({})", knob.unit)).on_hover_text(&help);
+            let response = ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
+            if response.drag_started() || (response.changed() && !response.dragged()) {
+                cache.gesture += 1;
+            }
+            if response.changed() {
+                answers.push(set(v.to_string(), cache.gesture));
+            }
+        }
+        KnobValue::Budget(budget) => self::budget(state, cache, ui, &title, &help, *budget, &set, answers),
+    }
+}
+
+#[allow(clippy::too_many_arguments)]
+fn budget(
+    state: &State,
+    cache: &mut Cache,
+    ui: &mut egui::Ui,
+    title: &str,
+    help: &str,
+    now: Budget,
+    set: &dyn Fn(String, u64) -> Command,
+    answers: &mut Answers,
+) {
+    let most = state.staged().map_or(1, |s| s.prim_count()) as u32;
+    let label = ui.label(title).on_hover_text(help);
+    ui.horizontal(|ui| {
+        let (mut next, response) = match now {
+            Budget::Percent(mut p) => {
+                let response = ui.add(egui::Slider::new(&mut p, 0.0..=100.0).suffix(" %").max_decimals(1));
+                (Budget::Percent(p), response)
+            }
+            Budget::Count(mut n) => {
+                let response = ui.add(egui::Slider::new(&mut n, 0..=most).logarithmic(true));
+                (Budget::Count(n), response)
+            }
+        };
+        let response = response.labelled_by(label.id).on_hover_text(help);
+        if response.drag_started() || (response.changed() && !response.dragged()) {
+            cache.gesture += 1;
+        }
+        let is_share = matches!(now, Budget::Percent(_));
+        if ui.selectable_label(is_share, "%").on_hover_text("A share of the scene, or a number").clicked() {
+            let drawn = now.of(most as usize) as u32;
+            next = if is_share { Budget::Count(drawn) } else { Budget::Percent((drawn as f32 * 100.0 / most.max(1) as f32 * 10.0).round() / 10.0) };
+            cache.gesture += 1;
+        }
+        if next != now {
+            answers.push(set(next.to_string(), cache.gesture));
+        }
+    });
+}
+
+/// The Eye in numbers.
+fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = &state.stage else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Eye");
+        super::action_button(state, ui, Action::LockEye, if state.is_eye_locked { "Locked" } else { "Lock" }, answers);
+        super::action_button(state, ui, Action::EyeHome, "Back to path", answers);
+        if matches!(stage, Any::Solid(_)) {
+            super::action_button(state, ui, Action::EyeHere, "From here", answers);
+        }
+    });
+    let mut view = stage.view();
+    let extent = crate::app::each!(stage, s => s.scene.bounds().diagonal());
+    let speed = f64::from(extent) * 0.002;
+    ui.add_enabled_ui(!state.is_eye_locked, |ui| {
+        egui::Grid::new("eye").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
+            let mut changed = false;
+            let mut began = false;
+            let mut drag = |ui: &mut egui::Ui, name: &str, widget: egui::DragValue<'_>| {
+                let response = ui.add(widget);
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
+                began |= response.drag_started() || (response.changed() && !response.dragged());
+                changed |= response.changed();
+            };
+            match &mut view {
+                Any::Flat(v) => {
+                    vector(ui, "position", speed, &mut [&mut v.eye.position.x, &mut v.eye.position.y], &mut drag);
+                    vector(ui, "target", speed, &mut [&mut v.eye.target.x, &mut v.eye.target.y], &mut drag);
+                    lens(ui, &mut v.eye.fov, &mut v.eye.near, &mut v.eye.far, speed, &mut drag);
+                }
+                Any::Solid(v) => {
+                    let (p, t) = (&mut v.eye.position, &mut v.eye.target);
+                    vector(ui, "position", speed, &mut [&mut p.x, &mut p.y, &mut p.z], &mut drag);
+                    vector(ui, "target", speed, &mut [&mut t.x, &mut t.y, &mut t.z], &mut drag);
+                    lens(ui, &mut v.eye.fov, &mut v.eye.near, &mut v.eye.far, speed, &mut drag);
+                }
+            }
+            if began {
+                cache.gesture += 1;
+            }
+            if changed {
+                answers.push(Command::Eye(view as AnyView, cache.gesture));
+            }
+        });
+    });
+}
+
+type Drag<'a> = dyn FnMut(&mut egui::Ui, &str, egui::DragValue<'_>) + 'a;
+
+fn vector(ui: &mut egui::Ui, name: &str, speed: f64, axes: &mut [&mut f32], drag: &mut Drag<'_>) {
+    ui.weak(name);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (axis, value) in axes.iter_mut().enumerate() {
+            drag(ui, &format!("Eye {name} {}", ["x", "y", "z"][axis]), egui::DragValue::new(*value).speed(speed).max_decimals(2));
+        }
+    });
+    ui.end_row();
+}
+
+fn lens(ui: &mut egui::Ui, fov: &mut f32, near: &mut f32, far: &mut f32, speed: f64, drag: &mut Drag<'_>) {
+    ui.weak("angle");
+    let mut degrees = fov.to_degrees();
+    drag(ui, "Eye angle", egui::DragValue::new(&mut degrees).range(1.0..=170.0).suffix("°").speed(0.3).max_decimals(1));
+    // Only a real change may pass through degrees, which round.
+    if degrees != fov.to_degrees() {
+        *fov = degrees.to_radians();
+    }
+    ui.end_row();
+    ui.weak("near, far");
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        let (least, most) = (f64::from(*near) * 1.001, f64::from(*far) * 0.999);
+        drag(ui, "Eye near", egui::DragValue::new(near).range(1e-4..=most).speed(speed * 0.1).max_decimals(3));
+        drag(ui, "Eye far", egui::DragValue::new(far).range(least..=1e9).speed(speed).max_decimals(1));
+    });
+    ui.end_row();
+}

@@ -1,0 +1,208 @@
+//! The pointer and the keys in the pictures of space: orbiting, flying, grabbing the Eye, picking.
+
+use eframe::egui::{self, Key, PointerButton, Pos2, Rect, pos2};
+use glam::{Quat, Vec2, Vec3};
+
+use super::Answers;
+use super::handles::{self, Handle};
+use super::window::Cache;
+use crate::app::{Action, Any, Command, Stage, State};
+use crate::drawing::Subject;
+use crate::geometry::{Aabb, Solid, View};
+use crate::render::gpu::SpaceCamera;
+
+/// Part of the Observer's distance to the Eye at which the turning handle stands.
+const AIM: f32 = 0.12;
+
+/// What `F` brings into the picture.
+pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
+    let scene = &stage.scene;
+    match (state.selection, &stage.recorded) {
+        (Subject::Prim(p), _) => scene.prim_bounds(p),
+        (Subject::Object(o), _) => {
+            scene.live().iter().filter(|&&p| scene.object_of(p) == o).fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)))
+        }
+        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
+        (Subject::Eye, _) => {
+            let around = Vec3::splat(scene.bounds().diagonal() * 0.1);
+            Aabb { min: stage.view.eye.position - around, max: stage.view.eye.position + around }
+        }
+        _ => scene.bounds(),
+    }
+}
+
+/// World ray through a point of the screen.
+fn ray(view: &View<Solid>, rect: Rect, at: Pos2) -> (Vec3, Vec3) {
+    let camera = SpaceCamera::from(view.eye);
+    camera.ray(Vec2::new(at.x - rect.left(), at.y - rect.top()), [rect.width() as u32, rect.height() as u32])
+}
+
+/// The Observer's picture.
+pub fn observe(
+    state: &State,
+    stage: &Stage<Solid>,
+    cache: &mut Cache,
+    ui: &egui::Ui,
+    response: &egui::Response,
+    view: &View<Solid>,
+    answers: &mut Answers,
+) {
+    let rect = response.rect;
+    let camera = SpaceCamera::from(view.eye);
+    let size = [rect.width() as u32, rect.height() as u32];
+    let to_screen = |p: Vec3| camera.project(p, size).map(|at| rect.min + egui::vec2(at.x, at.y));
+    let eye = &stage.view.eye;
+    let depth = (eye.position - view.eye.position).length();
+    let aim = eye.position + eye.forward() * (depth * AIM);
+    let (position, target) = (to_screen(eye.position), to_screen(aim));
+    if state.shown.eye {
+        handles::paint(state, &ui.painter_at(rect), response, position, target);
+    }
+    let mut observer = state.observer;
+    let (scroll, pinch, shift, alt) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta(), i.modifiers.shift, i.modifiers.alt));
+    if let Some(at) = response.hover_pos() {
+        let factor = (-scroll * 0.004).exp() / pinch;
+        if factor != 1.0 {
+            let cursor = (at - rect.center()) / rect.size() * 2.0;
+            observer.zoom(factor, Vec2::new(cursor.x, -cursor.y), rect.aspect_ratio());
+        }
+    }
+    if response.drag_started() {
+        let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
+        let primary = response.dragged_by(PointerButton::Primary) && !shift && !alt && state.shown.eye;
+        cache.held = handles::under(at, position, target).filter(|_| primary);
+        cache.gesture += 1;
+    }
+    if response.dragged() {
+        let delta = Vec2::new(response.drag_delta().x, response.drag_delta().y);
+        let unit = 2.0 * depth * (view.eye.fov * 0.5).tan() / rect.height();
+        let by = observer.rotation() * Vec3::new(delta.x * unit, -delta.y * unit, 0.0);
+        match cache.held {
+            Some(handle) => drag_eye(stage, handle, by, aim, cache.gesture, answers),
+            None if response.dragged_by(PointerButton::Secondary) || shift => observer.pan(delta, rect.height()),
+            None if alt => observer.roll += delta.x * 0.01,
+            None => observer.orbit(-delta.x * 0.008, delta.y * 0.008),
+        }
+    }
+    if response.drag_stopped() {
+        cache.held = None;
+    }
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
+        response.request_focus();
+        let (origin, direction) = ray(view, rect, at);
+        let hit = stage.pick(origin, direction, view.eye.near, |_| true);
+        if response.double_clicked() {
+            match hit {
+                // The point under the cursor becomes what the Observer turns around.
+                Some((_, t)) => observer.pivot = (origin + direction * t).to_array(),
+                None => answers.extend([Command::Select(Subject::None), Action::FrameSelection.into()]),
+            }
+        } else {
+            let grabbed = handles::under(at, position, None).is_some() && state.shown.eye;
+            answers.push(Command::Select(if grabbed { Subject::Eye } else { hit.map_or(Subject::None, |(p, _)| Subject::Prim(p)) }));
+        }
+    }
+    if observer != state.observer {
+        answers.push(Command::Observe(observer));
+    }
+}
+
+fn drag_eye(stage: &Stage<Solid>, handle: Handle, by: Vec3, aim: Vec3, gesture: u64, answers: &mut Answers) {
+    if by == Vec3::ZERO {
+        return;
+    }
+    let mut view = stage.view;
+    let eye = &mut view.eye;
+    match handle {
+        Handle::Position => {
+            eye.position += by;
+            eye.target += by;
+        }
+        Handle::Target => {
+            let length = (eye.target - eye.position).length();
+            eye.target = eye.position + (aim + by - eye.position).normalize_or(eye.forward()) * length;
+        }
+    }
+    answers.push(Command::Eye(Any::Solid(view), gesture));
+}
+
+/// The Eye's picture: dragging looks around, letters fly, a click selects.
+pub fn look_around(
+    state: &State,
+    stage: &Stage<Solid>,
+    cache: &mut Cache,
+    ui: &egui::Ui,
+    response: &egui::Response,
+    rect: Rect,
+    answers: &mut Answers,
+) {
+    if let Some(at) = response.interact_pointer_pos().filter(|p| response.clicked() && rect.contains(*p)) {
+        response.request_focus();
+        let (origin, direction) = ray(&stage.view, rect, at);
+        let drawn = |p| {
+            use crate::{culling::Verdict, trace::State as Known};
+            let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
+            matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
+        };
+        let hit = stage.pick(origin, direction, stage.view.eye.near, drawn);
+        answers.push(Command::Select(hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))));
+    }
+    cache.flying |= response.has_focus();
+    let mut view = stage.view;
+    let eye = &mut view.eye;
+    if response.drag_started() {
+        response.request_focus();
+        cache.gesture += 1;
+    }
+    let delta = response.drag_delta();
+    if response.dragged() && delta != egui::Vec2::ZERO {
+        let forward = eye.target - eye.position;
+        let unit = eye.fov / rect.height().max(1.0);
+        let right = forward.cross(eye.up).normalize_or(Vec3::X);
+        let turn = Quat::from_axis_angle(eye.up.normalize_or(Vec3::Y), delta.x * unit);
+        let turned = turn * Quat::from_axis_angle(right, delta.y * unit) * forward;
+        // Looking straight up or down would leave no way to tell left from right.
+        if turned.normalize_or(Vec3::Z).cross(eye.up.normalize_or(Vec3::Y)).length() > 0.05 {
+            eye.target = eye.position + turned;
+        }
+    }
+    if response.has_focus() && !state.is_eye_locked {
+        let by = flight(ui, stage, cache);
+        eye.position += by;
+        eye.target += by;
+    }
+    if view != stage.view {
+        answers.push(Command::Eye(Any::Solid(view), cache.gesture));
+    }
+}
+
+/// How far the letters that are held carry the Eye in this frame.
+fn flight(ui: &egui::Ui, stage: &Stage<Solid>, cache: &mut Cache) -> Vec3 {
+    let eye = &stage.view.eye;
+    let forward = eye.forward();
+    let right = forward.cross(eye.up).normalize_or(Vec3::X);
+    let up = eye.up.normalize_or(Vec3::Y);
+    let held = |i: &egui::InputState| {
+        let axes = [(Key::W, forward), (Key::S, -forward), (Key::D, right), (Key::A, -right), (Key::E, up), (Key::Q, -up)];
+        axes.iter().filter(|(k, _)| i.key_down(*k)).fold(Vec3::ZERO, |sum, (_, v)| sum + *v)
+    };
+    let (toward, seconds, shift, slow) = ui.input(|i| (held(i), i.stable_dt.min(0.1), i.modifiers.shift, i.modifiers.command || i.modifiers.ctrl));
+    if toward == Vec3::ZERO {
+        cache.flew = false;
+        return Vec3::ZERO;
+    }
+    if !std::mem::replace(&mut cache.flew, true) {
+        cache.gesture += 1;
+    }
+    ui.ctx().request_repaint();
+    let speed = stage.scene.bounds().diagonal()
+        * 0.08
+        * if shift {
+            4.0
+        } else if slow {
+            0.25
+        } else {
+            1.0
+        };
+    toward.normalize_or_zero() * speed * seconds
+}

@@ -1,0 +1,187 @@
+//! Space, through the Eye and from outside, on the graphics card: scrubbing changes one number there.
+
+use std::sync::Arc;
+
+use eframe::egui::{self, Sense};
+use eframe::egui_wgpu::{self, RenderState, wgpu};
+use glam::Vec2;
+
+use super::window::Cache;
+use super::{Answers, palette, reach};
+use crate::app::{Command, Stage, State, Surface};
+use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::figure;
+use crate::geometry::{Solid, View};
+use crate::render::gpu::{self, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, ViewportId};
+use crate::render::screen;
+
+/// What was uploaded last.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Uploaded {
+    scene: u64,
+    film: u64,
+    marks: Option<(u64, usize, figure::Look)>,
+}
+
+/// Shows space: what the Eye sees, or what the Observer sees.
+pub fn show(
+    state: &State,
+    stage: &Stage<Solid>,
+    is_eye: bool,
+    cache: &mut Cache,
+    gpu: Option<&RenderState>,
+    ui: &mut egui::Ui,
+    answers: &mut Answers,
+) {
+    let (pane, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    let name = if is_eye { "Eye view" } else { "Observer view" };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("{name}. {}", state.sentence())));
+    cache.picture_focused |= response.has_focus();
+    ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
+    if !is_eye && std::mem::take(&mut cache.frame) {
+        let mut camera = state.observer;
+        camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds());
+        answers.push(Command::Observe(camera));
+    }
+    let rect = if is_eye { fitted(pane, stage.view.width as f32 / stage.view.height.max(1) as f32) } else { pane };
+    let rect = egui::emath::GuiRounding::round_to_pixels(rect, ui.ctx().pixels_per_point());
+    let view = if is_eye { stage.view } else { state.observer.view(rect.width() as u32, rect.height() as u32) };
+    match gpu {
+        Some(gpu) => picture(state, stage, is_eye, cache, gpu, ui, rect, &view),
+        None => {
+            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "No graphics device", egui::FontId::default(), palette::panel(state).faint);
+        }
+    }
+    if is_eye {
+        ui.painter_at(pane).rect_stroke(rect, 0.0, egui::Stroke::new(1.0, palette::panel(state).border), egui::StrokeKind::Inside);
+        reach::look_around(state, stage, cache, ui, &response, rect, answers);
+    } else {
+        labels(state, stage, cache, ui, rect, &view);
+        reach::observe(state, stage, cache, ui, &response, &view, answers);
+    }
+    super::canvas::focus_ring(state, ui, &response);
+}
+
+/// The largest rectangle of this aspect in the middle of another one.
+fn fitted(pane: egui::Rect, aspect: f32) -> egui::Rect {
+    let size = if pane.aspect_ratio() > aspect {
+        egui::vec2(pane.height() * aspect, pane.height())
+    } else {
+        egui::vec2(pane.width(), pane.width() / aspect)
+    };
+    egui::Rect::from_center_size(pane.center(), size)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn picture(
+    state: &State,
+    stage: &Stage<Solid>,
+    is_eye: bool,
+    cache: &mut Cache,
+    gpu: &RenderState,
+    ui: &egui::Ui,
+    rect: egui::Rect,
+    view: &View<Solid>,
+) {
+    upload(state, stage, cache, gpu);
+    let ppp = ui.ctx().pixels_per_point();
+    let size_px = [(rect.width() * ppp).round() as u32, (rect.height() * ppp).round() as u32];
+    let call = Call { id: ViewportId(u32::from(is_eye)), size_px, camera: view.eye.into(), style: style(state, is_eye, ppp) };
+    ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, call));
+}
+
+/// Takes the scene, the film and the marks of the step to the graphics card, each when it has changed.
+fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderState) {
+    let mut renderer = gpu.renderer.write();
+    let resources = &mut renderer.callback_resources;
+    if resources.get::<SpaceLayer>().is_none() {
+        resources.insert(SpaceLayer::new(&gpu.device, gpu.target_format));
+        cache.uploaded = Uploaded::default();
+    }
+    let Some(layer) = resources.get_mut::<SpaceLayer>() else { return };
+    let now = &mut cache.uploaded;
+    if now.scene != stage.serial {
+        *now = Uploaded { scene: stage.serial, ..Uploaded::default() };
+        layer.set_scene(&gpu.device, &stage.scene);
+    }
+    let Some(recorded) = &stage.recorded else { return };
+    if now.film != recorded.serial {
+        now.film = recorded.serial;
+        layer.set_film(&gpu.device, &gpu.queue, &recorded.stamps, recorded.film.hierarchy(), &[]);
+    }
+    let look = figure::Look { prims: false, nodes: false, selected: Subject::None, ..state.look() };
+    let key = (recorded.serial, state.step, look);
+    if now.marks != Some(key) {
+        now.marks = Some(key);
+        let world = Arc::new(figure::world(&*recorded.film, &recorded.stamps, state.step, &look));
+        layer.set_marks(&gpu.device, &gpu.queue, &world);
+        cache.marks = Some(world);
+    }
+}
+
+/// What a viewport shows.
+pub fn style(state: &State, is_eye: bool, pixels_per_point: f32) -> SpaceStyle {
+    let palette = Palette::of(state.shown.theme);
+    let base = if is_eye { SpaceStyle::eye(state.step, palette) } else { SpaceStyle::observer(state.step, palette) };
+    let mut style = SpaceStyle { pixels_per_point, ..base };
+    if is_eye {
+        // What is not decided yet is hinted at, so that the picture is never empty.
+        style.undecided = Shown::Ghost;
+    }
+    style.surface = match state.shown.surface {
+        _ if !state.shown.prims => gpu::Surface::Hidden,
+        Surface::Wire => gpu::Surface::Wireframe,
+        Surface::Solid | Surface::Translucent => gpu::Surface::Solid,
+    };
+    if state.shown.surface == Surface::Translucent {
+        (style.kept, style.undecided, style.ghost) = (Shown::Ghost, Shown::Ghost, 0.3);
+    }
+    if !state.shown.nodes {
+        style.nodes = NodeBoxes::None;
+    }
+    let current = state.current_subject();
+    style.highlights = vec![(current, Role::Current), (state.selection, Role::Selected)];
+    style.highlights.retain(|(s, _)| *s != Subject::None && !(is_eye && matches!(s, Subject::Node(_))));
+    style
+}
+
+struct Call {
+    id: ViewportId,
+    size_px: [u32; 2],
+    camera: SpaceCamera,
+    style: SpaceStyle,
+}
+
+impl egui_wgpu::CallbackTrait for Call {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _: &egui_wgpu::ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut egui_wgpu::CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if let Some(layer) = resources.get_mut::<SpaceLayer>() {
+            layer.render(device, queue, encoder, self.id, self.size_px, &self.camera, &self.style);
+        }
+        vec![]
+    }
+    fn paint(&self, _: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, resources: &egui_wgpu::CallbackResources) {
+        if let Some(layer) = resources.get::<SpaceLayer>() {
+            layer.blit(self.id, pass);
+        }
+    }
+}
+
+/// The labels of the evidence, over the picture.
+fn labels(state: &State, stage: &Stage<Solid>, cache: &Cache, ui: &egui::Ui, rect: egui::Rect, view: &View<Solid>) {
+    let Some(marks) = &cache.marks else { return };
+    if stage.recorded.is_none() || !state.shown.evidence {
+        return;
+    }
+    let texts = marks.items.iter().filter(|i| i.layer == Layer::Labels && matches!(i.mark, Mark::Text { .. })).cloned().collect();
+    let size = Vec2::new(rect.width(), rect.height());
+    let mut paper = Drawing { size_pt: size, ..Drawing::default() };
+    figure::project(&Drawing { items: texts, ..Drawing::default() }, view, Vec2::ZERO, size, &mut paper);
+    screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
+}

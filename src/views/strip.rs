@@ -1,0 +1,93 @@
+//! Flatland through the Eye: its image is one line of pixels. Above the line each column stands as high as
+//! what it shows is near, as in the first games with walls; below it are the depths as a graph.
+
+use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
+
+use super::window::Cache;
+use super::{Answers, palette};
+use crate::app::{Any, Command, Stage, State};
+use crate::culling::Verdict;
+use crate::drawing::{Role, Subject};
+use crate::figure::role_of;
+use crate::geometry::Flat;
+use crate::trace::State as Known;
+
+/// Height of the strip itself.
+const STRIP: f32 = 22.0;
+
+/// Shows what the Eye sees.
+pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Eye view: the one line of pixels that the Eye sees"));
+    cache.picture_focused |= response.has_focus();
+    let painter = ui.painter_at(rect);
+    let colors = palette::panel(state);
+    painter.rect_filled(rect, 0.0, colors.canvas);
+    let key = (stage.serial, stage.view);
+    if cache.image.as_ref().is_none_or(|(k, _)| *k != key) {
+        cache.image = Some((key, stage.image()));
+    }
+    let Some((_, image)) = &cache.image else { return };
+    let (walls, strip) = layout(rect);
+    let nearest = image.iter().flatten().map(|(_, d)| *d).fold(f32::INFINITY, f32::min);
+    let per_column = rect.width() / image.len().max(1) as f32;
+    for (i, cell) in image.iter().enumerate() {
+        let Some((prim, depth)) = cell else { continue };
+        let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(*prim, state.step));
+        let style = palette::role(state, role_of(known));
+        let x = rect.left() + i as f32 * per_column;
+        let column = |y: egui::Rangef| Rect::from_x_y_ranges(egui::Rangef::new(x, x + per_column.max(1.0)), y);
+        let half = walls.height() * 0.46 * (nearest / depth).sqrt();
+        let band = egui::Rangef::new(walls.center().y - half, walls.center().y + half);
+        let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
+        // What was culled has gaps: every other pair of columns is left out.
+        let culled = matches!(known, Known::Decided(v) if v != Verdict::Visible && v != Verdict::Partial);
+        if !culled || (i / 2) % 2 == 0 {
+            painter.rect_filled(column(band), 0.0, faded);
+        }
+        painter.rect_filled(column(strip.y_range()), 0.0, style);
+        let edge = i == 0 || image[i - 1].is_none_or(|(p, _)| p != *prim);
+        if edge {
+            painter.vline(x, band, Stroke::new(1.0, colors.canvas));
+            painter.vline(x, strip.y_range(), Stroke::new(1.0, colors.canvas));
+        }
+        if state.selection == Subject::Prim(*prim) {
+            painter.hline(egui::Rangef::new(x, x + per_column.max(1.0)), strip.bottom() + 3.0, Stroke::new(4.0, palette::role(state, Role::Current)));
+        }
+    }
+    painter.rect_stroke(strip, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
+    let distinct: std::collections::BTreeSet<_> = image.iter().flatten().map(|(p, _)| *p).collect();
+    let text = format!("{} pixels, {} segments seen", image.len(), distinct.len());
+    painter.text(pos2(rect.left() + 6.0, rect.top() + 4.0), Align2::LEFT_TOP, text, FontId::proportional(12.0), colors.faint);
+    interact(stage, image, per_column, &response, answers);
+    super::canvas::focus_ring(state, ui, &response);
+}
+
+/// The walls above, the strip of pixels below.
+fn layout(rect: Rect) -> (Rect, Rect) {
+    let strip = Rect::from_min_size(pos2(rect.left(), rect.bottom() - STRIP - 12.0), vec2(rect.width(), STRIP));
+    (rect.with_max_y(strip.top() - 8.0).with_min_y(rect.top() + 20.0), strip)
+}
+
+type Column = Option<(crate::geometry::PrimId, f32)>;
+
+fn interact(stage: &Stage<Flat>, image: &[Column], per_column: f32, response: &egui::Response, answers: &mut Answers) {
+    let under = |x: f32| image.get(((x - response.rect.left()) / per_column.max(1e-6)) as usize).copied().flatten();
+    if response.clicked() {
+        response.request_focus();
+        if let Some(at) = response.interact_pointer_pos() {
+            answers.push(Command::Select(under(at.x).map_or(Subject::None, |(p, _)| Subject::Prim(p))));
+        }
+    }
+    // Dragging turns the Eye, as looking around does.
+    if response.dragged() && response.drag_delta().x != 0.0 {
+        let mut view = stage.view;
+        let turn = response.drag_delta().x / response.rect.width().max(1.0) * view.eye.fov;
+        let toward = glam::Vec2::from_angle(turn).rotate(view.eye.target - view.eye.position);
+        view.eye.target = view.eye.position + toward;
+        answers.push(Command::Eye(Any::Flat(view), super::window::LOOK_GESTURE));
+    }
+    if let Some((prim, depth)) = response.hover_pos().and_then(|at| under(at.x)) {
+        response.clone().on_hover_text_at_pointer(format!("segment {prim}, {} units away", crate::app::short(depth)));
+    }
+}

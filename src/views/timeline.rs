@@ -1,0 +1,201 @@
+//! The timeline: the moves, the lanes with every event, scrubbing, the path's frames.
+
+use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
+
+use super::icons::Icon;
+use super::window::Cache;
+use super::{Answers, palette};
+use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes, subject_at, verdict_of};
+use crate::culling::Event;
+use crate::drawing::Subject;
+use crate::figure::role_of;
+use crate::trace::{Detail, State as Known};
+
+/// Room for the names of lanes.
+const NAMES: f32 = 72.0;
+
+/// Shows the timeline.
+pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = state.staged() else { return };
+    moves(state, ui, answers);
+    frames(state, stage, ui, answers);
+    if stage.lost() > 0 {
+        let text = format!(
+            "This film is capped: it shows the first {} events; {} more happened.",
+            super::events::grouped(state.len()),
+            super::events::grouped(stage.lost() as usize)
+        );
+        ui.colored_label(ui.visuals().warn_fg_color, text);
+    }
+    scrubber(state, stage, cache, ui, answers);
+}
+
+fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        for (action, icon) in [
+            (Action::First, Icon::First),
+            (Action::BackOver, Icon::BackOver),
+            (Action::Back, Icon::Back),
+            (Action::PlayPause, if state.is_playing { Icon::Pause } else { Icon::Play }),
+            (Action::Forward, Icon::Forward),
+            (Action::Over, Icon::Over),
+            (Action::Out, Icon::Out),
+            (Action::Last, Icon::Last),
+        ] {
+            super::icon_button(state, ui, action, icon, answers);
+        }
+        ui.add_space(4.0);
+        let label = ui.label("Step");
+        let mut step = state.step;
+        let response = ui.add(egui::DragValue::new(&mut step).range(0..=state.len()).speed(0.2)).labelled_by(label.id);
+        if response.changed() {
+            answers.push(Command::GoTo(step));
+        }
+        ui.label(format!("of {}", super::events::grouped(state.len())));
+        ui.add_space(4.0);
+        let mut speed = state.speed;
+        let label = ui.label("Speed");
+        let drag = egui::DragValue::new(&mut speed).range(0.25..=1e6).speed(state.speed * 0.02).suffix("/s").max_decimals(1);
+        if ui.add(drag).labelled_by(label.id).on_hover_text("Events a second (− and +)").changed() {
+            answers.push(Command::Speed(speed));
+        }
+        let mut coarse = state.detail == Detail::Coarse;
+        if ui.checkbox(&mut coarse, "coarse").on_hover_text(Action::ToggleDetail.info().help).changed() {
+            answers.push(Command::Detail(if coarse { Detail::Coarse } else { Detail::Full }));
+        }
+    });
+}
+
+fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut Answers) {
+    let (names, (path, frame)) = (stage.path_names(), stage.place());
+    if names.len() == 1 && names[0].1 == 1 {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.label("View");
+        if names.len() > 1 {
+            egui::ComboBox::from_id_salt("path").selected_text(&names[path].0).width(90.0).show_ui(ui, |ui| {
+                for (i, (name, count)) in names.iter().enumerate() {
+                    if ui.selectable_label(i == path, format!("{name} ({count})")).clicked() {
+                        answers.push(Command::Frame(i, 0));
+                    }
+                }
+            });
+        }
+        super::action_button(state, ui, Action::PreviousFrame, "[", answers);
+        let last = names[path].1 - 1;
+        let mut at = frame;
+        let width = (ui.available_width() - 110.0).clamp(60.0, 400.0);
+        ui.spacing_mut().slider_width = width;
+        let slider = egui::Slider::new(&mut at, 0..=last).show_value(false);
+        let response = ui.add_enabled(last > 0, slider);
+        response.widget_info(|| egui::WidgetInfo::slider(last > 0, at as f64, "View of the path"));
+        if response.changed() {
+            answers.push(Command::Frame(path, at));
+        }
+        super::action_button(state, ui, Action::NextFrame, "]", answers);
+        ui.label(format!("{} of {}", frame + 1, last + 1));
+        if stage.is_eye_moved() {
+            ui.weak("(moved)");
+        }
+    });
+}
+
+fn scrubber(state: &State, stage: &dyn Staged, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+    let size = vec2(ui.available_width(), ui.available_height().max(40.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::slider(true, state.step as f64, "Timeline"));
+    let events = stage.events();
+    let bar = Rect::from_min_max(pos2(rect.left() + NAMES, rect.top()), rect.max);
+    if events.is_empty() || bar.width() < 4.0 {
+        return;
+    }
+    let per_step = bar.width() / events.len() as f32;
+    let x_of = |step: usize| bar.left() + step as f32 * per_step;
+    let step_at = |x: f32| (((x - bar.left()) / per_step).round().max(0.0) as usize).min(events.len());
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+        let step = step_at(at.x);
+        answers.push(Command::GoTo(step));
+        if response.clicked()
+            && let Some(event) = step.checked_sub(1)
+            && subject_at(stage, event) != Subject::None
+        {
+            answers.push(Command::Select(subject_at(stage, event)));
+        }
+    }
+    let columns = bar.width().max(1.0) as usize;
+    let key = (stage.film_serial(), columns);
+    if cache.lanes.as_ref().is_none_or(|(k, _)| *k != key) {
+        cache.lanes = Some((key, lanes(events, columns)));
+    }
+    let Some((_, lanes)) = &cache.lanes else { return };
+    let painter = ui.painter_at(rect);
+    let height = rect.height() / Lane::ALL.len() as f32;
+    let colors = palette::panel(state);
+    for (row, lane) in Lane::ALL.into_iter().enumerate() {
+        let lane_rect = Rect::from_min_size(pos2(rect.left(), rect.top() + row as f32 * height), vec2(rect.width(), height));
+        let font = FontId::proportional((height * 0.7).clamp(8.0, 13.0));
+        painter.text(pos2(rect.left(), lane_rect.center().y), Align2::LEFT_CENTER, lane.name(), font, colors.faint);
+        painter.hline(rect.x_range(), lane_rect.bottom(), Stroke::new(1.0, colors.border));
+        let deepest = lanes[lane as usize].iter().map(|c| c.depth).max().unwrap_or(0).max(1);
+        for (column, cell) in lanes[lane as usize].iter().enumerate().filter(|(_, c)| c.count > 0) {
+            let x = bar.left() + column as f32;
+            let width = per_step.clamp(1.0, 6.0);
+            paint_cell(state, &painter, lane, cell, deepest, Rect::from_min_size(pos2(x, lane_rect.top() + 2.0), vec2(width, height - 4.0)));
+        }
+    }
+    marks(state, events, &painter, bar, &x_of);
+    let x = x_of(state.step);
+    painter.vline(x, rect.y_range(), Stroke::new(2.0, colors.accent));
+    painter.circle_filled(pos2(x, rect.top() + 3.0), 4.0, colors.accent);
+    if let Some(at) = response.hover_pos().filter(|p| bar.contains(*p)) {
+        let step = step_at(at.x);
+        let text = step.checked_sub(1).map_or("before the first event".into(), |i| stage.sentence(i));
+        response.on_hover_text_at_pointer(format!("Step {step}: {text}"));
+    }
+}
+
+fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, deepest: u32, rect: Rect) {
+    match (lane, cell.main_verdict()) {
+        (Lane::Walk, _) => {
+            let rise = rect.height() * cell.depth as f32 / deepest as f32;
+            let low = Rect::from_min_max(pos2(rect.left(), rect.bottom() - rise.max(1.0)), rect.max);
+            painter.rect_filled(low, 0.0, palette::role(state, crate::drawing::Role::Faint));
+        }
+        (_, Some(verdict)) => {
+            // Form as well as hue: what is kept fills the lane, what is culled hangs in its upper half.
+            let kept = matches!(verdict, crate::culling::Verdict::Visible);
+            let part = match verdict {
+                _ if kept => rect,
+                crate::culling::Verdict::Partial => rect.shrink2(vec2(0.0, rect.height() * 0.35)),
+                _ => rect.with_max_y(rect.center().y),
+            };
+            painter.rect_filled(part, 0.0, palette::role(state, role_of(Known::Decided(verdict))));
+        }
+        _ => {
+            painter.rect_filled(rect.shrink2(vec2(0.0, rect.height() * 0.3)), 0.0, palette::role(state, crate::drawing::Role::Evidence));
+        }
+    }
+}
+
+/// Bookmarks as flags, breakpoints at verdicts as dots, up to as many as a person can tell apart.
+fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: Rect, x_of: &dyn Fn(usize) -> f32) {
+    let colors = palette::panel(state);
+    for (i, bookmark) in state.bookmarks.iter().enumerate() {
+        let x = x_of(bookmark.step);
+        painter.vline(x, bar.y_range(), Stroke::new(1.0, colors.text));
+        painter.text(pos2(x + 2.0, bar.top()), Align2::LEFT_TOP, (i + 1).to_string(), FontId::proportional(10.0), colors.text);
+    }
+    let dot = |i: usize| {
+        painter.circle_filled(pos2(x_of(i + 1), bar.bottom() - 3.0), 2.5, colors.text);
+    };
+    if state.breakpoints.iter().any(|b| !matches!(b, Breakpoint::Verdict(_))) {
+        let stops = (0..events.len()).filter(|&i| state.stops_at(i)).take(500);
+        stops.for_each(dot);
+    } else {
+        let wanted = |e: &Event| verdict_of(*e).is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
+        let stops = events.iter().enumerate().filter(|(_, e)| wanted(e)).take(500);
+        stops.for_each(|(i, _)| dot(i));
+    }
+}

@@ -1,0 +1,69 @@
+//! Why the selected thing has the state it has, in sentences, each with the step that shows it.
+
+use eframe::egui::{self, ScrollArea};
+
+use super::Answers;
+use crate::app::{Action, Command, State, why};
+use crate::drawing::Subject;
+
+/// A thing by its name.
+pub fn subject_name(state: &State, subject: Subject) -> String {
+    let Some(stage) = state.staged() else { return "nothing".into() };
+    match subject {
+        Subject::Prim(p) => format!("{} {p}", stage.prim_name()),
+        Subject::Node(n) => format!("node {n}"),
+        Subject::Object(o) => format!("object {}", stage.object_name(o)),
+        Subject::Plane(i) => format!("plane {i} of the frustum"),
+        Subject::Eye => "the Eye".into(),
+        Subject::None => "nothing".into(),
+    }
+}
+
+/// Shows the explanation.
+pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(stage) = state.staged() else { return };
+    ScrollArea::vertical().auto_shrink(false).id_salt("why").show(ui, |ui| {
+        if state.selection == Subject::None {
+            ui.label("Nothing is selected.");
+            ui.weak("Click a node or a primitive in a picture or in the event tree: here stands why it is drawn or not.");
+            let current = state.current_subject();
+            if current != Subject::None && ui.button(format!("Select {}", subject_name(state, current))).clicked() {
+                answers.push(Command::Select(current));
+            }
+            return;
+        }
+        ui.horizontal_wrapped(|ui| {
+            ui.strong(capitalized(&subject_name(state, state.selection)));
+            if let Subject::Prim(p) = state.selection {
+                let object = stage.object_of(p);
+                let name = stage.object_name(object);
+                if !name.is_empty() && ui.link(name).on_hover_text("Select the object").clicked() {
+                    answers.push(Command::Select(Subject::Object(object)));
+                }
+            }
+        });
+        for because in why(stage, state.selection, state.step) {
+            ui.label(&because.text);
+            if let Some(step) = because.step.filter(|&s| s != state.step)
+                && ui.link(format!("Go to step {step}")).clicked()
+            {
+                answers.push(Command::GoTo(step));
+            }
+            ui.add_space(4.0);
+        }
+        ui.horizontal_wrapped(|ui| {
+            super::action_button(state, ui, Action::PreviousOnSelected, "‹ about it", answers);
+            super::action_button(state, ui, Action::NextOnSelected, "about it ›", answers);
+            if matches!(state.selection, Subject::Node(_) | Subject::Prim(_)) {
+                super::action_button(state, ui, Action::SelectParent, "Node above", answers);
+                super::action_button(state, ui, Action::Breakpoint, "Breakpoint", answers);
+            }
+        });
+    });
+}
+
+/// With a capital letter.
+pub fn capitalized(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}

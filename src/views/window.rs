@@ -1,0 +1,283 @@
+//! The window: egui's frame around the state, and what only the screen needs.
+
+use std::sync::mpsc::{Receiver, channel};
+
+use eframe::egui::{self, Panel, ViewportCommand};
+use egui_tiles::Tree;
+
+use super::dock::{self, Dock, Pane};
+use super::handles::Handle;
+use super::keys::{Hook, Keys};
+use super::{Answers, dialogs, menu, palette, status, welcome};
+use crate::app::{Action, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State};
+use crate::drawing::Drawing;
+use crate::figure::Look;
+use crate::geometry::{Flat, PrimId, View};
+use crate::render::screen;
+
+/// The gesture of looking around with the pointer in the Eye view.
+pub(super) const LOOK_GESTURE: u64 = u64::MAX;
+
+/// Something made for a key, until the key changes.
+pub type Kept<K, V> = (K, V);
+
+/// What only the screen needs: cached pictures, half-typed text, what the pointer holds.
+#[derive(Default)]
+pub struct Cache {
+    /// The flatland drawing of a film's step.
+    pub flat: Option<((u64, usize, Look), Drawing<glam::Vec2>)>,
+    /// The flatland Eye's image.
+    pub image: Option<Kept<(u64, View<Flat>), Vec<Option<(PrimId, f32)>>>>,
+    /// The timeline's cells for a film and a width.
+    pub lanes: Option<Kept<(u64, usize), [Vec<Cell>; 4]>>,
+    /// What the event tree was last scrolled for.
+    pub scrolled_to: Option<(usize, u64, usize)>,
+    /// How far the event tree is scrolled, points.
+    pub events_offset: f32,
+    /// Put the cursor into the filter.
+    pub focus_filter: bool,
+    /// Bring the selection, or everything, into the Observer's picture.
+    pub frame: bool,
+    /// The part of the Eye that the pointer holds.
+    pub held: Option<Handle>,
+    /// Number of the present gesture, for undo.
+    pub gesture: u64,
+    /// The marks of the step in space.
+    pub marks: Option<std::sync::Arc<Drawing<glam::Vec3>>>,
+    /// What lies on the graphics card.
+    pub uploaded: super::space::Uploaded,
+    /// Whether the Eye's picture takes letters to fly.
+    pub flying: bool,
+    /// Whether letters carried the Eye in the last frame.
+    pub flew: bool,
+    /// Whether a picture has the focus.
+    pub picture_focused: bool,
+    /// Text typed into the open dialog.
+    pub typed: String,
+    /// Which dialog it was typed for.
+    pub typed_for: Dialog,
+    /// Chosen row of the palette.
+    pub choice: usize,
+    /// Examples of the start screen.
+    pub examples: Option<Vec<Example>>,
+    asked: Option<Receiver<Option<String>>>,
+}
+
+impl Cache {
+    /// Whether the system's dialog is open.
+    pub fn is_asking(&self) -> bool {
+        self.asked.is_some()
+    }
+    /// Opens the system's dialog on a thread of its own, so that the window goes on.
+    pub fn ask_open(&mut self) {
+        let (send, receive) = channel();
+        self.asked = Some(receive);
+        std::thread::spawn(move || {
+            let dialog = rfd::FileDialog::new().set_title("Open a scene").add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
+            let _ = send.send(dialog.pick_file().map(|p| p.to_string_lossy().into_owned()));
+        });
+    }
+    fn asked(&mut self) -> Option<Option<String>> {
+        let answer = match self.asked.as_ref()?.try_recv() {
+            Ok(path) => path,
+            Err(std::sync::mpsc::TryRecvError::Empty) => return None,
+            Err(_) => None,
+        };
+        self.asked = None;
+        Some(answer)
+    }
+}
+
+/// The explorer.
+pub struct App {
+    /// Everything that the explorer knows.
+    pub state: State,
+    cache: Cache,
+    tree: Tree<Pane>,
+    keys: Keys,
+    start: Start,
+    dressed: Option<(crate::app::Theme, Layout, u32)>,
+    title: String,
+    is_fullscreen: bool,
+    quiet_frames: u32,
+    is_shot: bool,
+}
+
+/// Keys in eframe's storage.
+const LAYOUT: &str = "layout-1";
+const SESSION: &str = "session-1";
+
+impl App {
+    /// The explorer as eframe wants it.
+    pub fn new(cc: &eframe::CreationContext<'_>, start: Start) -> Self {
+        let ctx = &cc.egui_ctx;
+        screen::install_fonts(ctx);
+        ctx.options_mut(|o| o.zoom_with_keyboard = false);
+        let keys = Keys::default();
+        ctx.add_plugin(Hook::new(keys.clone()));
+        let mut state = State::new();
+        let waker = ctx.clone();
+        state.set_wake(move || waker.request_repaint());
+        // Whatever is wrong with what was saved, the explorer starts without it.
+        let kept = |key: &str| cc.storage.filter(|_| !start.fresh).and_then(|s| s.get_string(key));
+        let last = kept(SESSION).and_then(|text| Session::parse(&text, "the last session").ok());
+        state.start(&start, last);
+        let layout = kept(LAYOUT).filter(|_| !start.reset_layout).and_then(|text| serde_json::from_str::<(String, Tree<Pane>)>(&text).ok());
+        let layout = layout.filter(|(name, tree)| *name == state.shown.layout.name() && dock::is_sound(tree));
+        let tree = layout.map_or_else(|| dock::tree(state.shown.layout), |(_, tree)| tree);
+        let frame = true;
+        let cache = Cache { frame, ..Cache::default() };
+        Self { state, cache, tree, keys, start, dressed: None, title: String::new(), is_fullscreen: false, quiet_frames: 0, is_shot: false }
+    }
+
+    fn dress(&mut self, ctx: &egui::Context) {
+        let shown = &self.state.shown;
+        let wanted = (shown.theme, shown.layout, (shown.scale * 1000.0) as u32);
+        if self.dressed != Some(wanted) {
+            self.dressed = Some(wanted);
+            palette::dress(ctx, &self.state, self.state.shown.layout == Layout::Lecture);
+            ctx.set_zoom_factor(self.state.shown.scale);
+        }
+    }
+
+    fn panels(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame, answers: &mut Answers) {
+        let state = &self.state;
+        Panel::top("menu").show(ui, |ui| menu::show(state, ui, answers));
+        if state.shown.layout == Layout::Lecture && state.stage.is_some() {
+            Panel::bottom("caption").show(ui, |ui| status::caption(state, ui));
+        }
+        Panel::bottom("status").show(ui, |ui| status::show(state, ui, answers));
+        if state.stage.is_some() {
+            let mut dock = Dock { state, cache: &mut self.cache, answers, gpu: frame.wgpu_render_state() };
+            let ground = egui::Frame::NONE.fill(ui.visuals().panel_fill);
+            egui::CentralPanel::no_frame().frame(ground).show(ui, |ui| self.tree.ui(&mut dock, ui));
+        } else {
+            let cache = &mut self.cache;
+            egui::CentralPanel::default().show(ui, |ui| welcome::show(state, cache, ui, answers));
+        }
+        dialogs::show(state, &mut self.cache, ui.ctx(), answers);
+    }
+
+    /// What the hook of the keys needs to know before the next frame.
+    fn tell_keys(&mut self, ctx: &egui::Context) {
+        let mut inbox = self.keys.inbox();
+        inbox.enabled = Action::ALL.iter().map(|i| i.action).filter(|&a| self.state.can(a)).collect();
+        inbox.is_picture_focused = self.cache.picture_focused;
+        inbox.is_flying = std::mem::take(&mut self.cache.flying);
+        inbox.is_typing = self.state.dialog != Dialog::None;
+        if self.state.dialog != Dialog::None || egui::Popup::is_any_open(ctx) {
+            // An open menu or dialog closes itself on Escape.
+            inbox.enabled.remove(&Action::Cancel);
+        }
+        self.cache.picture_focused = false;
+    }
+
+    fn outside_world(&mut self, ctx: &egui::Context) -> Answers {
+        let mut answers: Answers = std::mem::take(&mut self.keys.inbox().asked).into_iter().map(Command::from).collect();
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_string_lossy().into_owned()));
+        answers.extend(dropped.map(Command::Open));
+        match self.cache.asked() {
+            Some(Some(path)) => answers.push(Command::Open(path)),
+            Some(None) => self.state.tell("No file was chosen. If no dialog appeared, type the path."),
+            None => {}
+        }
+        answers
+    }
+
+    fn effects(&mut self, ctx: &egui::Context) {
+        for effect in std::mem::take(&mut self.state.effects) {
+            match effect {
+                Effect::AskOpen => self.cache.ask_open(),
+                Effect::AskSave => {}
+                Effect::Export(_) => self.state.tell("Export is not there yet."),
+                Effect::Copy(text) => ctx.copy_text(text),
+                Effect::FullScreen => {
+                    self.is_fullscreen = !self.is_fullscreen;
+                    ctx.send_viewport_cmd(ViewportCommand::Fullscreen(self.is_fullscreen));
+                }
+                Effect::ResetLayout => {
+                    self.tree = dock::tree(self.state.shown.layout);
+                    self.cache.frame = true;
+                }
+                Effect::FocusFilter => self.cache.focus_filter = true,
+                Effect::Frame => self.cache.frame = true,
+                Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            }
+        }
+    }
+
+    /// Writes the picture that the start asked for, once everything has been quiet for some frames, and quits.
+    fn shoot(&mut self, ctx: &egui::Context) {
+        let Some(shot) = self.start.shot.clone().filter(|_| !self.is_shot) else { return };
+        self.quiet_frames = if self.state.busy().is_none() { self.quiet_frames + 1 } else { 0 };
+        ctx.request_repaint();
+        if self.quiet_frames < 8 {
+            return;
+        }
+        self.is_shot = true;
+        let quit = ctx.clone();
+        ctx.request_screenshot(move |image: std::sync::Arc<egui::ColorImage>| {
+            let rgba: Vec<u8> = image.pixels.iter().flat_map(|c| c.to_srgba_unmultiplied()).collect();
+            let pixels = crate::drawing::Pixels { width: image.size[0] as u32, height: image.size[1] as u32, rgba: rgba.into() };
+            if let Err(error) = crate::app::write_file(&shot.path, &crate::render::png_pixels(&pixels)) {
+                eprintln!("error: {error}");
+            }
+            quit.send_viewport_cmd(ViewportCommand::Close);
+            quit.request_repaint();
+        });
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        self.state.poll();
+        self.dress(&ctx);
+        let mut answers = self.outside_world(&ctx);
+        for command in answers.drain(..) {
+            self.state.apply(command);
+        }
+        self.panels(ui, frame, &mut answers);
+        for command in answers {
+            self.state.apply(command);
+            ctx.request_repaint();
+        }
+        self.effects(&ctx);
+        if self.state.tick(ctx.input(|i| i.stable_dt)) {
+            ctx.request_repaint();
+        }
+        self.tell_keys(&ctx);
+        let title = self.state.staged().map_or("cullscope".to_owned(), |s| format!("{} – cullscope", s.scene_name()));
+        if title != self.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+        self.shoot(&ctx);
+    }
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        if self.start.fresh || self.start.shot.is_some() {
+            return;
+        }
+        if let Ok(text) = serde_json::to_string(&(self.state.shown.layout.name(), &self.tree)) {
+            storage.set_string(LAYOUT, text);
+        }
+        storage.set_string(SESSION, self.state.session().text());
+    }
+}
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// When there is no display or no way to draw on it.
+pub fn run(start: Start) -> Result<(), eframe::Error> {
+    let size = start.shot.as_ref().map_or([1280.0, 800.0], |s| [s.size_px[0] as f32, s.size_px[1] as f32]);
+    let viewport = egui::ViewportBuilder::default()
+        .with_inner_size(size)
+        .with_min_inner_size([640.0, 420.0])
+        .with_title("cullscope")
+        .with_app_id("cullscope")
+        .with_drag_and_drop(true);
+    // A saved window position may lie on a screen that is gone: the window's place is not kept.
+    let native = eframe::NativeOptions { viewport, persist_window: false, ..Default::default() };
+    eframe::run_native("cullscope", native, Box::new(move |cc| Ok(Box::new(App::new(cc, start)))))
+}
