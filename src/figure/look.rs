@@ -108,7 +108,7 @@ pub fn observer_above(scene: &Scene<Solid>, aspect: f32) -> View<Solid> {
     // Steeper than the framing view: a floor plan is read from above.
     let center = scene.bounds().center();
     let distance = (view.eye.position - center).length();
-    view.eye.position = center + Vec3::new(0.35, 0.85, 0.55).normalize() * distance * 0.75;
+    view.eye.position = center + Vec3::new(0.35, 0.85, 0.55).normalize() * distance * 0.95;
     view.eye.near = distance * 0.01;
     view
 }

@@ -1,15 +1,17 @@
 //! (film, step, look) → drawing: every picture in the explorer and in the documentation.
 //!
-//! [`world`] draws a step in world coordinates, [`Sheet`] and [`project`] put it on paper, [`Page`] sets title, legend and
-//! caption around it.
+//! [`Page`] sets title, legend and caption around a picture. [`world`] draws a step in world
+//! coordinates, [`Sheet`] and [`project`] put it on paper.
 
 pub mod axis;
+mod builtin;
 mod clip;
 mod look;
 pub mod page;
 mod panels;
 mod place;
 
+pub use builtin::{BUILTIN, Builtin, Tint};
 pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{Sheet, clip, project};
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::geometry::{Aabb, Solid, View};
 
 /// One picture.
@@ -41,6 +41,7 @@ impl Picture {
             Self::Pixels(pixels) => paper.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners: [min, max], pixels: pixels.clone() }),
         }
         clip(&mut paper, min, max);
+        plate_labels(&mut paper, min, max);
         paper
     }
 }
@@ -74,4 +75,27 @@ pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
         paper.push(Layer::Labels, Role::Ink, Subject::None, mark);
     }
     paper
+}
+
+/// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt` and puts a piece of paper under each, so
+/// that they are read over any picture.
+pub fn plate_labels(drawing: &mut Drawing, min_pt: Vec2, max_pt: Vec2) {
+    let items = std::mem::take(&mut drawing.items);
+    for mut item in items {
+        if let Mark::Text { at, text, size_pt, anchor, font } = &mut item.mark
+            && item.layer == Layer::Labels
+            && item.role == Role::Evidence
+        {
+            let width = metrics::width_pt(text, *font, *size_pt);
+            let start = metrics::start_pt(at.x, text, *font, *size_pt, *anchor) + *size_pt * 0.6;
+            let air = *size_pt * 0.2;
+            *anchor = Anchor::Start;
+            at.x = start.min(max_pt.x - width - air).max(min_pt.x + air);
+            at.y = (at.y - *size_pt * 0.5).clamp(min_pt.y + *size_pt + air, (max_pt.y - air * 2.0).max(min_pt.y + *size_pt + air));
+            let (low, high) = (*at + Vec2::new(-air, -*size_pt * 0.95), *at + Vec2::new(width + air, *size_pt * 0.3));
+            let plate = vec![low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+            drawing.push(Layer::Labels, Role::Paper, Subject::None, Mark::Area(plate));
+        }
+        drawing.items.push(item);
+    }
 }

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use glam::Vec2;
 
-use crate::drawing::{Anchor, Font, Item, Mark, Pixels, Role, metrics};
+use crate::drawing::{Anchor, Font, Item, Layer, Mark, Pixels, Role, metrics};
 
 use super::theme::{Hatch, Rgb, SIGN_PT, Style};
 
@@ -16,6 +16,8 @@ use super::theme::{Hatch, Rgb, SIGN_PT, Style};
 pub(super) enum Part {
     Halo,
     Area,
+    /// An area of the scene: one of thousands, so its outline is a hair.
+    Face,
     Hatch,
     Line,
     Head,
@@ -30,6 +32,7 @@ impl Part {
         match self {
             Part::Halo => "halo",
             Part::Area => "area",
+            Part::Face => "face",
             Part::Hatch => "hatch",
             Part::Line => "line",
             Part::Head => "head",
@@ -82,6 +85,9 @@ pub(super) struct Piece<'a> {
     pub shape: Shape<'a>,
 }
 
+/// Width of the outlines of a scene's polygons: they are many and small.
+const HAIR_PT: f32 = 0.3;
+
 /// The paint of a part of a role: what the CSS of an SVG file says in words.
 pub(super) fn paint(part: Part, style: &Style) -> Paint {
     let none = Paint { fill: None, hatch: None, stroke: None };
@@ -92,6 +98,7 @@ pub(super) fn paint(part: Part, style: &Style) -> Paint {
             Paint { stroke: Some(Stroke { color, width_pt: style.width_pt + width_pt, dash: &[] }), ..none }
         }
         Part::Area => Paint { fill: style.fill, stroke: Some(line), ..none },
+        Part::Face => Paint { fill: style.fill, stroke: Some(Stroke { width_pt: HAIR_PT, ..line }), ..none },
         Part::Hatch => Paint { hatch: Some((style.hatch, style.stroke)), ..none },
         Part::Line => Paint { stroke: Some(line), ..none },
         Part::Head => Paint { fill: Some((style.stroke, 1.0)), ..none },
@@ -127,7 +134,7 @@ pub(super) fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piec
             if halo {
                 push(Part::Halo, path());
             }
-            push(Part::Area, path());
+            push(if item.layer == Layer::Scene { Part::Face } else { Part::Area }, path());
             if style.hatch != Hatch::None {
                 push(Part::Hatch, path());
             }

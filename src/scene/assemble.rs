@@ -5,6 +5,7 @@
 
 use glam::{DVec3, Vec3};
 
+use super::merge::merge_coplanar;
 use super::polygon::{Cutter, Shape};
 use super::{Dropped, Face, LoadOptions, Material, Object, Parts, Progress, Recenter, Report, SceneError};
 use crate::geometry::{MaterialId, ObjectId, PrimId, Solid};
@@ -13,6 +14,9 @@ use crate::geometry::{MaterialId, ObjectId, PrimId, Solid};
 pub const MAX_COORDINATE: f64 = 1e12;
 /// Most primitives of a scene: ids and three corners each must stay countable in 32 bits.
 pub const MAX_PRIMS: usize = 1 << 29;
+
+/// Corners of a polygon that take long enough to ask first whether anybody still waits.
+const LONG_WORK: usize = 4_096;
 
 /// A face of the source, in file order.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +84,12 @@ pub(super) fn assemble(
         }
         let corners = &mesh.corners[start..face.end as usize];
         start = face.end as usize;
-        cut.face(face, corners, &points, &usable, &same_as, options);
+        if corners.len() > LONG_WORK && progress.cancelled() {
+            return Err(SceneError::Cancelled(source.to_owned()));
+        }
+        if !cut.face(face, corners, &points, &usable, &same_as, options) {
+            report.note(format!("a concave polygon of {} corners is too long to be cut, so it was left out", corners.len()));
+        }
     }
     let Cut { mut prims, prim_object, prim_material, mut faces, dropped, .. } = cut;
     dropped.into_iter().for_each(|(why, count)| report.drop(why, count));
@@ -88,7 +97,7 @@ pub(super) fn assemble(
     if options.weld && merged > 0 {
         report.merged_points = mesh.points.len() - points.len();
     }
-    Ok(Parts {
+    let mut parts = Parts {
         name: name.to_owned(),
         source: source.to_owned(),
         points,
@@ -101,7 +110,11 @@ pub(super) fn assemble(
         origin,
         paths: Vec::new(),
         report,
-    })
+    };
+    if options.merge_coplanar {
+        merge_coplanar(&mut parts, progress);
+    }
+    Ok(parts)
 }
 
 /// What to subtract: nothing, unless the middle is farther away than [`FAR`] times the extent, where 32-bit
@@ -160,7 +173,8 @@ struct Cut {
 }
 
 impl Cut {
-    fn face(&mut self, face: &RawFace, corners: &[u32], points: &[Vec3], usable: &[bool], same_as: &[u32], options: &LoadOptions) {
+    /// Adds the triangles of a face; `false` if it is too long to be cut.
+    fn face(&mut self, face: &RawFace, corners: &[u32], points: &[Vec3], usable: &[bool], same_as: &[u32], options: &LoadOptions) -> bool {
         let first = self.prims.len();
         let end = first + face.ids as usize;
         self.prim_object.resize(end, ObjectId(face.object));
@@ -169,14 +183,14 @@ impl Cut {
         if let Some(why) = lost {
             self.prims.resize(end, None);
             self.dropped.push((why, face.ids as usize));
-            return;
+            return true;
         }
         self.ring.clear();
         self.ring.extend(corners.iter().map(|c| same_as[*c as usize]));
         if let [a, b, c] = self.ring[..] {
             let triangle = [a, b, c];
             self.push_triangle(triangle, points, options);
-            return;
+            return true;
         }
         self.ring_points.clear();
         self.ring_points.extend(self.ring.iter().map(|c| points[*c as usize].as_dvec3()));
@@ -191,11 +205,13 @@ impl Cut {
         let missing = end - self.prims.len();
         self.prims.resize(end, None);
         if missing > 0 {
-            self.dropped.push((Dropped::Degenerate, missing));
+            let why = if shape == Shape::TooLong { Dropped::Malformed } else { Dropped::Degenerate };
+            self.dropped.push((why, missing));
         }
         if shape == Shape::Convex {
             self.push_face(first, end);
         }
+        shape != Shape::TooLong
     }
 
     fn push_triangle(&mut self, corners: [u32; 3], points: &[Vec3], options: &LoadOptions) {

@@ -6,8 +6,10 @@ use super::{LoadOptions, Scene, SceneError, flat};
 use crate::geometry::Flat;
 
 /// Name and file of each.
-const EXAMPLES: &[(&str, &str, &[u8])] =
-    &[("freedoom_e1m1", "scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json", include_bytes!("../../scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json"))];
+const EXAMPLES: &[(&str, &str, &[u8])] = &[
+    ("street", "scenes2d/street.json", include_bytes!("../../scenes2d/street.json")),
+    ("freedoom_e1m1", "scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json", include_bytes!("../../scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json")),
+];
 
 /// A flatland scene by name.
 ///

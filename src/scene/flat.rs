@@ -90,6 +90,9 @@ fn explain(error: SceneError, bytes: &[u8]) -> SceneError {
             let why = "this is a view file, not a flatland scene; give it with --view".to_owned();
             SceneError::Syntax { path, line, why }
         }
+        SceneError::Syntax { path, line, .. } if bytes.trim_ascii_start().starts_with(b"[") => {
+            SceneError::Syntax { path, line, why: "a flatland scene is a JSON object, { … }".into() }
+        }
         SceneError::Syntax { path, line, why } if bytes.trim_ascii().is_empty() => {
             SceneError::Syntax { path, line, why: format!("the file is empty ({why})") }
         }

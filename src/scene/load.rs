@@ -1,9 +1,10 @@
 //! The front door: from a path or a generator's name to a scene.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::text::read_file;
-use super::{AnyScene, Progress, SceneError, flat, generate, gltf, obj, views};
+use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, views};
 
 /// Longest model file, bytes. Tables take up to about 14 times the file (a face of two bytes a corner).
 pub(super) const MODEL_LIMIT_BYTES: u64 = 2 << 30;
@@ -49,33 +50,91 @@ impl Default for LoadOptions {
 /// One sentence with the file and, where there is one, the line; [`SceneError::Cancelled`] if `progress` asks to stop.
 pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<AnyScene, SceneError> {
     if let Some(call) = source.strip_prefix("generate:") {
-        return super::Scene::new(generate::generate(call, options, progress)?).map(AnyScene::from);
+        return Scene::new(generate::generate(call, options, progress)?).map(AnyScene::from);
     }
     let path = Path::new(source);
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let scene = match extension.as_str() {
-        "obj" => obj::load(path, source, options, progress)?,
-        "gltf" | "glb" => gltf::load(path, source, options, progress)?,
-        "json" => return flat::read(&read_file(path, source, JSON_LIMIT_BYTES)?, source, options).map(AnyScene::from),
-        _ => return Err(SceneError::Format { path: source.to_owned(), why: unknown_kind(path) }),
+    let Some(kind) = kind_of(source) else {
+        return Err(SceneError::Format { path: source.to_owned(), why: unknown_kind(path) });
     };
-    let mut parts = scene;
-    if options.read_views {
-        views::attach(path, &mut parts);
+    progress.report(0.0, "reading");
+    let bytes = read_file(path, source, kind.limit_bytes())?;
+    let mut scene = read(kind, &bytes, Some(path.parent().unwrap_or(Path::new(""))), source, options, progress)?;
+    if let (AnyScene::Solid(solid), true) = (&mut scene, options.read_views) {
+        let mut found = Vec::new();
+        let mut notes = Vec::new();
+        views::beside_model(path, solid.origin(), &mut found, &mut notes);
+        if !(found.is_empty() && notes.is_empty()) {
+            // Nobody else holds it yet.
+            Arc::make_mut(solid).extend(found, notes);
+        }
     }
     progress.report(1.0, "done");
-    super::Scene::new(parts).map(AnyScene::from)
+    Ok(scene)
+}
+
+/// Loads a scene out of memory, such as a file that was dropped on a window. `source` is named in errors, and its
+/// extension says what the bytes are. No file is opened: materials and buffers beside it are not there.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_bytes(bytes: &[u8], source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<AnyScene, SceneError> {
+    match kind_of(source) {
+        Some(kind) => read(kind, bytes, None, source, options, progress),
+        None => Err(SceneError::Format { path: source.to_owned(), why: format!("this kind of file cannot be read; {KNOWN}") }),
+    }
+}
+
+/// What can be read.
+const KNOWN: &str = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Obj,
+    Gltf,
+    Flat,
+}
+
+impl Kind {
+    fn limit_bytes(self) -> u64 {
+        if self == Self::Flat { JSON_LIMIT_BYTES } else { MODEL_LIMIT_BYTES }
+    }
+}
+
+fn kind_of(source: &str) -> Option<Kind> {
+    let extension = Path::new(source).extension()?.to_string_lossy().to_ascii_lowercase();
+    match extension.as_str() {
+        "obj" => Some(Kind::Obj),
+        "gltf" | "glb" => Some(Kind::Gltf),
+        "json" => Some(Kind::Flat),
+        _ => None,
+    }
+}
+
+fn read(
+    kind: Kind,
+    bytes: &[u8],
+    folder: Option<&Path>,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<AnyScene, SceneError> {
+    let name = stem(Path::new(source));
+    let parts = match kind {
+        Kind::Flat => return flat::read(bytes, source, options).map(AnyScene::from),
+        Kind::Obj => obj::read(bytes, folder, &name, source, options, progress)?,
+        Kind::Gltf => gltf::read(bytes, folder, &name, source, options, progress)?,
+    };
+    Scene::new(parts).map(AnyScene::from)
 }
 
 fn unknown_kind(path: &Path) -> String {
-    let known = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
     if path.is_dir() {
-        return format!("is a folder; {known}");
+        return format!("is a folder; {KNOWN}");
     }
     if !path.exists() {
-        return format!("no such file, and no kind of scene either; {known}");
+        return format!("no such file, and no kind of scene either; {KNOWN}");
     }
-    format!("this kind of file cannot be read; {known}")
+    format!("this kind of file cannot be read; {KNOWN}")
 }
 
 /// The last part of a path without its extension; of `NAME.flat.json` the `NAME`.

@@ -11,6 +11,7 @@ mod generate;
 mod gltf;
 mod json;
 mod load;
+mod merge;
 mod mtl;
 mod obj;
 mod paths;
@@ -27,7 +28,7 @@ pub use about::{About, Expectation};
 pub use assemble::{MAX_COORDINATE, MAX_PRIMS};
 pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
-pub use load::{LoadOptions, Recenter, load};
+pub use load::{LoadOptions, Recenter, load, load_bytes};
 pub use paths::{figure_eight_path, random_views};
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
@@ -250,6 +251,11 @@ impl<S: Space> Scene<S> {
     /// What it is for, and facts to expect.
     pub fn about(&self) -> &About {
         &self.about
+    }
+    /// Adds view paths and notes that were found beside a model.
+    fn extend(&mut self, paths: Vec<ViewPath<S>>, notes: Vec<String>) {
+        self.parts.paths.extend(paths);
+        notes.into_iter().for_each(|n| self.parts.report.note(n));
     }
     /// The same scene, saying this about itself.
     pub fn with_about(mut self, about: About) -> Self {

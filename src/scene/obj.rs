@@ -13,18 +13,9 @@ use std::path::Path;
 use glam::DVec3;
 
 use super::assemble::{Mesh, assemble};
-use super::load::{MODEL_LIMIT_BYTES, stem};
-use super::text::{Lines, keyword, name_of, number, read_file, without_mark, words};
+use super::text::{Lines, keyword, name_of, number, without_mark, words};
 use super::{Dropped, LoadOptions, Object, Part, Parts, Progress, Report, SceneError, mtl};
 use crate::geometry::Solid;
-
-/// Reads an OBJ file and the materials beside it.
-pub(super) fn load(path: &Path, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
-    progress.report(0.0, "reading");
-    let bytes = read_file(path, source, MODEL_LIMIT_BYTES)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    read(&bytes, Some(folder), &stem(path), source, options, progress)
-}
 
 /// Reads OBJ text. Without a `folder` no material file is opened.
 pub(super) fn read(

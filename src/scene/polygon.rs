@@ -2,7 +2,8 @@
 //!
 //! A convex one becomes the fan (0, i, i+1), any other is handed to ear clipping along the normal that
 //! Newell's sum gives (Sutherland, Sproull and Schumacker 1974, appendix); signs are exact. Cost: O(n) for a
-//! convex polygon, near O(n log n) in practice for others (ear clipping with a z-order curve).
+//! convex polygon; for others O(n²) with a small factor (ear clipping with a z-order curve: 10 ms for 5,000 corners,
+//! 5 to 9 s for 100,000).
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};
@@ -20,7 +21,12 @@ pub(super) enum Shape {
     Concave,
     /// All corners on a line or in a point.
     Flattened,
+    /// Concave, of more than [`MAX_CONCAVE`] corners: not cut.
+    TooLong,
 }
+
+/// Most corners of a concave polygon: ear clipping, whose cost grows with the square, then takes 15 seconds.
+pub(super) const MAX_CONCAVE: usize = 1 << 17;
 
 /// How far a corner may lie off the plane of a polygon that counts as planar, in parts of its size:
 /// some 100 roundings of a 32-bit coordinate, well below what a pixel shows.
@@ -51,6 +57,9 @@ impl Cutter {
         if is_convex(&self.flat) {
             self.triangles.extend((1..n as u32 - 1).flat_map(|i| [0, i, i + 1]));
             return if is_planar(corners, normal) { Shape::Convex } else { Shape::Bent };
+        }
+        if n > MAX_CONCAVE {
+            return Shape::TooLong;
         }
         let earcut = self.earcut.get_or_insert_with(Earcut::new);
         earcut.earcut_slice::<u32>(&self.flat, &[], &mut self.triangles);

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use super::json::{Step, from_slice, line_of};
 use super::load::{JSON_LIMIT_BYTES, stem};
 use super::text::read_file;
-use super::{AnyPath, AnyScene, Parts, SceneError};
+use super::{AnyPath, AnyScene, SceneError};
 use crate::geometry::{Eye, Flat, Solid, Space, Vector, View, ViewPath};
 
 /// Greatest width and height of an image, pixels.
@@ -159,16 +159,16 @@ fn degrees(radians: f32) -> String {
     short.into_iter().find(|s| s.parse::<f64>().is_ok_and(|d| d.to_radians() as f32 == radians)).unwrap_or_else(|| exact.to_string())
 }
 
-/// Adds the paths that lie beside a model to it. A broken one becomes a note.
-pub(super) fn attach(model: &Path, parts: &mut Parts<Solid>) {
+/// The paths that lie beside a model. A broken one becomes a note.
+pub(super) fn beside_model(model: &Path, origin: DVec3, paths: &mut Vec<ViewPath<Solid>>, notes: &mut Vec<String>) {
     for ending in ["views.json", "walk.views.json"] {
         let file = model.with_file_name(format!("{}.{ending}", stem(model)));
         if !file.is_file() {
             continue;
         }
-        match read_views::<Solid>(&file.to_string_lossy(), parts.origin) {
-            Ok(path) => parts.paths.push(path),
-            Err(why) => parts.report.note(format!("view path left out: {why}")),
+        match read_views::<Solid>(&file.to_string_lossy(), origin) {
+            Ok(path) => paths.push(path),
+            Err(why) => notes.push(format!("view path left out: {why}")),
         }
     }
 }

@@ -19,9 +19,8 @@ use glam::{DMat4, DVec3};
 
 use self::data::Data;
 use super::assemble::{Mesh, assemble};
-use super::load::{MODEL_LIMIT_BYTES, stem};
 use super::mtl::GRAY;
-use super::text::{read_file, without_mark};
+use super::text::without_mark;
 use super::{Dropped, LoadOptions, Material, Object, Part, Parts, Progress, Report, SceneError, json};
 use crate::geometry::Solid;
 
@@ -30,13 +29,6 @@ const MAX_INSTANCED: usize = 1 << 25;
 
 /// Extensions that a file may require without changing where its triangles are.
 const HARMLESS: &[&str] = &["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "KHR_mesh_quantization", "EXT_lights_", "KHR_xmp"];
-
-/// Reads a glTF or GLB file and the buffers beside it.
-pub(super) fn load(path: &Path, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
-    progress.report(0.0, "reading");
-    let bytes = read_file(path, source, MODEL_LIMIT_BYTES)?;
-    read(&bytes, path.parent().or(Some(Path::new(""))), &stem(path), source, options, progress)
-}
 
 /// Reads glTF JSON or GLB. Without a `folder` no buffer file is opened.
 pub(super) fn read(
@@ -68,8 +60,10 @@ pub(super) fn read(
 
 /// JSON text and binary chunk of a GLB container.
 fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    let word = |at: usize| bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
-    let (Some(version), Some(length)) = (word(4), word(8)) else {
+    fn word(bytes: &[u8], at: usize) -> Option<u32> {
+        bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    }
+    let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
         return Err("the GLB header is cut off".into());
     };
     if version != 2 {
@@ -80,7 +74,7 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
     let bytes = &bytes[..length as usize];
     let (mut text, mut blob, mut at) = (None, None, 12);
-    while let (Some(size), Some(kind)) = (word(at), word(at + 4)) {
+    while let (Some(size), Some(kind)) = (word(bytes, at), word(bytes, at + 4)) {
         let Some(chunk) = bytes.get(at + 8..).and_then(|rest| rest.get(..size as usize)) else {
             return Err(format!("the GLB chunk at byte {at} says it has {size} bytes, but the file ends before"));
         };

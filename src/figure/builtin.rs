@@ -1,0 +1,249 @@
+//! The built-in figures, by name: what `cullscope figure` writes and the documentation shows.
+//!
+//! Each is made by running a method on a scene and looking at the film; none is drawn by hand.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use super::page::{Entry, Page, Paper, Swatch, legend};
+use super::{Look, Panel, Picture, observer_above, panels, world};
+use crate::culling::{Film, Methods, Settings, Value, Verdict};
+use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
+use crate::geometry::{Aabb, Flat, NodeId, Solid, View};
+use crate::raster::{self, Drawable};
+use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, example, load};
+use crate::trace::Stamps;
+
+/// Colors for pictures made of pixels, linear 0..1, by role. The theme provides it.
+pub type Tint<'a> = &'a dyn Fn(Role) -> [f32; 3];
+
+/// A built-in figure.
+pub struct Builtin {
+    /// Its kebab-case name; also the name of its file.
+    pub name: &'static str,
+    /// One line for lists.
+    pub summary: &'static str,
+    make: fn(Tint) -> Result<Drawing, SceneError>,
+}
+
+impl Builtin {
+    /// Makes the figure.
+    ///
+    /// # Errors
+    /// If its scene cannot be made.
+    pub fn drawing(&self, tint: Tint) -> Result<Drawing, SceneError> {
+        (self.make)(tint)
+    }
+}
+
+/// All built-in figures, in the order of lists.
+pub static BUILTIN: &[Builtin] = &[
+    Builtin { name: "kd-tree-levels", summary: "A kD-tree over a street, level by level", make: kd_tree_levels },
+    Builtin { name: "frustum-tests", summary: "The three results of a box against the frustum, with their operands", make: frustum_tests },
+    Builtin { name: "frustum-steps", summary: "Four moments of view-frustum culling over a kD-tree", make: frustum_steps },
+    Builtin { name: "baselines-flatland", summary: "The three baselines on the same game level", make: baselines_flatland },
+    Builtin { name: "frustum-space", summary: "View-frustum culling of an office floor, seen from outside", make: frustum_space },
+    Builtin { name: "item-buffer", summary: "What the Eye sees: shaded image, item buffer and depth", make: item_buffer },
+];
+
+/// Width of a figure over two columns, inside its margins.
+const WIDTH_PT: f32 = 496.0;
+
+fn settings(pairs: &[(&str, &str)]) -> Settings {
+    Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
+}
+
+fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>, method: &str, pairs: &[(&str, &str)]) -> Arc<dyn Film<S>> {
+    let entry = S::method(method).expect("built-in figures name methods that exist");
+    let run = entry.ready(scene, &settings(pairs), &Quiet).expect("built-in figures use settings that exist");
+    run.expect("nobody cancels a built-in figure").record(view, usize::MAX).film
+}
+
+/// The bounds of a flatland scene and the eye, with a little air.
+fn airy(scene: &Scene<Flat>, eye: Vec2) -> Aabb<Vec2> {
+    let b = scene.bounds().with(eye);
+    let air = Vec2::splat(b.diagonal() * 0.02);
+    Aabb { min: b.min - air, max: b.max + air }
+}
+
+fn flat_panel(film: &dyn Film<Flat>, step: usize, look: &Look, label: String) -> Panel {
+    let stamps = Stamps::new(film);
+    Panel { label, picture: Picture::Flat(world(film, &stamps, step, look), airy(film.scene(), film.view().eye.position)) }
+}
+
+/// A built-in view of a flatland scene: an eye of the file.
+fn eye(scene: &Scene<Flat>, number: usize) -> View<Flat> {
+    scene.paths()[0].views[number % scene.paths()[0].views.len()]
+}
+
+/// The scene of small figures.
+const STREET: &str = "street";
+
+/// A page over two columns with the legend of what occurs in the picture.
+fn page(title: &str, caption: impl Into<String>, content: &Drawing) -> Drawing {
+    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend: legend(content), caption: caption.into() }.compose(content)
+}
+
+fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = example(STREET)?;
+    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let tree = film.hierarchy();
+    let panel = |level: u32| {
+        let mut drawing = Drawing::default();
+        for &p in scene.live() {
+            drawing.line(Layer::Scene, Role::Ink, Subject::Prim(p), scene.prim_points(p).collect::<Vec<_>>());
+        }
+        let nodes = (0..tree.node_count() as u32).map(NodeId).filter(|&n| tree.level(n) == level);
+        let count = nodes.clone().count();
+        nodes.for_each(|n| drawing.bounds(Layer::Nodes, Role::Evidence, Subject::Node(n), &tree.bounds(n)));
+        Panel {
+            label: format!("level {level}: {count} node{}", if count == 1 { "" } else { "s" }),
+            picture: Picture::Flat(drawing, airy(&scene, scene.bounds().center())),
+        }
+    };
+    let content = panels(WIDTH_PT, 2, &[0, 1, 2, 4].map(panel));
+    let caption = "A kD-tree splits the polygons of a street into halves, alternately along x and y. Each box is the bounds of what its \
+                   node holds, so boxes of one level may overlap where a polygon crosses the splitting line.";
+    let legend = vec![
+        Entry { role: Role::Ink, label: "polygon".into(), swatch: Swatch::Line },
+        Entry { role: Role::Evidence, label: "bounds of a node".into(), swatch: Swatch::Line },
+    ];
+    let page = Page { paper: Paper::TwoColumns, title: "kD-tree, level by level".into(), legend, caption: caption.into() };
+    Ok(page.compose(&content))
+}
+
+/// The step right after the test with this result whose box is the largest that fits well into the picture.
+fn step_of(film: &dyn Film<Flat>, result: &str) -> usize {
+    let all = film.scene().bounds().diagonal();
+    let size_of = |at: usize| {
+        let (kind, fields) = film.fields(at);
+        let has_result = fields.iter().any(|f| f.name == "result" && f.value == Value::Word(result.to_owned()));
+        let node = fields.iter().find_map(|f| match f.value {
+            Value::Integer(n) if f.name == "node" => Some(NodeId(n as u32)),
+            _ => None,
+        })?;
+        let bounds = film.hierarchy().bounds(node);
+        let area = bounds.size().x * bounds.size().y;
+        (kind == "NodeClassified" && has_result && bounds.diagonal() < 0.45 * all).then_some(area)
+    };
+    let sizes = (0..film.events().len()).filter_map(|at| Some((at, size_of(at)?)));
+    sizes.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(film.events().len(), |(at, _)| at + 1)
+}
+
+fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = example(STREET)?;
+    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let look = Look { nodes: false, ..Look::default() };
+    let panel = |result: &str| flat_panel(&*film, step_of(&*film, result), &look, result.to_owned());
+    let content = panels(WIDTH_PT, 3, &["outside", "partial", "inside"].map(panel));
+    let caption = "Each node's box (yellow) is tested against the planes of the view frustum, which are lines in flatland. Outside: even \
+                   the corner that reaches farthest in is beyond one plane, so all below the node is dropped. Partial: a plane cuts the \
+                   box, so its children are looked at. Inside: all below it is kept without another test.";
+    Ok(page("A box against the view frustum", caption, &content))
+}
+
+fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = example("freedoom_e1m1")?;
+    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let all = film.events().len();
+    let panel = |quarter: usize| {
+        let step = all * quarter / 4;
+        let counts = Stamps::new(&*film).counts(step);
+        let label = format!("step {step} of {all}: {} kept, {} dropped", counts.of(Verdict::Visible), counts.of(Verdict::Outside));
+        flat_panel(&*film, step, &Look::default(), label)
+    };
+    let content = panels(WIDTH_PT, 2, &[1, 2, 3, 4].map(panel));
+    let caption = format!(
+        "View-frustum culling over a kD-tree, {}, first eye of the file, tree-height 8. The traversal goes down from the root; a node \
+         outside the frustum is dropped with all below it, a node inside or a leaf is kept.",
+        scene.name()
+    );
+    Ok(page("View-frustum culling, step by step", caption, &content))
+}
+
+fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = example("freedoom_e1m1")?;
+    let view = eye(&scene, 0);
+    let look = Look { nodes: false, evidence: false, ..Look::default() };
+    let panel = |method: &str| {
+        let film = film(&scene, &view, method, &[]);
+        let counts = Stamps::new(&*film).counts(film.events().len());
+        let label = format!("{method}: {} of {} drawn", counts.of(Verdict::Visible), scene.live().len());
+        flat_panel(&*film, film.events().len(), &look, label)
+    };
+    let content = panels(WIDTH_PT, 3, &["z-buffer", "frustum", "centroid"].map(panel));
+    let caption = "The three baselines with their default parameters on the same view. The z-buffer draws everything; view-frustum culling \
+                   drops what is outside; centroid ordering draws what is nearest until its budget of 10 % is spent, and leaves out the \
+                   rest, visible or not.";
+    Ok(page("Three baselines", caption, &content))
+}
+
+fn office(polygons: u32) -> Result<Arc<Scene<Solid>>, SceneError> {
+    match load(&format!("generate:building?polygons={polygons}"), &LoadOptions::default(), &Quiet)? {
+        AnyScene::Solid(scene) => Ok(scene),
+        AnyScene::Flat(_) => unreachable!("the building is in space"),
+    }
+}
+
+fn frustum_space(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = office(2500)?;
+    let mut view = scene.paths()[0].views[0];
+    view.eye.far = scene.bounds().diagonal() * 0.5;
+    let film = film(&scene, &view, "frustum", &[]);
+    let stamps = Stamps::new(&*film);
+    let observer = observer_above(&scene, 4.0 / 3.0);
+    let picture = |step: usize, look: &Look| Picture::Space(world(&*film, &stamps, step, look), observer);
+    let end = film.events().len();
+    let content = panels(
+        WIDTH_PT,
+        2,
+        &[
+            Panel { label: format!("step {} of {end}", end / 2), picture: picture(end / 2, &Look { nodes: false, ..Look::default() }) },
+            Panel { label: "the result".into(), picture: picture(end, &Look { nodes: false, evidence: false, ..Look::default() }) },
+        ],
+    );
+    let caption = format!(
+        "View-frustum culling of a generated office floor of {} triangles, seen by an observer above it. The Eye stands in a corridor.",
+        scene.live().len()
+    );
+    Ok(page("View-frustum culling in space", caption, &content))
+}
+
+fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
+    let scene = office(20_000)?;
+    let sized = |view: &View<Solid>| View { width: 320, height: 240, ..*view };
+    let seen = |view: &View<Solid>| raster::visible(&raster::render(&*scene, view, scene.live())).len();
+    // The view of the walk that sees most; the first of equals.
+    let views = scene.paths()[0].views.iter().map(sized);
+    let view = views.reduce(|best, view| if seen(&view) > seen(&best) { view } else { best }).expect("a path has views");
+    let target = raster::render(&*scene, &view, scene.live());
+    let paper = tint(Role::Paper);
+    let pixels = |rgba: Vec<u8>| Picture::Pixels(Pixels { width: view.width, height: view.height, rgba: rgba.into() });
+    let hash = |p: u32, shift: u32| 0.15 + 0.75 * ((p.wrapping_mul(2_654_435_761) >> shift & 255) as f32 / 255.0);
+    let items = raster::shade_with(&target, &*scene, &view, paper, |p| [hash(p.0, 0), hash(p.0, 8), hash(p.0, 16)]);
+    let visible = raster::visible(&target).len();
+    let content = panels(
+        WIDTH_PT,
+        3,
+        &[
+            Panel { label: "shaded".into(), picture: pixels(raster::shade(&target, &*scene, &view, paper)) },
+            Panel { label: format!("item buffer: {visible} triangles visible"), picture: pixels(items) },
+            Panel { label: "depth, logarithmic: near is dark".into(), picture: pixels(depth_image(&target.depth, &view)) },
+        ],
+    );
+    let caption = format!(
+        "What the Eye sees of {} triangles. In the item buffer every pixel holds the id of the nearest triangle (here as a color): the ids \
+         that occur are exactly what is visible at this resolution, and the truth against which every method is measured.",
+        scene.live().len()
+    );
+    Ok(page("The truth: an item buffer", caption, &content))
+}
+
+/// View depth on a logarithmic gray scale from near (dark) to far (light).
+fn depth_image<S: Drawable>(reciprocal_depth: &[f32], view: &View<S>) -> Vec<u8> {
+    let nearest = reciprocal_depth.iter().copied().fold(0.0, f32::max).max(1.0 / view.eye.far);
+    let range = (nearest * view.eye.far).ln().max(1e-6);
+    let gray = |d: &f32| (255.0 * ((nearest / d).ln() / range).clamp(0.0, 1.0)) as u8;
+    reciprocal_depth.iter().map(gray).flat_map(|g| [g, g, g, 255]).collect()
+}
