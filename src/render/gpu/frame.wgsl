@@ -34,6 +34,7 @@ struct Frame {
 
 const SCENE: u32 = 2u;
 const PARTIAL: u32 = 4u;
+const PAPER: u32 = 15u;
 
 // Image coordinates times depth, and depth, of a world point; relative to the eye first.
 fn clip_xyw(point: vec3<f32>) -> vec3<f32> {

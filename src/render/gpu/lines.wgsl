@@ -11,6 +11,7 @@ struct Stroke {
 }
 const DOT: u32 = 16u;
 const HEAD: u32 = 32u;
+const NODE: u32 = 64u;
 
 // Where a segment enters the half-space in which `from` and `to` are the signed distances of its ends.
 fn entry(from_d: f32, to_d: f32) -> f32 {
@@ -47,8 +48,11 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     let length_px = length(pb - pa);
     let dir = select(vec2<f32>(1.0, 0.0), (pb - pa) / max(length_px, 1e-6), length_px > 1e-4);
     let across = vec2<f32>(-dir.y, dir.x);
-    let line_px = select(0.5 * f.stroke[role & 15u].w, radius_px, (role & DOT) != 0u);
-    out.half_px = vec2<f32>(line_px, line_px + f.dot[role & 15u].w);
+    // Boxes of nodes are many, so they are thinner.
+    let thin = select(0.5, 0.3, (role & NODE) != 0u);
+    let line_px = select(thin * f.stroke[role & 15u].w, radius_px, (role & DOT) != 0u);
+    // A line without a halo gets a thin casing of paper, so that it is read on any ground.
+    out.half_px = vec2<f32>(line_px, line_px + max(f.dot[role & 15u].w, 0.7 * f.target_px.z));
     out.role = role;
     var pixel: vec2<f32>;
     var z = b.z / b.w;
@@ -92,7 +96,7 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     // The frontier: decided as a whole, a leaf, or entered and not yet decided.
     let decided = (times.y >> 4u) <= f.what.x;
     let frontier = role != PARTIAL || is_leaf || !decided;
-    var out = stroke(i % 6u, mix(low, high, from_c), mix(low, high, to_c), role, 0.0);
+    var out = stroke(i % 6u, mix(low, high, from_c), mix(low, high, to_c), role | NODE, 0.0);
     if !entered || ((f.shown.z >> role) & 1u) == 0u || (f.shown.w == 1u && !frontier) { out.at = nowhere(); }
     return out;
 }
@@ -112,9 +116,10 @@ fn inked(in: Stroke, strength: f32) -> vec4<f32> {
     }
     var ink = f.stroke[role].rgb;
     if (in.role & DOT) != 0u && d < in.half_px.x - f.target_px.z { ink = f.dot[role].rgb; }
-    let band = select(0.0, whole, in.half_px.y > in.half_px.x);
-    let alpha = (line + (1.0 - line) * band) * strength;
-    let color = mix(f.halo[role].rgb, ink, line / max(line + (1.0 - line) * band, 1e-4));
+    let has_halo = f.dot[role].w > 0.0;
+    let band = (1.0 - line) * whole * select(0.4, 1.0, has_halo);
+    let alpha = (line + band) * strength;
+    let color = mix(select(f.flat_color[PAPER].rgb, f.halo[role].rgb, has_halo), ink, line / max(line + band, 1e-4));
     return vec4<f32>(color * alpha, alpha);
 }
 @fragment fn fs_front(in: Stroke) -> @location(0) vec4<f32> {

@@ -7,8 +7,8 @@
 //! Order of drawing: opaque triangles, then ghosts, areas and lines, which test depth and do not write it.
 //! Lines behind surfaces show through faintly. Colors are mixed as sRGB values, as egui does.
 //!
-//! Units: pixels for targets, points for widths. Memory: 60 bytes a triangle, 36 a node, 8 a pixel.
-//! Cost: every shown triangle once a picture (ghosts once more); an unchanged viewport costs nothing.
+//! Units: pixels for targets, points for widths. Memory: 72 bytes a triangle, 36 a node, 8 a pixel.
+//! Cost: every triangle that is shown, once a picture; an unchanged viewport costs nothing.
 
 mod camera;
 mod headless;
@@ -35,7 +35,7 @@ use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Solid};
 use crate::index::Hierarchy;
 use crate::scene::Scene;
 use crate::trace::Stamps;
-use pack::SegmentWords;
+use pack::{Order, SegmentWords};
 use pipelines::Pipelines;
 use target::{Target, Tile};
 
@@ -53,6 +53,8 @@ struct Chunk {
     corners: wgpu::Buffer,
     stamps: wgpu::Buffer,
     triangles: usize,
+    /// Once a film: corner numbers in the order of decisions.
+    order: Option<(wgpu::Buffer, Order)>,
 }
 
 #[derive(Default)]
@@ -111,7 +113,7 @@ impl SpaceLayer {
             };
             let corners = upload("corners", bytemuck::cast_slice(&pack::corners(scene, prims, &inner)));
             let stamps = upload("stamps", bytemuck::cast_slice(&pack::stamps(prims, None, &[])));
-            self.chunks.push(Chunk { corners, stamps, triangles: prims.len() });
+            self.chunks.push(Chunk { corners, stamps, triangles: prims.len(), order: None });
         }
         self.objects = vec![Aabb::empty(); scene.objects().len()];
         for &prim in scene.live() {
@@ -127,8 +129,16 @@ impl SpaceLayer {
     /// culled although they are visible. Stamps of another scene than the one set are not taken.
     pub fn set_film(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, stamps: &Stamps, hierarchy: &dyn Hierarchy<Solid>, wrong: &[PrimId]) {
         let Some(scene) = self.scene.as_ref().filter(|s| s.prim_count() == stamps.prims().len()) else { return };
-        for (chunk, prims) in self.chunks.iter().zip(scene.live().chunks(CHUNK)) {
-            queue.write_buffer(&chunk.stamps, 0, bytemuck::cast_slice(&pack::stamps(prims, Some(stamps), wrong)));
+        for (chunk, prims) in self.chunks.iter_mut().zip(scene.live().chunks(CHUNK)) {
+            let words = pack::stamps(prims, Some(stamps), wrong);
+            queue.write_buffer(&chunk.stamps, 0, bytemuck::cast_slice(&words));
+            let (order, indices) = Order::of(&words);
+            let buffer = match chunk.order.take() {
+                Some((buffer, _)) => buffer,
+                None => target::buffer(device, "order", 12 * words.len() as u64, wgpu::BufferUsages::INDEX),
+            };
+            queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&indices));
+            chunk.order = Some((buffer, order));
         }
         let (words, levels) = pack::nodes(stamps, hierarchy);
         let bounds = (0..hierarchy.node_count() as u32).map(|n| hierarchy.bounds(NodeId(n))).collect();
@@ -203,7 +213,7 @@ impl SpaceLayer {
 
     /// Bytes on the device: buffers, then targets.
     pub fn bytes(&self) -> (usize, usize) {
-        let chunks: u64 = self.chunks.iter().map(|c| c.corners.size() + c.stamps.size()).sum();
+        let chunks: u64 = self.chunks.iter().map(|c| c.corners.size() + c.stamps.size() + c.order.as_ref().map_or(0, |o| o.0.size())).sum();
         let small = [&self.nodes.buffer, &self.marks.segments, &self.marks.areas];
         let small: u64 = small.into_iter().flatten().map(wgpu::Buffer::size).sum();
         ((chunks + small) as usize, self.targets.values().map(Target::bytes).sum())
@@ -237,16 +247,13 @@ impl SpaceLayer {
         let mut pass = begin(encoder, target, style);
         pass.set_bind_group(0, &target.frame, &[]);
         let fronts = usize::from(style.only_fronts);
-        let is_used = |shown| [Role::Visible, Role::Scene, Role::Hidden, Role::Wrong].iter().any(|&r| style.shown(r) == shown);
-        if style.surface != Surface::Hidden {
-            let cuts = style.surface != Surface::Solid || style.section.is_some();
-            if is_used(Shown::Solid) {
-                pass.set_pipeline(&if cuts { &self.pipelines.cut } else { &self.pipelines.whole }[fronts]);
-                self.draw_triangles(&mut pass);
-            }
-            if is_used(Shown::Ghost) {
-                pass.set_pipeline(&self.pipelines.ghost[fronts]);
-                self.draw_triangles(&mut pass);
+        let cuts = style.surface != Surface::Solid || style.section.is_some();
+        let solid = if cuts { &self.pipelines.cut } else { &self.pipelines.whole };
+        for (pipelines, shown) in [(solid, Shown::Solid), (&self.pipelines.ghost, Shown::Ghost)] {
+            let mask = target::mask(style, shown);
+            if mask != 0 {
+                pass.set_pipeline(&pipelines[fronts]);
+                self.draw_triangles(&mut pass, target::step(style), mask);
             }
         }
         self.draw_nodes(&mut pass, style);
@@ -260,11 +267,19 @@ impl SpaceLayer {
         }
     }
 
-    fn draw_triangles(&self, pass: &mut wgpu::RenderPass<'_>) {
+    /// Triangles whose role has its bit in `mask`. The shader asks the same of each stamp.
+    fn draw_triangles(&self, pass: &mut wgpu::RenderPass<'_>, step: u32, mask: u32) {
         for chunk in &self.chunks {
             pass.set_vertex_buffer(0, chunk.corners.slice(..));
             pass.set_vertex_buffer(1, chunk.stamps.slice(..));
-            pass.draw(0..3 * chunk.triangles as u32, 0..1);
+            let Some((buffer, order)) = &chunk.order else {
+                pass.draw(0..3 * chunk.triangles as u32, 0..1);
+                continue;
+            };
+            pass.set_index_buffer(buffer.slice(..), wgpu::IndexFormat::Uint32);
+            for range in order.shown(step, mask) {
+                pass.draw_indexed(3 * range.start..3 * range.end, 0, 0..1);
+            }
         }
     }
 

@@ -1,8 +1,10 @@
 //! Scene, film and marks as the words of vertex buffers.
 //!
-//! A triangle takes 48 bytes once a scene (three points, each with the packed look of the triangle) and 12
-//! once a film (its stamp at each vertex); a node takes 36 once a film. Nothing is indexed and nothing
-//! needs storage buffers, so GL draws it as well.
+//! A triangle takes 48 bytes once a scene (three points, each with the packed look of the triangle) and 24
+//! once a film (its stamp at each vertex, and its place in the order of decisions); a node takes 36 once a
+//! film. No vertex is shared and nothing needs storage buffers, so GL draws it as well.
+
+use std::ops::Range;
 
 use glam::Vec3;
 
@@ -53,6 +55,50 @@ pub(super) const NEVER: u32 = (1 << 28) - 1;
 pub(super) fn stamps(prims: &[PrimId], stamps: Option<&Stamps>, wrong: &[PrimId]) -> Vec<[u32; 3]> {
     let word = |p: &PrimId| stamps.map_or(NEVER << 4, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()));
     prims.iter().map(|p| [word(p); 3]).collect()
+}
+
+/// The triangles of a film in an order in which every state at every step is a few runs, so that a picture
+/// draws no triangle that it does not show. Within a run the order is that of the decisions.
+pub(super) struct Order {
+    /// Role that a run ends in, and the steps of its triangles' decisions, ascending.
+    runs: Vec<(u32, Vec<u32>)>,
+}
+
+impl Order {
+    /// The order, and the corner numbers in it, three a triangle.
+    pub fn of(stamps: &[[u32; 3]]) -> (Self, Vec<[u32; 3]>) {
+        let mut keys: Vec<u64> = stamps.iter().enumerate().map(|(i, s)| u64::from(s[0].rotate_right(4)) << 32 | i as u64).collect();
+        keys.sort_unstable();
+        let mut runs: Vec<(u32, Vec<u32>)> = Vec::new();
+        for key in &keys {
+            let (role, step) = ((key >> 60) as u32, (key >> 32) as u32 & NEVER);
+            if runs.last().is_none_or(|(last, _)| *last != role) {
+                runs.push((role, Vec::new()));
+            }
+            runs.last_mut().into_iter().for_each(|(_, steps)| steps.push(step));
+        }
+        let indices = keys.iter().map(|&k| [0, 1, 2].map(|c| 3 * (k as u32) + c)).collect();
+        (Self { runs }, indices)
+    }
+    /// Ranges of triangles whose role at `step` has its bit in `shown`.
+    pub fn shown(&self, step: u32, shown: u32) -> Vec<Range<u32>> {
+        let mut ranges: Vec<Range<u32>> = Vec::new();
+        let mut at = 0;
+        for (role, steps) in &self.runs {
+            let decided = steps.partition_point(|&s| s <= step) as u32;
+            for (role, end) in [(*role, at + decided), (Role::Scene as u32, at + steps.len() as u32)] {
+                let start = std::mem::replace(&mut at, end);
+                if shown >> role & 1 == 0 || start == end {
+                    continue;
+                }
+                match ranges.last_mut() {
+                    Some(last) if last.end == start => last.end = end,
+                    _ => ranges.push(start..end),
+                }
+            }
+        }
+        ranges
+    }
 }
 
 /// Three corners for each of `prims`, flat-shaded. `inner` are the bits of sides inside faces, by id.
@@ -198,6 +244,29 @@ mod tests {
         assert!(stamp(Stamp::NEVER, Verdict::Partial) >> 4 > 10_000_000);
         assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Outside }, true) & 15, Role::Wrong as u32);
         assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Visible }, true) & 15, Role::Visible as u32);
+    }
+
+    #[test]
+    fn the_ranges_of_a_step_hold_the_triangles_that_are_shown() {
+        use rand_pcg::{Pcg32, rand_core::Rng};
+        let mut random = Pcg32::new(5, 7);
+        let ends = [Verdict::Outside, Verdict::Hidden, Verdict::Visible, Verdict::OverBudget];
+        for _ in 0..50 {
+            let mut stamp = |_| {
+                let (step, verdict) = (random.next_u32() % 40, ends[random.next_u32() as usize % 4]);
+                [stamp_word(if step < 8 { Stamp { step: Stamp::NEVER, verdict: Verdict::Partial } } else { Stamp { step, verdict } }, false); 3]
+            };
+            let stamps: Vec<_> = (0..60).map(&mut stamp).collect();
+            let (order, indices) = Order::of(&stamps);
+            for step in [0, 8, 20, 39, NEVER - 1] {
+                let shown = random.next_u32() & 0xffff;
+                let role = |w: u32| if w >> 4 <= step { w & 15 } else { Role::Scene as u32 };
+                let expected: Vec<u32> = (0..60).filter(|&i| shown >> role(stamps[i as usize][0]) & 1 == 1).collect();
+                let mut found: Vec<u32> = order.shown(step, shown).into_iter().flatten().map(|t| indices[t as usize][0] / 3).collect();
+                found.sort_unstable();
+                assert_eq!(found, expected);
+            }
+        }
     }
 
     #[test]

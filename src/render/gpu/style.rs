@@ -52,7 +52,8 @@ impl Palette {
                 fill: style.fill.unwrap_or((look.paper(), 0.0)),
                 halo_pt: (halo, ((width_pt - style.width_pt) * 0.5).max(0.0)),
                 dot: style.dot,
-                hatch: style.hatch,
+                // A surface has no outline to be dotted, so its inside is.
+                hatch: if role == Role::Outside { Hatch::Dots } else { style.hatch },
             }
         };
         Self { paper: look.paper(), paints: Role::ALL.map(paint) }
@@ -159,7 +160,7 @@ impl SpaceStyle {
             nodes: NodeBoxes::Frontier,
             without: Vec::new(),
             highlights: Vec::new(),
-            ghost: 0.16,
+            ghost: 0.25,
             behind: 0.25,
             pixels_per_point: 1.0,
             transparent: false,

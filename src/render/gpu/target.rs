@@ -3,7 +3,7 @@
 use eframe::wgpu;
 
 use super::camera::SpaceCamera;
-use super::pack::{SegmentWords, step_word};
+use super::pack::{NEVER, SegmentWords, step_word};
 use super::pipelines::{COLOR_FORMAT, DEPTH_FORMAT, Pipelines};
 use super::style::{ColorBy, NodeBoxes, Shown, SpaceStyle, Surface};
 use crate::drawing::Role;
@@ -151,8 +151,7 @@ fn frame_words(camera: &SpaceCamera, style: &SpaceStyle, tile: Tile) -> Vec<u32>
         Surface::Both => 1,
         Surface::Wireframe => 2,
     };
-    let step = step_word(u32::try_from(style.step).unwrap_or(u32::MAX)).min(super::pack::NEVER - 1);
-    words.extend([step, (style.color_by == ColorBy::State).into(), wires, style.section.is_some().into()]);
+    words.extend([step(style), (style.color_by == ColorBy::State).into(), wires, style.section.is_some().into()]);
     words.extend([mask(style, Shown::Solid), mask(style, Shown::Ghost), u32::MAX, (style.nodes == NodeBoxes::Frontier).into()]);
     let ppp = style.pixels_per_point;
     let paints = &style.palette.paints;
@@ -165,8 +164,13 @@ fn frame_words(camera: &SpaceCamera, style: &SpaceStyle, tile: Tile) -> Vec<u32>
     words
 }
 
+/// The step as shaders compare it: before what never happens.
+pub(super) fn step(style: &SpaceStyle) -> u32 {
+    step_word(u32::try_from(style.step).unwrap_or(u32::MAX)).min(NEVER - 1)
+}
+
 /// A bit for each role whose triangles are drawn this way.
-fn mask(style: &SpaceStyle, shown: Shown) -> u32 {
+pub(super) fn mask(style: &SpaceStyle, shown: Shown) -> u32 {
     let on = style.surface != Surface::Hidden;
     Role::ALL.iter().filter(|&&r| on && style.shown(r) == shown).map(|&r| 1 << r as u32).sum()
 }
