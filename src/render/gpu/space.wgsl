@@ -68,7 +68,7 @@ fn cut_away(place: vec3<f32>) -> bool {
     // Edges are darker than their surface, or lighter where that is dark already.
     let luma = dot(filled, vec3<f32>(0.3, 0.6, 0.1));
     let edge = select(filled * 0.45, mix(filled, vec3<f32>(1.0), 0.4), luma < 0.25);
-    return vec4<f32>(mix(filled, edge, wire), 1.0);
+    return vec4<f32>(mix(filled, edge, 0.7 * wire), 1.0);
 }
 // See-through surfaces; premultiplied. The pattern is what tells them apart, so it is stronger than the fill.
 @fragment fn fs_ghost(in: Corner) -> @location(0) vec4<f32> {
