@@ -1,7 +1,8 @@
 //! (film, step, look) → drawing: every picture in the explorer and in the documentation.
 //!
 //! [`Page`] sets title, legend and caption around a picture. [`world`] draws a step in world
-//! coordinates, [`Sheet`] and [`project`] put it on paper.
+//! coordinates, [`Sheet`] and [`project`] put it on paper. [`pick()`] finds what lies
+//! under the pointer.
 
 pub mod axis;
 mod builtin;
@@ -9,6 +10,7 @@ mod clip;
 mod look;
 pub mod page;
 mod panels;
+mod pick;
 mod place;
 
 pub use builtin::{BUILTIN, Builtin, Tint};
@@ -16,4 +18,5 @@ pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};
 pub use panels::{Panel, Picture, panels};
+pub use pick::{pick, pick_node, pick_segment};
 pub use place::{Sheet, project};

@@ -142,12 +142,17 @@ mod tests {
         let (mut hits, mut compared) = (0, 0);
         for _ in 0..400 {
             let (origin, direction) = (vec3(&mut random) * 12.0, vec3(&mut random).normalize_or(Vec3::X));
-            let all: Vec<_> = scene.live().iter().map(|&p| (p, hit_exactly(std::array::from_fn(|i| scene.prim_points(p).nth(i).unwrap_or_default()), origin, direction))).collect();
+            let all: Vec<_> = scene
+                .live()
+                .iter()
+                .map(|&p| (p, hit_exactly(std::array::from_fn(|i| scene.prim_points(p).nth(i).unwrap_or_default()), origin, direction)))
+                .collect();
             // Rays that graze an edge within rounding may go either way.
             if all.iter().any(|(_, h)| h.is_some_and(|(t, w)| t > -1e-3 && w.abs() < 1e-4)) {
                 continue;
             }
-            let nearest = all.iter().filter_map(|&(p, h)| h.filter(|&(t, w)| t >= 0.0 && w > 0.0).map(|(t, _)| (p, t))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let nearest =
+                all.iter().filter_map(|&(p, h)| h.filter(|&(t, w)| t >= 0.0 && w > 0.0).map(|(t, _)| (p, t))).min_by(|a, b| a.1.total_cmp(&b.1));
             let found = pick(&scene, origin, direction, |_| true);
             assert_eq!(found.map(|f| f.0), nearest.map(|n| n.0));
             if let (Some((prim, t)), Some((_, exact))) = (found, nearest) {

@@ -10,10 +10,11 @@ use glam::Vec3;
 
 use crate::culling::Verdict;
 use crate::drawing::{Drawing, Layer, Mark, Role};
+use crate::figure::role_of;
 use crate::geometry::{NodeId, PrimId, Solid};
 use crate::index::Hierarchy;
 use crate::scene::Scene;
-use crate::trace::{Stamp, Stamps};
+use crate::trace::{Stamp, Stamps, State};
 
 /// Words of a triangle's corner: x, y, z, look.
 pub(super) type CornerWords = [u32; 4];
@@ -28,20 +29,9 @@ pub(super) type AreaWords = [u32; 4];
 const DOT: u32 = 16;
 const HEAD: u32 = 32;
 
-/// What a verdict looks like.
-fn role_of(verdict: Verdict) -> Role {
-    match verdict {
-        Verdict::Outside => Role::Outside,
-        Verdict::Hidden => Role::Hidden,
-        Verdict::Partial => Role::Partial,
-        Verdict::Visible => Role::Visible,
-        Verdict::Approximated | Verdict::OverBudget => Role::Approximated,
-    }
-}
-
 /// Step in the upper 28 bits (a film is capped far below), role in the lower four.
 fn stamp_word(stamp: Stamp, wrong: bool) -> u32 {
-    let role = if wrong && stamp.verdict != Verdict::Visible { Role::Wrong } else { role_of(stamp.verdict) };
+    let role = if wrong && stamp.verdict != Verdict::Visible { Role::Wrong } else { role_of(State::Decided(stamp.verdict)) };
     step_word(stamp.step) << 4 | role as u32
 }
 /// A step that the shader can compare; what never happens stays later than every step.
