@@ -35,6 +35,8 @@ struct Chunk {
 const CHUNK_PRIMS: usize = 4096;
 /// Triangles set up before they are filled, on one thread: 25 KiB, which the first cache holds.
 const BATCH_PRIMS: usize = 256;
+/// Rows that memory is asked for ahead.
+const PREFETCH_ROWS: usize = 2;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;
 
@@ -194,6 +196,7 @@ fn fill_small<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
 fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
+    let ahead = band.width * PREFETCH_ROWS;
     for y in y0..y1 {
         let (mut begin, mut end) = (0, s.x1 - s.x0);
         for (edge, &inverse) in s.edges.iter().zip(&inverse) {
@@ -212,6 +215,9 @@ fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
         while x < end {
             let at = row + x as usize;
             let past = row + end.min(x + L::N as i32) as usize;
+            // Rows are a page apart, which hardware does not foresee.
+            l.prefetch(band.depth.get(at + ahead));
+            l.prefetch(band.item.get(at + ahead));
             let along = l.mul(slope, l.ramp_f(center(x) - s.plane.x, 1 << SUBPIXEL_BITS));
             let z = l.clamp(l.add(base, along), low, high);
             l.merge(&mut band.depth[at..past], &mut band.item[at..past], l.all(), z, s.id);

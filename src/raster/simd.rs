@@ -80,6 +80,8 @@ pub(super) trait Lanes: Copy {
     /// The lanes where none of the three is negative.
     fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M;
     fn all(self) -> Self::M;
+    /// Asks for the memory of this element soon; changes nothing.
+    fn prefetch<T>(self, at: Option<&T>);
     /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
     /// Touches the slices' lanes only: both have the same length, at most `N`.
     fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32);
@@ -141,6 +143,8 @@ mod portable {
         fn all(self) -> Self::M {
             [true; N]
         }
+        #[inline(always)]
+        fn prefetch<T>(self, _: Option<&T>) {}
         #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32) {
             for (((depth, item), inside), z) in depth.iter_mut().zip(item).zip(inside).zip(z) {
@@ -228,6 +232,12 @@ mod x86 {
             unsafe { _mm256_set1_epi32(-1) }
         }
         #[inline(always)]
+        fn prefetch<T>(self, at: Option<&T>) {
+            if let Some(at) = at {
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
+            }
+        }
+        #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __m256i, z: __m256, id: u32) {
             let lanes = depth.len().min(item.len()).min(8);
             unsafe {
@@ -301,6 +311,12 @@ mod x86 {
         #[inline(always)]
         fn all(self) -> __mmask16 {
             !0
+        }
+        #[inline(always)]
+        fn prefetch<T>(self, at: Option<&T>) {
+            if let Some(at) = at {
+                unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
+            }
         }
         #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __mmask16, z: __m512, id: u32) {
