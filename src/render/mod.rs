@@ -57,7 +57,5 @@ pub fn recipe(bytes: &[u8]) -> Option<String> {
     if bytes.starts_with(b"%PDF") {
         return pdf::recipe(bytes);
     }
-    let text = std::str::from_utf8(bytes).ok()?;
-    let after = text.split_once("<metadata id=\"recipe\">")?.1;
-    Some(svg::unescape(after.split_once("</metadata>")?.0))
+    svg::recipe(std::str::from_utf8(bytes).ok()?)
 }

@@ -54,7 +54,7 @@ pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> 
 
 fn paint_page(surface: Surface, fonts: Vec<PdfFont>, drawing: &Drawing, look: Look) {
     let size = drawing.size_pt;
-    let mut canvas = Canvas { surface, fonts, size };
+    let mut canvas = Canvas { surface, fonts, size, look };
     canvas.fill(look.paper(), 1.0);
     canvas.path(&[Vec2::ZERO, Vec2::new(size.x, 0.0), size, Vec2::new(0.0, size.y)], true);
     let styles = look.styles();
@@ -96,6 +96,7 @@ struct Canvas<'a> {
     surface: Surface<'a>,
     fonts: Vec<PdfFont>,
     size: Vec2,
+    look: Look,
 }
 
 impl Canvas<'_> {
@@ -195,7 +196,7 @@ impl Canvas<'_> {
     fn image(&mut self, min: Vec2, max: Vec2, pixels: &Pixels) {
         let Some(size) = Size::from_wh(max.x - min.x, max.y - min.y) else { return };
         self.surface.push_transform(&Transform::from_translate(min.x, min.y));
-        self.surface.draw_image(Image::from_rgba8(pixels.rgba.to_vec(), pixels.width, pixels.height), size);
+        self.surface.draw_image(Image::from_rgba8(self.look.see(&pixels.rgba).into_owned(), pixels.width, pixels.height), size);
         self.surface.pop();
     }
 }

@@ -16,7 +16,7 @@ use crate::drawing::{Drawing, Font, Pixels, metrics};
 
 use super::hatch::hatching;
 use super::piece::{self, Line, Paint, Piece};
-use super::theme::{HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb, Theme};
+use super::theme::{HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb, Sight, Theme};
 
 /// A color of the theme for egui.
 pub fn color([r, g, b]: Rgb) -> Color32 {
@@ -109,7 +109,7 @@ pub fn paint(painter: &egui::Painter, drawing: &Drawing, look: impl Into<Look>, 
         (false, Font::Mono) => FontFamily::Monospace,
         (false, _) => FontFamily::Proportional,
     });
-    let mut screen = Screen { painter, origin, scale, window, families, shapes: Vec::new() };
+    let mut screen = Screen { painter, sight: look.sight, origin, scale, window, families, shapes: Vec::new() };
     let styles = look.styles();
     let mut pieces = Vec::new();
     for item in drawing.painted() {
@@ -125,6 +125,7 @@ pub fn paint(painter: &egui::Painter, drawing: &Drawing, look: impl Into<Look>, 
 
 struct Screen<'a> {
     painter: &'a egui::Painter,
+    sight: Sight,
     origin: Pos2,
     scale: f32,
     /// What is seen of the paper: minimum and maximum.
@@ -244,7 +245,7 @@ impl Screen<'_> {
     }
 
     fn image(&mut self, rect: Rect, pixels: &Pixels) {
-        let texture = texture(self.painter.ctx(), pixels);
+        let texture = texture(self.painter.ctx(), pixels, self.sight);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         self.shapes.push(Shape::image(texture, rect, whole, Color32::WHITE));
     }
@@ -323,9 +324,9 @@ fn clip(a: Vec2, b: Vec2, [low, high]: [Vec2; 2]) -> Option<(f32, f32)> {
     (from < to).then_some((from, to))
 }
 
-/// Textures of the pictures on screen, by the address of their pixels, which they keep alive.
+/// Textures of the pictures on screen, by the address of their pixels, which they keep alive, and the eyes.
 #[derive(Clone, Default)]
-struct Textures(Arc<egui::mutex::Mutex<BTreeMap<usize, Kept>>>);
+struct Textures(Arc<egui::mutex::Mutex<BTreeMap<(usize, Sight), Kept>>>);
 
 struct Kept {
     _pixels: Arc<[u8]>,
@@ -333,15 +334,19 @@ struct Kept {
     used_pass: u64,
 }
 
-fn texture(ctx: &egui::Context, pixels: &Pixels) -> egui::TextureId {
+fn texture(ctx: &egui::Context, pixels: &Pixels, sight: Sight) -> egui::TextureId {
     let textures = ctx.data_mut(|d| d.get_temp_mut_or_default::<Textures>(egui::Id::NULL.with("cullscope-pictures")).clone());
     let pass = ctx.cumulative_pass_nr();
     let mut kept = textures.0.lock();
     kept.retain(|_, k| k.used_pass + 2 >= pass);
-    let key = pixels.rgba.as_ptr() as usize;
+    let key = (pixels.rgba.as_ptr() as usize, sight);
+    let seen = || {
+        let look = Look { theme: Theme::default(), sight };
+        image(&Pixels { rgba: look.see(&pixels.rgba).into(), ..*pixels }, ctx.input(|i| i.max_texture_side))
+    };
     let entry = kept.entry(key).or_insert_with(|| Kept {
         _pixels: pixels.rgba.clone(),
-        handle: ctx.load_texture("picture", image(pixels, ctx.input(|i| i.max_texture_side)), TextureOptions::NEAREST),
+        handle: ctx.load_texture("picture", seen(), TextureOptions::NEAREST),
         used_pass: pass,
     });
     entry.used_pass = pass;

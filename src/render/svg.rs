@@ -121,6 +121,7 @@ impl Writer {
             Shape::Text(line) => self.text(line, piece, subject),
             Shape::Image { min, max, pixels } => {
                 let size = *max - *min;
+                let rgba = self.look.see(&pixels.rgba);
                 let _ = writeln!(
                     body,
                     "<image{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
@@ -128,7 +129,7 @@ impl Writer {
                     number(min.y),
                     number(size.x),
                     number(size.y),
-                    BASE64.encode(encode(pixels.width, pixels.height, &pixels.rgba, &[])),
+                    BASE64.encode(encode(pixels.width, pixels.height, &rgba, &[])),
                 );
             }
         }
@@ -269,8 +270,62 @@ fn escape(text: &str) -> String {
     out
 }
 
-/// Undoes [`escape`].
-pub(super) fn unescape(text: &str) -> String {
-    let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#10;", "\n"), ("&#9;", "\t"), ("&#13;", "\r"), ("&amp;", "&")];
-    entities.iter().fold(text.to_owned(), |text, (entity, c)| text.replace(entity, c))
+/// Undoes [`escape`], and what other programs write for the same characters.
+fn unescape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('&') {
+        out.push_str(before);
+        let Some((entity, tail)) = after.split_once(';').filter(|(entity, _)| entity.chars().all(|c| c == '#' || c.is_ascii_alphanumeric())) else {
+            out.push('&');
+            rest = after;
+            continue;
+        };
+        let number = |s: &str, radix| u32::from_str_radix(s, radix).ok().and_then(char::from_u32);
+        let c = match entity {
+            "amp" => Some('&'),
+            "lt" => Some('<'),
+            "gt" => Some('>'),
+            "quot" => Some('"'),
+            "apos" => Some('\''),
+            _ => entity.strip_prefix("#x").map_or_else(|| number(entity.strip_prefix('#')?, 10), |hex| number(hex, 16)),
+        };
+        match c {
+            Some(c) => out.push(c),
+            None => out.extend(["&", entity, ";"]),
+        }
+        rest = tail;
+    }
+    out.push_str(rest);
+    out
+}
+
+/// The recipe in an SVG file, also when another program has written it anew.
+pub(super) fn recipe(text: &str) -> Option<String> {
+    text.match_indices("<metadata").find_map(|(at, _)| {
+        let (tag, content) = text[at..].split_once('>')?;
+        let is_ours = tag.contains("id=\"recipe\"") || tag.contains("id='recipe'");
+        is_ours.then(|| content.split_once("</metadata>")).flatten().map(|(recipe, _)| unescape(recipe))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_have_no_negative_zero() {
+        for (x, text) in [(0.0, "0"), (-0.001, "0"), (1.5, "1.5"), (100.0, "100"), (-2.345, "-2.35"), (1e6, "1000000")] {
+            assert_eq!(number(x), text);
+        }
+    }
+
+    #[test]
+    fn recipes_survive_other_programs() {
+        let recipe_text = "{\"a\": \"<&amp;> '\u{fc}\"}\n";
+        assert_eq!(unescape(&escape(recipe_text)), recipe_text);
+        let rewritten = "<svg><metadata id='other'>x</metadata><metadata\n  id=\"recipe\"\n>{&#34;a&#x22;: 1 &unknown; & &apos;}</metadata></svg>";
+        assert_eq!(recipe(rewritten).as_deref(), Some("{\"a\": 1 &unknown; & '}"));
+        assert_eq!(recipe("<metadata id=\"recipe\">cut off"), None);
+    }
 }

@@ -5,6 +5,8 @@
 //! gray print and every eye can tell them apart (a test checks both). Nothing means "good" or "bad".
 //! Widths and dashes are in points.
 
+use std::borrow::Cow;
+
 use crate::drawing::Role;
 
 pub use super::sight::{Rgb, Sight};
@@ -331,6 +333,18 @@ impl Look {
     /// Color of the paper.
     pub fn paper(self) -> Rgb {
         self.sight.see(self.theme.paper())
+    }
+
+    /// The pixels of a picture (RGBA) as they are seen.
+    pub fn see(self, rgba: &[u8]) -> Cow<'_, [u8]> {
+        if self.sight == Sight::Full {
+            return Cow::Borrowed(rgba);
+        }
+        let seen = |p: &[u8]| {
+            let [r, g, b] = self.sight.see([p[0], p[1], p[2]]);
+            [r, g, b, p[3]]
+        };
+        Cow::Owned(rgba.chunks_exact(4).flat_map(seen).collect())
     }
 
     /// Opaque color of a role for surfaces in space.
