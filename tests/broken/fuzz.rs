@@ -119,7 +119,10 @@ fn mutated_obj_text_never_breaks_the_reader() {
 
 #[test]
 fn mutated_gltf_never_breaks_the_reader() {
-    fuzz_scene("f.gltf", &[super::gltf::valid().into_bytes()]);
+    fuzz_scene(
+        "f.gltf",
+        &[super::gltf::valid().into_bytes(), super::gltf::animated("rotation").into_bytes(), super::gltf::animated("translation").into_bytes()],
+    );
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use ::gltf::animation::{Interpolation, Property};
+use ::gltf::json::validation::Checked;
 use ::gltf::scene::Transform;
 use ::gltf::{Document, Node};
 use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
@@ -92,6 +93,15 @@ pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts:
     let Some(animation) = document.animations().next() else { return };
     if document.animations().len() > 1 {
         parts.report.note(format!("only the first of {} animations is used", document.animations().len()));
+    }
+    // The crate validates samplers only, and then takes nodes and paths for granted.
+    let json = &document.as_json().animations[animation.index()];
+    let nodes = document.nodes().len();
+    let there = |c: &::gltf::json::animation::Channel| {
+        c.sampler.value() < json.samplers.len() && c.target.node.value() < nodes && matches!(c.target.path, Checked::Valid(_))
+    };
+    if !json.channels.iter().all(there) {
+        return parts.report.note("animation left out: it names a sampler, node or property that is not there");
     }
     let mut channels = Vec::new();
     for channel in animation.channels() {
