@@ -15,8 +15,6 @@ pub struct Start {
     pub view: Option<String>,
     /// A session file.
     pub session: Option<String>,
-    /// Name of a lesson.
-    pub lesson: Option<String>,
     /// Forgets the saved layout.
     pub reset_layout: bool,
     /// Neither reads nor writes what was open last.

@@ -7,6 +7,7 @@
 mod convert;
 mod cull;
 mod error;
+mod explore;
 mod methods;
 mod output;
 mod progress;
@@ -21,8 +22,7 @@ pub use error::CliError;
 
 use std::ffi::OsString;
 
-use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 
 use crate::culling::Methods;
 use crate::raster::Drawable;
@@ -46,6 +46,8 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Open the explorer (the same as no command at all)
+    Explore(explore::Args),
     /// Cull a scene for each view and print what was drawn, how long it took and how right it is
     Cull(cull::Args),
     /// Write a run step by step, as JSON Lines
@@ -70,7 +72,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Err(e) => return words::explain(&e),
     };
     match cli.command {
-        None => words::explain(&Cli::command().error(ErrorKind::MissingSubcommand, "a command is missing")),
+        None => explore::run(&explore::Args::default()),
+        Some(Command::Explore(args)) => explore::run(&args),
         Some(Command::Cull(args)) => cull::run(&args),
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Methods(args)) => methods::run(&args),
