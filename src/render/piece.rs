@@ -16,7 +16,7 @@ use super::theme::{Hatch, Rgb, SIGN_PT, Style};
 pub(super) enum Part {
     Halo,
     Area,
-    /// An area of the scene: one of thousands, so its outline is a hair.
+    /// An area of the scene that is no occluder: one of thousands, so its outline is a hair.
     Face,
     Hatch,
     Line,
@@ -134,7 +134,8 @@ pub(super) fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piec
             if halo {
                 push(Part::Halo, path());
             }
-            push(if item.layer == Layer::Scene { Part::Face } else { Part::Area }, path());
+            let many = item.layer == Layer::Scene && item.role != Role::Occluder;
+            push(if many { Part::Face } else { Part::Area }, path());
             if style.hatch != Hatch::None {
                 push(Part::Hatch, path());
             }

@@ -34,10 +34,10 @@ impl Default for Params {
 
 const CODE: &[CodeLine] = &[
     CodeLine { label: "Order:1", text: "for each polygon p of the scene" },
-    CodeLine { label: "Order:2", text: "  if p is outside the view frustum or faces away: skip it" },
-    CodeLine { label: "Order:3", text: "  else put p into L with its centroid's distance from the eye" },
+    CodeLine { label: "Order:2", text: "  if p is out of view: skip it" },
+    CodeLine { label: "Order:3", text: "  else put p into L by distance" },
     CodeLine { label: "Draw:1", text: "for each polygon p of L, nearest first" },
-    CodeLine { label: "Draw:2", text: "  if the budget is not spent: draw p" },
+    CodeLine { label: "Draw:2", text: "  if budget is left: draw p" },
     CodeLine { label: "Draw:3", text: "  else leave p out" },
 ];
 

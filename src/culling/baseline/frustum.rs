@@ -37,14 +37,14 @@ impl Default for Params {
 const CODE: &[CodeLine] = &[
     CodeLine { label: "Visible:1", text: "Visible(node T, planes P)" },
     CodeLine { label: "Visible:2", text: "  if T lies outside a plane of P" },
-    CodeLine { label: "Visible:3", text: "    return: nothing of T can be seen" },
+    CodeLine { label: "Visible:3", text: "    return" },
     CodeLine { label: "Visible:4", text: "  P' := the planes of P that cut T" },
     CodeLine { label: "Visible:5", text: "  if P' is empty or T is a leaf" },
-    CodeLine { label: "Visible:6", text: "    Gather(T): draw all polygons of T" },
+    CodeLine { label: "Visible:6", text: "    Gather(T)" },
     CodeLine { label: "Visible:7", text: "  else for each child T' of T" },
     CodeLine { label: "Visible:8", text: "    Visible(T', P')" },
-    CodeLine { label: "Gather:1", text: "Gather(T) with back-face culling" },
-    CodeLine { label: "Gather:2", text: "  draw those polygons of T that face the eye" },
+    CodeLine { label: "Gather:1", text: "Gather(T)" },
+    CodeLine { label: "Gather:2", text: "  draw each p of T that faces the eye" },
 ];
 
 impl<S: Space> Method<S> for Frustum {

@@ -24,9 +24,9 @@ pub struct Params {
 
 const CODE: &[CodeLine] = &[
     CodeLine { label: "Draw:1", text: "for each polygon p of the scene" },
-    CodeLine { label: "Draw:2", text: "  if back faces are culled and p faces away from the eye" },
+    CodeLine { label: "Draw:2", text: "  if p faces away from the eye" },
     CodeLine { label: "Draw:3", text: "    skip p" },
-    CodeLine { label: "Draw:4", text: "  else draw p; the z-buffer keeps its nearest pixels" },
+    CodeLine { label: "Draw:4", text: "  else draw p" },
 ];
 
 impl<S: Space> Method<S> for ZBuffer {
