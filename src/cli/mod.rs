@@ -7,6 +7,7 @@
 mod convert;
 mod cull;
 mod error;
+mod figure;
 mod methods;
 mod output;
 mod progress;
@@ -50,6 +51,8 @@ enum Command {
     Cull(cull::Args),
     /// Write a run step by step, as JSON Lines
     Step(step::Args),
+    /// Write built-in figures as SVG, PDF or PNG
+    Figure(figure::Args),
     /// List the methods and their parameters
     Methods(methods::Args),
     /// Look into scenes and convert them
@@ -73,6 +76,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         None => words::explain(&Cli::command().error(ErrorKind::MissingSubcommand, "a command is missing")),
         Some(Command::Cull(args)) => cull::run(&args),
         Some(Command::Step(args)) => step::run(&args),
+        Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Trace(command)) => trace::run(&command),
