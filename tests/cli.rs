@@ -80,7 +80,7 @@ fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn every_command_explains_itself_with_an_example() {
     let here = folder("help");
-    let commands: [&[&str]; 7] =
+    let commands: [&[&str]; 8] =
         [&["cull"], &["step"], &["methods"], &["scene", "info"], &["scene", "generators"], &["scene", "convert"], &["trace", "check"]];
     for words in commands {
         let text = done(&here, &with(words, &["--help"]));
@@ -262,6 +262,25 @@ fn converted_scenes_are_the_same_scenes() {
     assert_eq!(fs::read(here.join("out.json")).expect("written"), fs::read(here.join("again.json")).expect("written"));
     refused(&here, &["scene", "convert", "boxes.obj", "out.json"], 2);
     refused(&here, &["scene", "convert", "walls.json", "out.obj"], 2);
+}
+
+#[test]
+fn figures_are_written_the_same_each_time() {
+    let here = folder("figure");
+    let listed = done(&here, &["figure", "--list"]);
+    let name = listed.split_whitespace().next().expect("a figure");
+    for out in ["a", "b/c"] {
+        let said = done(&here, &["figure", name, "--format", "svg,pdf,png", "--theme", "dark", "--out", out]);
+        assert_eq!(said.lines().count(), 3, "{said}");
+    }
+    for (extension, magic) in [("svg", "<"), ("pdf", "%PDF"), ("png", "\u{FFFD}PNG")] {
+        let [a, b] = ["a", "b/c"].map(|out| fs::read(here.join(out).join(format!("{name}.{extension}"))).expect("a figure"));
+        assert!(a == b && String::from_utf8_lossy(&a).starts_with(magic), "{extension}");
+    }
+    assert!(refused(&here, &["figure", &name[1..]], 2).contains(&format!("did you mean `{name}`?")));
+    refused(&here, &["figure"], 2);
+    refused(&here, &["figure", "--all", name], 2);
+    refused(&here, &["figure", name, "--out", "boxes.obj"], 1);
 }
 
 #[test]

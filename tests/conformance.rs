@@ -238,10 +238,10 @@ fn films_replay_in_space() {
 const FLOORS: [(&str, &str, f64); 6] = [
     ("z-buffer", "flatland", 0.0),
     ("z-buffer", "space", 0.0),
-    ("frustum", "flatland", 0.5),
-    ("frustum", "space", 0.5),
-    ("centroid", "flatland", 0.5),
-    ("centroid", "space", 0.5),
+    ("frustum", "flatland", 0.65),
+    ("frustum", "space", 0.63),
+    ("centroid", "flatland", 0.95),
+    ("centroid", "space", 0.95),
 ];
 
 fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {

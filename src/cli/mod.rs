@@ -8,6 +8,7 @@ mod convert;
 mod cull;
 mod error;
 mod explore;
+mod figure;
 mod methods;
 mod output;
 mod progress;
@@ -52,6 +53,8 @@ enum Command {
     Cull(cull::Args),
     /// Write a run step by step, as JSON Lines
     Step(step::Args),
+    /// Write built-in figures as SVG, PDF or PNG
+    Figure(figure::Args),
     /// List the methods and their parameters
     Methods(methods::Args),
     /// Look into scenes and convert them
@@ -76,6 +79,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Explore(args)) => explore::run(&args),
         Some(Command::Cull(args)) => cull::run(&args),
         Some(Command::Step(args)) => step::run(&args),
+        Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Trace(command)) => trace::run(&command),

@@ -1,0 +1,82 @@
+//! What watching costs: `frustum` unobserved, counted and recorded against a copy with every trace of the
+//! observer stripped by hand.
+//!
+//! `cargo bench --bench observer`. Interleaved and paired: each round times both ways, the median ratio of
+//! the rounds is printed with its quartiles. The copy lives here so that the library has one function only.
+
+use std::sync::Arc;
+
+use cullscope::culling::{Methods, Settings};
+use cullscope::geometry::{Frustum, FrustumTest, NodeId, PrimId, Solid, View};
+use cullscope::index::KdTree;
+use cullscope::measure::timing::{Paired, paired};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
+use glam::Vec3;
+
+/// Levels of the tree: so many that the walk and not the copying of its result takes the time.
+const HEIGHT: u32 = 16;
+const ROUNDS: usize = 61;
+const VIEWS: usize = 24;
+
+/// `culling::baseline::frustum` without observer and without back-face culling.
+struct Stripped {
+    tree: KdTree<Vec3>,
+}
+
+impl Stripped {
+    fn cull(&self, view: &View<Solid>) -> Vec<PrimId> {
+        let mut out = Vec::new();
+        self.visible(&view.frustum(), NodeId(0), Frustum::<Vec3>::ALL, &mut out);
+        out
+    }
+    fn visible(&self, frustum: &Frustum<Vec3>, id: NodeId, planes: u8, out: &mut Vec<PrimId>) {
+        let node = &self.tree.nodes()[id.at()];
+        match (frustum.test(&node.bounds, planes), node.children()) {
+            (FrustumTest::Outside(_), _) => {}
+            (FrustumTest::Partial(cutting), Some(children)) => {
+                for child in children {
+                    self.visible(frustum, child, cutting, out);
+                }
+            }
+            (FrustumTest::Inside | FrustumTest::Partial(_), _) => out.extend_from_slice(self.tree.prims_below(id)),
+        }
+    }
+}
+
+fn hash(lists: impl Iterator<Item = Vec<PrimId>>) -> u64 {
+    lists.flatten().fold(0xcbf2_9ce4_8422_2325, |h, p| (h ^ u64::from(p.0)).wrapping_mul(0x100_0000_01b3))
+}
+
+fn print(name: &str, p: &Paired) {
+    println!(
+        "{name}: ×{:.3} (quartiles {:.3} to {:.3}); {:.3} ms against {:.3} ms for {VIEWS} views",
+        p.ratio, p.spread[0], p.spread[1], p.b_ms, p.a_ms
+    );
+}
+
+fn main() {
+    let AnyScene::Solid(scene) = load("generate:building", &LoadOptions::default(), &Quiet).expect("a scene") else {
+        panic!("the generator makes a scene of space");
+    };
+    let views = random_views(&scene, VIEWS, 7);
+    let stripped = Stripped { tree: build(&scene) };
+    let settings = Settings([("tree-height".to_owned(), HEIGHT.to_string())].into());
+    let entry = Solid::method("frustum").expect("a method");
+    let [mut a, mut b, mut c] = [(); 3].map(|()| entry.ready(&scene, &settings, &Quiet).expect("settings").expect("not cancelled"));
+
+    let want = hash(views.iter().map(|v| stripped.cull(v)));
+    assert_eq!(want, hash(views.iter().map(|v| a.cull(v).prims)), "both ways draw the same");
+    let nodes: u64 = views.iter().map(|v| a.count(v).1.nodes_entered).sum();
+    println!("scene: {} triangles, tree of {HEIGHT} levels, {nodes} nodes entered, {ROUNDS} rounds", scene.live().len());
+
+    let bare = || views.iter().for_each(|v| drop(std::hint::black_box(stripped.cull(v))));
+    print("stripped again", &paired(ROUNDS, bare, bare));
+    print("unobserved    ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(a.cull(v))))));
+    print("counted       ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(b.count(v))))));
+    print("recorded      ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(c.record(v, usize::MAX).list)))));
+    println!("hash {want:016x}");
+}
+
+fn build(scene: &Arc<Scene<Solid>>) -> KdTree<Vec3> {
+    KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), HEIGHT, || false).expect("not cancelled")
+}

@@ -1,0 +1,119 @@
+//! `cullscope figure`: the built-in figures as files.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::PathBuf;
+
+use super::error::reason;
+use super::progress::Bar;
+use super::{CliError, output, suggest};
+use crate::drawing::Drawing;
+use crate::figure::{BUILTIN, Builtin};
+use crate::render::{self, PngSize, RenderError, SvgOptions, Theme};
+use crate::scene::Progress;
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  cullscope figure frustum-steps --format svg,pdf --theme print --out figures\n  cullscope figure --list\n  cullscope figure --all"
+)]
+pub(super) struct Args {
+    /// Which figures; --list names them
+    #[arg(value_name = "NAME", conflicts_with_all = ["all", "list"])]
+    names: Vec<String>,
+    /// All of them
+    #[arg(long, conflicts_with = "list")]
+    all: bool,
+    /// List the figures instead
+    #[arg(long)]
+    list: bool,
+    /// File formats, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "svg")]
+    format: Vec<Format>,
+    /// Colors
+    #[arg(long, value_enum, default_value = "print")]
+    theme: Colors,
+    /// Folder for the files; it is made if it is missing
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+enum Format {
+    Svg,
+    Pdf,
+    Png,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Colors {
+    Light,
+    Dark,
+    Print,
+}
+
+/// Dots an inch of PNG figures: what journals ask for.
+const DPI: f32 = 300.0;
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    if args.list {
+        let mut text = String::new();
+        for figure in BUILTIN {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{:<20} {}", figure.name, figure.summary);
+        }
+        return output::print(text.as_bytes());
+    }
+    let figures = chosen(args)?;
+    let theme = match args.theme {
+        Colors::Light => Theme::Light,
+        Colors::Dark => Theme::Dark,
+        Colors::Print => Theme::Print,
+    };
+    let formats: BTreeSet<Format> = args.format.iter().copied().collect();
+    fs::create_dir_all(&args.out).map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
+    let bar = Bar::new();
+    for (i, figure) in figures.iter().enumerate() {
+        bar.report(i as f32 / figures.len() as f32, "making figures");
+        if bar.cancelled() {
+            return Err(CliError::Interrupted);
+        }
+        let drawing = figure.drawing(&|role| theme.flat_linear(role))?;
+        let recipe = format!("cullscope figure {} --theme {}", figure.name, theme.name());
+        for format in &formats {
+            let (bytes, extension) = bytes(&drawing, theme, *format, &recipe).map_err(|e| CliError::work(figure.name, e.to_string()))?;
+            let path = args.out.join(format!("{}.{extension}", figure.name));
+            output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
+            output::print(format!("{}\n", path.display()).as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+fn chosen(args: &Args) -> Result<Vec<&'static Builtin>, CliError> {
+    let known: Vec<&str> = BUILTIN.iter().map(|f| f.name).collect();
+    if args.all {
+        return Ok(BUILTIN.iter().collect());
+    }
+    if args.names.is_empty() {
+        return Err(CliError::words("figure", "no figure is named").with_help(format!("give a NAME or --all; figures: {}", known.join(", "))));
+    }
+    let find = |name: &String| {
+        BUILTIN
+            .iter()
+            .find(|f| f.name == name)
+            .ok_or_else(|| CliError::words(name.as_str(), "there is no such figure").with_help(suggest::help(name, &known, "figures")))
+    };
+    args.names.iter().map(find).collect()
+}
+
+fn bytes(drawing: &Drawing, theme: Theme, format: Format, recipe: &str) -> Result<(Vec<u8>, &'static str), RenderError> {
+    Ok(match format {
+        Format::Svg => {
+            let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };
+            (render::svg(drawing, theme, &options).into_bytes(), "svg")
+        }
+        Format::Pdf => (render::pdf(drawing, theme, Some(recipe))?, "pdf"),
+        Format::Png => (render::png(drawing, theme, PngSize::Dpi(DPI), Some(recipe))?, "png"),
+    })
+}

@@ -1,0 +1,132 @@
+//! `frustum` on real models: no visible primitive is missed, and the image of what was kept is the image of
+//! everything, byte for byte.
+//!
+//! The committed scenes always, from a few views. Where `CULLSCOPE_SCENES` names a folder, every model below
+//! it as well, along its whole paths and from 100 random views:
+//! `CULLSCOPE_SCENES=models cargo test --release --test exact -- --nocapture`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use cullscope::culling::{Methods, Settings};
+use cullscope::geometry::View;
+use cullscope::measure::timing::timed;
+use cullscope::raster::{Drawable, Options, Target, shade};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
+use cullscope::truth::Truth;
+
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// Scene files below a folder, in order.
+fn models(folder: &Path, into: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).expect("a readable folder").map(|e| e.expect("an entry").path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() {
+            models(&path, into);
+        } else if path.to_string_lossy().ends_with(".obj") || path.to_string_lossy().ends_with(".flat.json") {
+            into.push(path);
+        }
+    }
+}
+
+/// What was seen over all views of a scene.
+#[derive(Default)]
+struct Sum {
+    views: usize,
+    drawn: usize,
+    visible: usize,
+    missed: usize,
+    wrong_pixels: usize,
+    cull_ms: f64,
+    draw_ms: f64,
+    all_ms: f64,
+}
+
+fn look<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
+    let entry = S::method("frustum").expect("a method");
+    let mut run = entry.ready(scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
+    let mut truth = Truth::new(scene, false, 1, WHITE);
+    let mut target = Target::default();
+    let mut sum = Sum { views: views.len(), ..Sum::default() };
+    for view in views {
+        let (list, cull_ms) = timed(|| run.cull(view));
+        let draw = || {
+            target.clear(view);
+            S::draw(&mut target, scene, view, &list.prims, &Options::default());
+        };
+        let draw_ms = timed(draw).1;
+        let (judged, all_ms) = timed(|| truth.judge(scene, view, &list.prims, &target));
+        assert_eq!(judged.wrong_items == 0, *truth.image() == target, "{}: items and depths", scene.name());
+        // The colored images as bytes, from now and then, since coloring is slower than drawing.
+        if sum.drawn == 0 {
+            assert!(shade(truth.image(), scene, view, WHITE) == shade(&target, scene, view, WHITE), "{}: {view:?}", scene.name());
+        }
+        sum.drawn += list.prims.len();
+        sum.visible += judged.visible.len();
+        sum.missed += judged.missed.len();
+        sum.wrong_pixels += judged.wrong_items.max(judged.wrong_pixels);
+        sum.cull_ms += cull_ms;
+        sum.draw_ms += draw_ms;
+        sum.all_ms += all_ms;
+    }
+    sum
+}
+
+/// Views along the scene's paths, each `every`th, and random ones; of at most `side_px` pixels across.
+fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u32) -> Vec<View<S>> {
+    let along = scene.paths().iter().flat_map(|p| p.views.iter().step_by(every));
+    let mut views: Vec<View<S>> = along.copied().chain(random_views(scene, random, 1)).collect();
+    views.iter_mut().for_each(|v| (v.width, v.height) = (v.width.min(side_px), v.height.min(side_px)));
+    views
+}
+
+fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
+    let sum = look(scene, views);
+    let per = |total: f64| total / sum.views.max(1) as f64;
+    println!(
+        "{:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",
+        scene.name(),
+        scene.live().len(),
+        S::PRIM,
+        sum.views,
+        sum.missed,
+        sum.wrong_pixels,
+        per(sum.drawn as f64),
+        per(sum.visible as f64),
+        per(sum.cull_ms),
+        per(sum.draw_ms),
+        per(sum.all_ms),
+    );
+    (sum.missed, sum.wrong_pixels)
+}
+
+fn check_file(path: &Path, every: usize, random: usize, side_px: u32) {
+    let found = match load(&path.to_string_lossy(), &LoadOptions::default(), &Quiet).unwrap_or_else(|e| panic!("{e}")) {
+        AnyScene::Flat(scene) => check(&scene, &views(&scene, every, random, side_px)),
+        AnyScene::Solid(scene) => check(&scene, &views(&scene, every, random, side_px)),
+    };
+    assert_eq!(found, (0, 0), "{}: missed triangles and wrong pixels", path.display());
+}
+
+#[test]
+fn committed_models_lose_nothing() {
+    let mut found = Vec::new();
+    for folder in ["scenes2d", "scenes3d"] {
+        models(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut found);
+    }
+    assert!(found.len() >= 8, "the real models are there");
+    found.iter().for_each(|path| check_file(path, 40, 4, 200));
+}
+
+#[test]
+fn models_at_hand_lose_nothing() {
+    let Some(folder) = std::env::var_os("CULLSCOPE_SCENES") else {
+        println!("skipped: CULLSCOPE_SCENES names no folder of models");
+        return;
+    };
+    let mut found = Vec::new();
+    models(Path::new(&folder), &mut found);
+    assert!(!found.is_empty(), "no model below {}", folder.display());
+    found.iter().for_each(|path| check_file(path, 1, 100, 1024));
+}
