@@ -247,7 +247,6 @@ impl State {
             Action::ScaleDown => shown.scale = (shown.scale / 1.1).max(0.5),
             Action::ScaleReset => shown.scale = 1.0,
             Action::FullScreen => self.effects.push(Effect::FullScreen),
-            Action::GoTo => self.dialog = Dialog::GoTo,
             Action::Palette => self.dialog = Dialog::Palette,
             Action::Keys => self.dialog = Dialog::Keys,
             Action::Report => self.dialog = Dialog::Report,
@@ -313,10 +312,11 @@ impl State {
     /// Opens a scene or a session file.
     pub(super) fn open(&mut self, source: &str, views: Option<String>) {
         self.dialog = Dialog::None;
-        if Session::is_named(source) {
-            match Session::read(source) {
+        let is_figure = super::export::is_figure(source);
+        if is_figure || Session::is_named(source) {
+            match if is_figure { super::export::session_in(source) } else { Session::read(source) } {
                 Ok(session) => {
-                    self.session_path = Some(source.to_owned());
+                    self.session_path = Some(source.to_owned()).filter(|_| !is_figure);
                     self.restore(session);
                 }
                 Err(error) => self.fail(error.to_string()),

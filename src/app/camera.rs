@@ -31,7 +31,7 @@ const PITCH_LIMIT: f32 = 1.55;
 
 impl Default for ObserverCamera {
     fn default() -> Self {
-        Self { pivot: [0.0; 3], yaw: 0.7, pitch: 0.65, roll: 0.0, distance: 10.0, extent: 10.0 }
+        Self { pivot: [0.0; 3], yaw: 0.6, pitch: 0.95, roll: 0.0, distance: 10.0, extent: 10.0 }
     }
 }
 

@@ -140,6 +140,12 @@ pub enum SessionError {
         /// The path as given.
         path: String,
     },
+    /// A picture without a session inside.
+    #[error("{path}: this picture carries no session; only figures that cullscope wrote can be opened")]
+    NoSession {
+        /// The path as given.
+        path: String,
+    },
     /// The session was written by a later program.
     #[error("{path}: a session of version {found}; this program reads up to version {VERSION}")]
     TooNew {

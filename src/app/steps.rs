@@ -3,7 +3,7 @@
 use super::command::Action;
 use super::filter::{kind_name, subject_at, verdict_of};
 use super::session::Bookmark;
-use super::state::{Breakpoint, State};
+use super::state::{Breakpoint, Dialog, State};
 use crate::culling::Event;
 use crate::drawing::Subject;
 use crate::trace::{Detail, Moves};
@@ -92,6 +92,7 @@ impl State {
             Action::Slower => self.speed = (self.speed * 0.5).max(0.25),
             Action::Faster => self.speed = (self.speed * 2.0).min(1e6),
             Action::ToggleDetail => self.detail = if self.detail == Detail::Full { Detail::Coarse } else { Detail::Full },
+            Action::GoTo => self.dialog = Dialog::GoTo,
             Action::Breakpoint => self.toggle_breakpoint(),
             Action::Bookmark => self.toggle_bookmark(),
             Action::PreviousFrame | Action::NextFrame => {

@@ -280,6 +280,7 @@ fn every_action_runs_and_none_panics() {
     }
     let mut state = opened(FLAT);
     state.apply(Command::Select(Subject::Node(NodeId(1))));
+    // Saving under a name is asked for by a dialog, so nothing is written here.
     for info in Action::ALL.iter().filter(|i| !matches!(i.action, Action::Start)) {
         state.apply(info.action);
         state.dialog = Dialog::None;
@@ -337,4 +338,26 @@ fn the_image_of_flatland_shows_the_nearest_segments() {
         assert!((nearest.0 - depth).abs() < 1e-3 * depth, "{i}: {prim} at {depth}, {nearest:?}");
     }
     assert!(seen > 5);
+}
+
+#[test]
+fn a_figure_brings_its_session_back() {
+    let mut state = opened(FLAT);
+    state.apply(Command::GoTo(77));
+    let drawing = state.figure(1.5, None).expect("a figure");
+    assert!(drawing.items.len() > 100);
+    let recipe = state.session().text();
+    let options = crate::render::SvgOptions { metadata: Some(&recipe), ..Default::default() };
+    let svg = crate::render::svg(&drawing, Theme::Print, &options);
+    let path = std::env::temp_dir().join(format!("cullscope-{}.svg", std::process::id()));
+    let path = path.to_string_lossy().into_owned();
+    write_file(&path, svg.as_bytes()).expect("a file");
+    let mut other = State::new();
+    other.apply(Command::Open(path.clone()));
+    other.block_until_idle();
+    assert_eq!(other.session(), state.session(), "{:?}", other.notices);
+    write_file(&path, b"<svg/>").expect("a file");
+    other.apply(Command::Open(path.clone()));
+    assert!(other.notices.iter().any(|n| n.is_error));
+    let _ = std::fs::remove_file(path);
 }

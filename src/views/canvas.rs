@@ -25,6 +25,7 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
         camera.frame_flat(&target_box(state, stage), &stage.scene.bounds(), rect.width() / rect.height().max(1.0));
         answers.push(Command::Observe(camera));
     }
+    cache.aspect = rect.aspect_ratio();
     let sheet = sheet(state, rect);
     let to_screen = |p: Vec2| {
         let p = sheet.to_paper(p);

@@ -6,7 +6,8 @@ use super::icons::{self, Icon};
 use super::inspector::value;
 use super::{Answers, palette};
 use crate::app::{Breakpoint, Command, State};
-use crate::culling::Event;
+use crate::culling::{Event, Verdict};
+use crate::trace::Counts;
 
 /// Shows the pseudocode.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -14,6 +15,16 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(card) = stage.card() else { return };
     let lit = state.line();
     let values = values(state);
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("Stop at");
+        let end = stage.counts(stage.events().len());
+        for verdict in Counts::VERDICTS.into_iter().filter(|&v| end.of(v) > 0 || v == Verdict::Outside) {
+            let mut stops = state.breakpoints.contains(&Breakpoint::Verdict(verdict));
+            if ui.checkbox(&mut stops, verdict.name()).on_hover_text("A run (F5) stops at every such verdict").changed() {
+                answers.push(Command::BreakVerdict(verdict));
+            }
+        }
+    });
     ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         for (i, line) in card.code.iter().enumerate() {

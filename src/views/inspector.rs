@@ -48,12 +48,41 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 }
             });
         }
+        bookmarks(state, ui, answers);
         if state.selection != Subject::None {
             ui.add_space(6.0);
             ui.strong(capitalized(&subject_name(state, state.selection)));
             rows(ui, "subject", stage.facts(state.selection).into_iter().map(|(name, text)| (name.to_owned(), text)));
         }
     });
+}
+
+/// Steps to come back to, with notes.
+fn bookmarks(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    if state.bookmarks.is_empty() {
+        return;
+    }
+    ui.add_space(6.0);
+    ui.strong("Bookmarks");
+    for (i, mark) in state.bookmarks.iter().enumerate() {
+        ui.horizontal(|ui| {
+            if ui.link(format!("{}: step {}", i + 1, mark.step)).clicked() {
+                answers.push(Command::GoTo(mark.step));
+            }
+            let mut note = mark.note.clone();
+            let edit = egui::TextEdit::singleline(&mut note).hint_text("note").desired_width(ui.available_width() - 28.0);
+            let response = ui.add(edit);
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, format!("Note of bookmark {}", i + 1)));
+            if note != mark.note {
+                answers.push(Command::Note(i, note));
+            }
+            let remove = ui.small_button("×").on_hover_text("Remove this bookmark");
+            remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove bookmark {}", i + 1)));
+            if remove.clicked() {
+                answers.push(Command::Unmark(i));
+            }
+        });
+    }
 }
 
 fn rows(ui: &mut egui::Ui, id: &str, rows: impl Iterator<Item = (String, String)>) {

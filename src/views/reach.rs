@@ -8,6 +8,7 @@ use super::handles::{self, Handle};
 use super::window::Cache;
 use crate::app::{Action, Any, Command, Stage, State};
 use crate::drawing::Subject;
+use crate::figure;
 use crate::geometry::{Aabb, Solid, View};
 use crate::render::gpu::SpaceCamera;
 
@@ -90,7 +91,7 @@ pub fn observe(
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
         response.request_focus();
         let (origin, direction) = ray(view, rect, at);
-        let hit = stage.pick(origin, direction, view.eye.near, |_| true);
+        let hit = figure::pick(&stage.scene, origin, direction, |_| true);
         if response.double_clicked() {
             match hit {
                 // The point under the cursor becomes what the Observer turns around.
@@ -144,7 +145,7 @@ pub fn look_around(
             let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
             matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
         };
-        let hit = stage.pick(origin, direction, stage.view.eye.near, drawn);
+        let hit = figure::pick(&stage.scene, origin, direction, drawn);
         answers.push(Command::Select(hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))));
     }
     cache.flying |= response.has_focus();

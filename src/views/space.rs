@@ -52,6 +52,9 @@ pub fn show(
             ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "No graphics device", egui::FontId::default(), palette::panel(state).faint);
         }
     }
+    if !is_eye {
+        cache.aspect = rect.aspect_ratio();
+    }
     if is_eye {
         ui.painter_at(pane).rect_stroke(rect, 0.0, egui::Stroke::new(1.0, palette::panel(state).border), egui::StrokeKind::Inside);
         reach::look_around(state, stage, cache, ui, &response, rect, answers);
@@ -184,4 +187,12 @@ fn labels(state: &State, stage: &Stage<Solid>, cache: &Cache, ui: &egui::Ui, rec
     let mut paper = Drawing { size_pt: size, ..Drawing::default() };
     figure::project(&Drawing { items: texts, ..Drawing::default() }, view, Vec2::ZERO, size, &mut paper);
     screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
+}
+
+/// The Observer's picture as it is on the graphics card.
+pub fn pixels(gpu: &RenderState) -> Option<crate::drawing::Pixels> {
+    let renderer = gpu.renderer.read();
+    let layer = renderer.callback_resources.get::<SpaceLayer>()?;
+    let (width, height, rgba) = layer.read_rgba(&gpu.device, &gpu.queue, ViewportId(0)).ok()??;
+    Some(crate::drawing::Pixels { width, height, rgba: rgba.into() })
 }

@@ -75,13 +75,14 @@ fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut An
     ui.horizontal(|ui| {
         ui.label("View");
         if names.len() > 1 {
-            egui::ComboBox::from_id_salt("path").selected_text(&names[path].0).width(90.0).show_ui(ui, |ui| {
+            let combo = egui::ComboBox::from_id_salt("path").selected_text(&names[path].0).width(90.0).show_ui(ui, |ui| {
                 for (i, (name, count)) in names.iter().enumerate() {
                     if ui.selectable_label(i == path, format!("{name} ({count})")).clicked() {
                         answers.push(Command::Frame(i, 0));
                     }
                 }
             });
+            combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "View path"));
         }
         super::action_button(state, ui, Action::PreviousFrame, "[", answers);
         let last = names[path].1 - 1;

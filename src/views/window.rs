@@ -9,7 +9,7 @@ use super::dock::{self, Dock, Pane};
 use super::handles::Handle;
 use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
-use crate::app::{Action, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State};
+use crate::app::{Action, Any, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS};
 use crate::drawing::Drawing;
 use crate::figure::Look;
 use crate::geometry::{Flat, PrimId, View};
@@ -18,8 +18,10 @@ use crate::render::screen;
 /// The gesture of looking around with the pointer in the Eye view.
 pub(super) const LOOK_GESTURE: u64 = u64::MAX;
 
-/// Something made for a key, until the key changes.
-pub type Kept<K, V> = (K, V);
+/// For a scene and a view, what each column of the flatland image shows.
+pub type Image = ((u64, View<Flat>), Vec<Option<(PrimId, f32)>>);
+/// For a film and a width, the cells of the timeline.
+pub type Lanes = ((u64, usize), [Vec<Cell>; 4]);
 
 /// What only the screen needs: cached pictures, half-typed text, what the pointer holds.
 #[derive(Default)]
@@ -27,9 +29,9 @@ pub struct Cache {
     /// The flatland drawing of a film's step.
     pub flat: Option<((u64, usize, Look), Drawing<glam::Vec2>)>,
     /// The flatland Eye's image.
-    pub image: Option<Kept<(u64, View<Flat>), Vec<Option<(PrimId, f32)>>>>,
+    pub image: Option<Image>,
     /// The timeline's cells for a film and a width.
-    pub lanes: Option<Kept<(u64, usize), [Vec<Cell>; 4]>>,
+    pub lanes: Option<Lanes>,
     /// What the event tree was last scrolled for.
     pub scrolled_to: Option<(usize, u64, usize)>,
     /// How far the event tree is scrolled, points.
@@ -50,6 +52,8 @@ pub struct Cache {
     pub flying: bool,
     /// Whether letters carried the Eye in the last frame.
     pub flew: bool,
+    /// Width over height of the Observer's picture.
+    pub aspect: f32,
     /// Whether a picture has the focus.
     pub picture_focused: bool,
     /// Text typed into the open dialog.
@@ -184,12 +188,15 @@ impl App {
         answers
     }
 
-    fn effects(&mut self, ctx: &egui::Context) {
+    fn effects(&mut self, ctx: &egui::Context, gpu: Option<&eframe::egui_wgpu::RenderState>) {
         for effect in std::mem::take(&mut self.state.effects) {
             match effect {
                 Effect::AskOpen => self.cache.ask_open(),
                 Effect::AskSave => {}
-                Effect::Export(_) => self.state.tell("Export is not there yet."),
+                Effect::Export(format) => {
+                    let (aspect, pixels) = (self.cache.aspect, self.pixels(gpu));
+                    self.state.export(format, aspect, pixels);
+                }
                 Effect::Copy(text) => ctx.copy_text(text),
                 Effect::FullScreen => {
                     self.is_fullscreen = !self.is_fullscreen;
@@ -204,6 +211,12 @@ impl App {
                 Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             }
         }
+    }
+
+    /// The Observer's picture of a scene that is too large for vectors.
+    fn pixels(&self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<crate::drawing::Pixels> {
+        let large = matches!(&self.state.stage, Some(Any::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
+        gpu.filter(|_| large).and_then(super::space::pixels)
     }
 
     /// Writes the picture that the start asked for, once everything has been quiet for some frames, and quits.
@@ -242,7 +255,7 @@ impl eframe::App for App {
             self.state.apply(command);
             ctx.request_repaint();
         }
-        self.effects(&ctx);
+        self.effects(&ctx, frame.wgpu_render_state());
         if self.state.tick(ctx.input(|i| i.stable_dt)) {
             ctx.request_repaint();
         }

@@ -1,0 +1,270 @@
+//! The window, driven by accessibility labels, the pointer and keys, as a person does.
+#![cfg(feature = "gui")]
+
+use cullscope::app::{Action, Command, Dialog, Start, Theme};
+use cullscope::drawing::Subject;
+use cullscope::geometry::NodeId;
+use cullscope::views::window::App;
+use eframe::egui::{self, Key, Modifiers, pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+const FLAT: &str = "freedoom_e1m1";
+
+fn start(scene: &str) -> Start {
+    Start { scene: Some(scene.into()), fresh: true, ..Start::default() }
+}
+
+fn settle(h: &mut Harness<'_, App>) {
+    for _ in 0..3 {
+        h.run_steps(2);
+        h.state_mut().state.block_until_idle();
+    }
+    h.run_steps(3);
+}
+
+fn window(scene: &str) -> Harness<'static, App> {
+    let start = start(scene);
+    let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).build_eframe(move |cc| App::new(cc, start));
+    settle(&mut h);
+    assert!(h.state().state.staged().is_some_and(|s| s.has_film()), "{:?}", h.state().state.notices);
+    h
+}
+
+fn press(h: &mut Harness<'_, App>, modifiers: Modifiers, key: Key) {
+    h.key_press_modifiers(modifiers, key);
+    settle(h);
+}
+
+fn click(h: &mut Harness<'_, App>, label: &str) {
+    h.get_by_label(label).click();
+    settle(h);
+}
+
+#[test]
+fn buttons_step_forward_and_back_to_the_same_state() {
+    let mut h = window(FLAT);
+    let before = h.state().state.sentence();
+    for k in 1..=4 {
+        click(&mut h, "Step forward");
+        assert_eq!(h.state().state.step, k);
+    }
+    h.get_by_label_contains("Step 4 of");
+    for _ in 0..4 {
+        click(&mut h, "Step back");
+    }
+    assert_eq!((h.state().state.step, h.state().state.sentence()), (0, before));
+}
+
+#[test]
+fn keys_step_and_play_unless_a_text_field_has_them() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::NONE, Key::ArrowRight);
+    press(&mut h, Modifiers::NONE, Key::ArrowRight);
+    assert_eq!(h.state().state.step, 2);
+    press(&mut h, Modifiers::NONE, Key::End);
+    assert_eq!(h.state().state.step, h.state().state.len());
+    press(&mut h, Modifiers::NONE, Key::Home);
+    press(&mut h, Modifiers::COMMAND, Key::ArrowRight);
+    let verdict = h.state().state.step;
+    assert!(verdict > 1, "to the first verdict");
+
+    // A button that has the focus must not be pressed by Space, nor moved away from by arrows.
+    h.get_by_label("Step back").focus();
+    h.run_steps(2);
+    press(&mut h, Modifiers::NONE, Key::ArrowRight);
+    assert_eq!(h.state().state.step, verdict + 1);
+
+    h.get_by_label("Filter events").focus();
+    h.run_steps(2);
+    for key in [Key::ArrowRight, Key::Home, Key::End, Key::Space, Key::N] {
+        press(&mut h, Modifiers::NONE, key);
+    }
+    assert_eq!((h.state().state.step, h.state().state.is_playing), (verdict + 1, false));
+    h.get_by_label("Filter events").type_text("verdict:outside");
+    settle(&mut h);
+    assert_eq!(h.state().state.filter, "verdict:outside");
+    assert!(h.state().state.outline.rows().len() < h.state().state.len());
+}
+
+#[test]
+fn it_plays_to_the_end() {
+    let mut h = window(FLAT);
+    h.state_mut().state.apply(Command::Speed(20_000.0));
+    press(&mut h, Modifiers::NONE, Key::Space);
+    for _ in 0..100 {
+        h.step();
+    }
+    let state = &h.state().state;
+    assert_eq!((state.step, state.is_playing), (state.len(), false));
+}
+
+#[test]
+fn a_click_in_the_event_tree_selects_everywhere() {
+    let mut h = window(FLAT);
+    h.state_mut().state.apply(Command::Filter("node:1 kind:entered".into()));
+    settle(&mut h);
+    click(&mut h, "node 1");
+    let state = &h.state().state;
+    assert_eq!(state.selection, Subject::Node(NodeId(1)));
+    assert!(state.sentence().contains("enters node 1"), "{}", state.sentence());
+    h.get_by_label("Select the node above");
+    h.get_by_label_contains("was entered at step");
+}
+
+#[test]
+fn a_click_in_the_picture_selects() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::NONE, Key::End);
+    let rect = h.get_by_label_contains("Observer view.").rect();
+    let state = &h.state().state;
+    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let prim = stage.scene.live()[200];
+    let middle = stage.scene.prim_points(prim).fold(glam::Vec2::ZERO, |sum, p| sum + p * 0.5);
+    let scale = rect.height() / (2.0 * state.observer.distance);
+    let at = rect.center() + vec2(middle.x - state.observer.pivot[0], state.observer.pivot[1] - middle.y) * scale;
+    h.hover_at(at);
+    h.run_steps(1);
+    h.drag_at(at);
+    h.run_steps(1);
+    h.drop_at(at);
+    settle(&mut h);
+    assert!(matches!(h.state().state.selection, Subject::Prim(_)), "{:?}", h.state().state.selection);
+    h.get_by_label_contains("since step");
+    // The picture has the keys now: Tab swaps the views.
+    press(&mut h, Modifiers::NONE, Key::Tab);
+    assert!(h.state().state.is_swapped);
+}
+
+#[test]
+fn the_eye_is_dragged_and_undone() {
+    let mut h = window(FLAT);
+    let rect = h.get_by_label_contains("Observer view.").rect();
+    let state = &h.state().state;
+    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let (eye, before) = (stage.view.eye.position, stage.view);
+    let scale = rect.height() / (2.0 * state.observer.distance);
+    let at = rect.center() + vec2(eye.x - state.observer.pivot[0], state.observer.pivot[1] - eye.y) * scale;
+    h.hover_at(at);
+    h.run_steps(1);
+    h.drag_at(at);
+    h.run_steps(1);
+    for k in 1..=5 {
+        h.hover_at(at + vec2(6.0 * k as f32, 0.0));
+        h.run_steps(1);
+    }
+    h.drop_at(at + vec2(30.0, 0.0));
+    settle(&mut h);
+    let moved = |h: &Harness<'_, App>| match &h.state().state.stage {
+        Some(cullscope::app::Any::Flat(stage)) => stage.view,
+        _ => panic!("flatland"),
+    };
+    let by = moved(&h).eye.position - before.eye.position;
+    assert!(by.x > 10.0 / scale && by.y.abs() < 1e-3, "{by}");
+    press(&mut h, Modifiers::COMMAND, Key::Z);
+    assert_eq!(moved(&h), before, "one undo takes the whole drag back");
+}
+
+#[test]
+fn a_parameter_is_culled_again_and_undone() {
+    let mut h = window(FLAT);
+    let events = h.state().state.len();
+    click(&mut h, "backface culling");
+    assert_ne!(h.state().state.len(), events);
+    press(&mut h, Modifiers::COMMAND, Key::Z);
+    assert_eq!(h.state().state.len(), events);
+    press(&mut h, Modifiers::COMMAND, Key::Y);
+    assert_ne!(h.state().state.len(), events);
+}
+
+#[test]
+fn the_palette_runs_a_command_and_names_them_all() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::COMMAND, Key::K);
+    assert_eq!(h.state().state.dialog, Dialog::Palette);
+    for info in Action::ALL {
+        assert!(h.query_all_by_label_contains(info.title).next().is_some(), "{} is not in the palette", info.title);
+    }
+    h.get_by_label("Command").type_text("dark theme");
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    assert_eq!((h.state().state.dialog, h.state().state.shown.theme), (Dialog::None, Theme::Dark));
+}
+
+#[test]
+fn go_to_a_step_by_number() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::COMMAND, Key::G);
+    h.get_by_label("Step number").type_text("123");
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    // The field held 0, so 0123 or 1230 was typed; both are steps or beyond the end.
+    let state = &h.state().state;
+    assert_eq!(state.dialog, Dialog::None);
+    assert!(state.step == 123 || state.step == state.len());
+}
+
+#[test]
+fn a_broken_file_shows_an_error_and_keeps_the_scene() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::NONE, Key::ArrowRight);
+    press(&mut h, Modifiers::COMMAND, Key::O);
+    h.get_by_label("Path of the scene").type_text("no/such/scene.obj");
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::Enter);
+    h.get_by_label_contains("Error: no/such/scene.obj");
+    let state = &h.state().state;
+    assert_eq!((state.staged().map(|s| s.scene_name()), state.step), (Some("freedoom_e1m1"), 1));
+}
+
+#[test]
+fn the_start_screen_opens_an_example() {
+    let begin = Start { fresh: true, ..Start::default() };
+    let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).build_eframe(move |cc| App::new(cc, begin));
+    settle(&mut h);
+    let first = h.get_all_by_label_contains("Open ").find(|n| n.accesskit_node().label().is_some_and(|l| l.contains(".json)")));
+    first.expect("an example").click();
+    settle(&mut h);
+    assert!(h.state().state.staged().is_some_and(|s| s.has_film()));
+}
+
+#[test]
+fn layouts_dialogs_and_themes_are_shown_without_a_fault() {
+    let mut h = window(FLAT);
+    for action in [Action::LayoutLecture, Action::LayoutFigure, Action::LayoutDebug, Action::ThemePrint, Action::ScaleUp] {
+        h.state_mut().state.apply(action);
+        settle(&mut h);
+        assert!(h.query_all_by_label_contains("Observer view").next().is_some(), "{action:?}");
+    }
+    for dialog in [Dialog::Keys, Dialog::Report, Dialog::About, Dialog::SaveAs, Dialog::Open] {
+        h.state_mut().state.apply(Command::Dialog(dialog));
+        settle(&mut h);
+        press(&mut h, Modifiers::NONE, Key::Escape);
+        assert_eq!(h.state().state.dialog, Dialog::None, "{dialog:?}");
+    }
+}
+
+/// Colors that occur in a part of a picture, four bytes a pixel.
+fn colors(rgba: &[u8], width: usize, rect: egui::Rect) -> usize {
+    let inside = |i: usize| rect.contains(pos2((i % width) as f32, (i / width) as f32));
+    let pixels = rgba.chunks_exact(4).enumerate().filter(|(i, _)| inside(*i)).map(|(_, p)| p);
+    pixels.collect::<std::collections::BTreeSet<_>>().len()
+}
+
+#[test]
+fn both_pictures_of_space_are_drawn() {
+    let start = start("generate:building?polygons=2000");
+    let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
+    settle(&mut h);
+    assert!(h.state().state.staged().is_some_and(|s| s.has_film()), "{:?}", h.state().state.notices);
+    press(&mut h, Modifiers::NONE, Key::End);
+    h.remove_cursor();
+    h.run_steps(2);
+    let image = h.render().expect("a picture");
+    for view in ["Eye view.", "Observer view."] {
+        let rect = h.get_by_label_contains(view).rect();
+        assert!(rect.width() > 200.0 && rect.height() > 150.0);
+        let colors = colors(image.as_raw(), image.width() as usize, rect);
+        assert!(colors > 3, "{view} is empty: {colors} colors");
+    }
+}
