@@ -80,8 +80,17 @@ fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn every_command_explains_itself_with_an_example() {
     let here = folder("help");
-    let commands: [&[&str]; 8] =
-        [&["cull"], &["step"], &["methods"], &["scene", "info"], &["scene", "generators"], &["scene", "convert"], &["trace", "check"]];
+    let commands: [&[&str]; 9] = [
+        &["explore"],
+        &["cull"],
+        &["step"],
+        &["figure"],
+        &["methods"],
+        &["scene", "info"],
+        &["scene", "generators"],
+        &["scene", "convert"],
+        &["trace", "check"],
+    ];
     for words in commands {
         let text = done(&here, &with(words, &["--help"]));
         assert!(text.contains("Example") && text.contains(&format!("cullscope {}", words.join(" "))), "{words:?}: {text}");
@@ -392,4 +401,30 @@ fn ctrl_c_stops_cleanly() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.starts_with("error: interrupted: ") && said.lines().count() == 1, "{said}");
     assert_eq!(entries(&here), before);
+}
+
+#[test]
+fn the_explorer_says_what_it_lacks_before_it_opens_a_window() {
+    let folder = folder("explore");
+    let explore = |words: &[&str]| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_cullscope"));
+        program.args(words).current_dir(&folder).stdin(Stdio::null()).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        let output = program.output().expect("the program runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    for words in [&[][..], &["explore", "walls.json"]] {
+        let (status, said) = explore(words);
+        assert_eq!(status, Some(1), "{said}");
+        let windowless = said.starts_with("error: display: there is none") || said.starts_with("error: explore: this program was built without");
+        assert!(windowless && said.lines().nth(1).is_some_and(|l| l.starts_with("help: ")), "{said}");
+    }
+    for (words, status, start) in [
+        (&["explore", "nowhere.obj"][..], 1, "error: nowhere.obj: there is no such file"),
+        (&["explore", "walls.json", "--method", "frustrum"], 2, "error: --method: there is no method `frustrum`"),
+        (&["explore", "walls.json", "--set", "height"], 2, "error: "),
+        (&["explore", "walls.json", "--screenshot", "a.png", "--size", "big"], 2, "error: --size: `big` is not of the form 1280x800"),
+    ] {
+        let (code, said) = explore(words);
+        assert_eq!((code, said.starts_with(start)), (Some(status), true), "{words:?}: {said}");
+    }
 }
