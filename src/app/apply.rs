@@ -399,6 +399,11 @@ impl State {
             self.method = "frustum".into();
             self.settings.0.clear();
         }
+        // Framed for a window of common shape; the window itself does it again for its own.
+        match &stage {
+            Any::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
+            Any::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
+        }
         self.stage = Some(stage);
         (self.step, self.selection) = (0, Subject::None);
         self.selected_before.clear();
