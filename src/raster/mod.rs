@@ -5,7 +5,7 @@
 //! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone.
 //! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
 //! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
-//! primitives that were hidden changes no byte. [`reference`] says the same in the plainest code.
+//! primitives that were hidden changes no byte. [`mod@reference`] says the same in the plainest code.
 //!
 //! A primitive that [`crate::geometry::Frustum::test`] calls outside yields no fragment: its vertices lie
 //! beyond the plane by more than the rounding here, and pixel centers lie half a pixel inside the image.
@@ -119,7 +119,7 @@ pub trait Drawable: Space {
     /// # Panics
     /// If the target has not the view's size, or a side exceeds [`Target::MAX_SIDE_PX`].
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
-    /// The same in the plainest code; see [`reference`].
+    /// The same in the plainest code; see [`mod@reference`].
     ///
     /// # Panics
     /// As [`Drawable::draw`].

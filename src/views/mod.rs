@@ -1,4 +1,4 @@
-//! The explorer's window: panels that read [`State`](crate::app::State) and answer in commands.
+//! The explorer's window: panels that read [`State`] and answer in commands.
 //!
 //! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds what the person asked for.
 //! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`window::App`].
