@@ -82,7 +82,7 @@ fn spoiled(certificate: &Certificate) -> Vec<(&'static str, Certificate)> {
             let named = |plane: &str| Claim::Beyond { plane: plane.into(), far_corner, error, box_min: box_min.clone(), box_max: box_max.clone() };
             let opposite = ["left", "right", "bottom", "top", "near", "far"].iter().position(|p| *p == plane).expect("a plane") ^ 1;
             let mut smaller = box_max.clone();
-            smaller[0] = box_min[0];
+            smaller[0] = box_min[0] - 1.0;
             let grown = |side: &[f64], by: f64| side.iter().map(|v| v + by).collect::<Vec<f64>>();
             let (lower, larger) = (grown(&box_min, -1e6), grown(&box_max, 1e6));
             vec![

@@ -3,7 +3,8 @@
 //! A certificate is what a film recorded as evidence of a cull: the plane, the box and its distance. The
 //! checker derives the planes anew from the Eye's definition, in f64, and shares no arithmetic with
 //! [`crate::geometry::Frustum`]; it asks that the box holds every point it stands for, that every corner lies
-//! strictly outside the plane named, and that the recorded distances are right within their recorded error.
+//! outside the plane named, and that the recorded distances are right within their recorded error
+//! and the rounding of the view's axes to 32 bits, which methods and rasterizer share.
 //! Of a primitive that faces away it asks that the eye lies strictly behind the primitive's plane, in exact
 //! arithmetic. Cost: O(events + primitives culled).
 
@@ -124,9 +125,21 @@ pub struct Checker<'a, S: Space> {
     scene: &'a Scene<S>,
     hierarchy: &'a dyn Hierarchy<S>,
     eye: DVec3,
-    /// Name, unit inward normal and offset of each plane: inside is `n·(x − eye) + d ≥ 0`.
-    planes: Vec<(&'static str, DVec3, f64)>,
+    planes: Vec<Plane>,
 }
+
+/// A plane of the view volume: inside is `normal·(x − eye) + offset ≥ 0`.
+struct Plane {
+    name: &'static str,
+    /// Unit length.
+    normal: DVec3,
+    offset: f64,
+    /// Bound on each component's error, since the axes that it is a sum of are rounded to 32 bits.
+    rounding: DVec3,
+}
+
+/// Half-ulps that an axis is off by: a difference, a length, a quotient and two products of it.
+const AXIS_HALF_ULPS: f64 = 8.0;
 
 impl<'a, S: Space> Checker<'a, S> {
     /// Derives the planes of the view volume from the Eye.
@@ -135,22 +148,28 @@ impl<'a, S: Space> Checker<'a, S> {
         let position = widened(eye.position);
         let forward = (widened(eye.target) - position).normalize();
         let tan = (f64::from(eye.fov) * 0.5).tan();
+        let half_ulps = AXIS_HALF_ULPS * 0.5 * f64::from(f32::EPSILON);
         let mut planes = Vec::new();
-        let mut pair = |names: [&'static str; 2], axis: DVec3, slope: f64| {
-            planes.push((names[0], (forward * slope + axis).normalize(), 0.0));
-            planes.push((names[1], (forward * slope - axis).normalize(), 0.0));
+        // `blur` is how much the axis' own error exceeds that of the line of sight.
+        let mut pair = |names: [&'static str; 2], axis: DVec3, slope: f64, blur: f64| {
+            for (name, sum) in [(names[0], forward * slope + axis), (names[1], forward * slope - axis)] {
+                let rounding = ((forward * slope).abs() + axis.abs() + DVec3::splat(blur - 1.0)) * (half_ulps / sum.length());
+                planes.push(Plane { name, normal: sum.normalize(), offset: 0.0, rounding });
+            }
         };
         if S::Vector::AXES == 2 {
-            pair(["left", "right"], DVec3::new(forward.y, -forward.x, 0.0), tan);
+            pair(["left", "right"], DVec3::new(forward.y, -forward.x, 0.0), tan, 1.0);
         } else {
-            let across = forward.cross(widened(eye.up));
+            let across = forward.cross(widened(eye.up).normalize_or_zero());
             // An `up` along the line of sight says nothing: any axis will do, and it is this one.
             let right = across.try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
-            pair(["left", "right"], right, tan * f64::from(view.width) / f64::from(view.height));
-            pair(["bottom", "top"], right.cross(forward), tan);
+            let blur = if across.length() > 0.0 { 1.0 / across.length() } else { 1.0 };
+            pair(["left", "right"], right, tan * f64::from(view.width) / f64::from(view.height), blur);
+            pair(["bottom", "top"], right.cross(forward), tan, blur);
         }
-        planes.push(("near", forward, -f64::from(eye.near)));
-        planes.push(("far", -forward, f64::from(eye.far)));
+        let rounding = forward.abs() * half_ulps;
+        planes.push(Plane { name: "near", normal: forward, offset: -f64::from(eye.near), rounding });
+        planes.push(Plane { name: "far", normal: -forward, offset: f64::from(eye.far), rounding });
         Self { scene, hierarchy, eye: position, planes }
     }
 
@@ -184,7 +203,7 @@ impl<'a, S: Space> Checker<'a, S> {
     }
 
     fn beyond(&self, points: &[DVec3], plane: &str, far_corner: f64, error: f64, bounds: &[&Vec<f64>; 2]) -> Result<(), String> {
-        let Some((_, normal, offset)) = self.planes.iter().find(|(name, ..)| *name == plane) else {
+        let Some(Plane { normal, offset, rounding, .. }) = self.planes.iter().find(|p| p.name == plane) else {
             return Err(format!("the view volume has no plane `{plane}`"));
         };
         if bounds.iter().any(|b| b.len() != S::Vector::AXES) {
@@ -196,13 +215,14 @@ impl<'a, S: Space> Checker<'a, S> {
         }
         let corner = DVec3::select(normal.cmpge(DVec3::ZERO), high, low);
         let distance = normal.dot(corner - self.eye) + offset;
-        if distance >= 0.0 {
+        let slack = rounding.dot((corner - self.eye).abs());
+        if distance >= slack {
             return Err(format!("a corner of the box lies {distance} units inside the {plane} plane"));
         }
         if !(far_corner < -error && error >= 0.0) {
             return Err(format!("the recorded distance {far_corner} does not exceed its error {error}"));
         }
-        if (distance - far_corner).abs() > error {
+        if (distance - far_corner).abs() > error + slack {
             return Err(format!("the recorded distance from the {plane} plane is {far_corner}, the true one {distance}"));
         }
         Ok(())
