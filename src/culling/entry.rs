@@ -236,8 +236,8 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
             Event::Line(i) => format!("Line {}: {}", M::CARD.code[i as usize].label, M::CARD.code[i as usize].text.trim()),
             Event::FrameBegan => format!("A frame of {} begins: nothing is decided yet.", M::CARD.name),
             Event::Entered(n) => {
-                let (below, level) = (self.index.prims(n).len(), self.index.level(n));
-                format!("The traversal enters node {n} (level {level}), which holds {below} {}s.", S::PRIM)
+                let (below, level) = (counted::<S>(self.index.prims(n).len()), self.index.level(n));
+                format!("The traversal enters node {n} (level {level}), which holds {below}.")
             }
             Event::Left(n) => format!("The traversal leaves node {n}."),
             Event::Queued(n, key) => format!("Node {n} is queued with priority {key}."),
@@ -259,15 +259,20 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     }
 }
 
+/// Such as `1 segment` or `12 triangles`.
+fn counted<S: Space>(n: usize) -> String {
+    format!("{n} {}{}", S::PRIM, if n == 1 { "" } else { "s" })
+}
+
 fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String {
-    let prims = S::PRIM;
+    let below = counted::<S>(below);
     match verdict {
-        Verdict::Outside => format!("Node {node} is outside the view: none of its {below} {prims}s is drawn."),
-        Verdict::Hidden => format!("Node {node} is hidden: none of its {below} {prims}s is drawn."),
+        Verdict::Outside => format!("Node {node} is outside the view and dropped with all below it: {below}."),
+        Verdict::Hidden => format!("Node {node} is hidden and dropped with all below it: {below}."),
         Verdict::Partial => format!("Node {node} cannot be decided as a whole; its parts are looked at one by one."),
-        Verdict::Visible => format!("Node {node} is kept: its {below} {prims}s are drawn."),
-        Verdict::Approximated => format!("A stand-in is drawn for node {node} instead of its {below} {prims}s."),
-        Verdict::OverBudget => format!("Node {node} is left out: the budget is spent."),
+        Verdict::Visible => format!("Node {node} is kept with all below it: {below}."),
+        Verdict::Approximated => format!("A stand-in is drawn for node {node} and all below it: {below}."),
+        Verdict::OverBudget => format!("Node {node} is left out with all below it, {below}: the budget is spent."),
     }
 }
 

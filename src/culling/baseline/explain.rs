@@ -96,7 +96,12 @@ impl<S: Space> Tested<S> {
             _ => {
                 let cut: Vec<_> = self.tests().iter().filter(|t| self.cutting >> t.plane & 1 == 1).map(|t| plane(t).to_owned()).collect();
                 let (plural, verb) = if cut.len() == 1 { ("", "cuts") } else { ("s", "cut") };
-                format!("The {} plane{plural} {verb} {}: part of it may be in view.", cut.join(", "), name.to_lowercase())
+                let cut = match cut.split_last() {
+                    Some((last, [])) => last.clone(),
+                    Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
+                    None => String::new(),
+                };
+                format!("The {cut} plane{plural} {verb} {}: part of it may be in view.", name.to_lowercase())
             }
         }
     }
