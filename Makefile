@@ -25,7 +25,7 @@ test:
 	cargo clippy --locked --all-targets -- -D warnings
 	cargo check --locked --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --lib
-	cargo test --locked
+	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-$$(mktemp -d)} cargo test --locked
 
 bench:
 	.ci/setup build

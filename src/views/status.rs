@@ -19,12 +19,20 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             ui.add(egui::ProgressBar::new(busy.fraction).desired_width(120.0).text(busy.what));
             super::action_button(state, ui, Action::Cancel, "Cancel", answers);
         }
-        let text = format!("Step {} of {}. {}", state.step, state.len(), state.sentence());
-        let size = if state.shown.layout == Layout::Lecture { 1.25 } else { 1.0 };
-        let font = egui::TextStyle::Body.resolve(ui.style()).size * size;
-        let response = ui.add(egui::Label::new(RichText::new(text).size(font)).truncate());
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_live(egui::accesskit::Live::Polite));
+        let step = format!("Step {} of {}.", state.step, state.len());
+        if state.shown.layout == Layout::Lecture {
+            // The sentence stands in the caption, in large type.
+            ui.label(step);
+        } else {
+            announced(ui, egui::Label::new(format!("{step} {}", state.sentence())).truncate());
+        }
     });
+}
+
+/// A label that screen readers read out when it changes.
+fn announced(ui: &mut egui::Ui, label: egui::Label) {
+    let response = ui.add(label);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_live(egui::accesskit::Live::Polite));
 }
 
 fn notices(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -43,7 +51,7 @@ fn notices(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
 /// The caption of the lecture: the step's sentence in large type.
 pub fn caption(state: &State, ui: &mut egui::Ui) {
     let size = egui::TextStyle::Heading.resolve(ui.style()).size;
-    ui.add(egui::Label::new(RichText::new(state.sentence()).size(size)).wrap());
+    announced(ui, egui::Label::new(RichText::new(state.sentence()).size(size)).wrap());
     let note = state.bookmarks.iter().find(|b| b.step == state.step).map(|b| b.note.as_str()).unwrap_or_default();
     if !note.is_empty() {
         ui.weak(note);

@@ -86,7 +86,7 @@ impl<S: Space> Method<S> for Centroid {
         for (rank, &(squared, prim)) in queue.iter().enumerate() {
             let fits = rank < budget;
             watch.event(Event::Line(if fits { 4 } else { 5 }));
-            watch.note(|| Evidence::Distance(Distance::of(scene, prim, squared, rank, budget)));
+            watch.note(move || Evidence::Distance(Distance::of(scene, prim, squared, rank, budget)));
             if fits {
                 out.prims.push(prim);
             }
@@ -112,10 +112,10 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(scene: &Scene<S>, view: &View<S>,
         let planes = geometry::Frustum::<S::Vector>::ALL;
         let test = frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
-            watch.note(|| Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test)));
+            watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else if params.backface_culling && prim_faces_away(scene, eye, prim) {
-            watch.note(|| Evidence::Facing(Facing::of(scene, view, prim)));
+            watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else {
             watch.event(Event::Line(2));

@@ -119,7 +119,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         self.watch.event(Event::Line(1));
         let test = self.frustum.test(&node.bounds, planes);
         let frustum = &self.frustum;
-        self.watch.note(|| Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
                 self.watch.event(Event::Line(2));
@@ -152,7 +152,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             self.watch.event(Event::Line(9));
             let away = prim_faces_away(scene, view.eye.position, prim);
             if away {
-                self.watch.note(|| Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
             } else {
                 self.out.prims.push(prim);
             }
