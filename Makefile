@@ -11,12 +11,13 @@ help:
 	@echo "make bench        benchmarks (release, some minutes)"
 	@echo "make screenshots  draw screenshots/ again in a real window"
 
-# With a display the explorer opens; without one the same scenes are stepped headless.
+# With a display the explorer opens; without one the same scenes are stepped headless, and the GUI's
+# crates are not built at all.
 run:
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then \
 		.ci/setup window && cargo build --release --locked && exec target/release/cullscope explore; \
 	else \
-		.ci/setup build && cargo build --release --locked && exec .ci/headless target/release/cullscope out; \
+		.ci/setup build && cargo build --release --locked --no-default-features && exec .ci/headless target/release/cullscope out; \
 	fi
 
 test:
