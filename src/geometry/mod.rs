@@ -13,6 +13,7 @@ mod project;
 mod space;
 #[cfg(test)]
 mod tests;
+mod walk;
 
 pub use bounds::Aabb;
 pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
@@ -21,3 +22,4 @@ pub use id::{MaterialId, NodeId, ObjectId, PrimId};
 pub use predicate::{orient2d, orient3d};
 pub use project::{Footprint, ScreenRect, project_box};
 pub use space::{Flat, Solid, Space, Vector, faces_away};
+pub use walk::WALKING_STEP_M;

@@ -4,14 +4,16 @@
 //! and windows around corridors in the shape of an 8, desks, chairs, shelves and lamps in them. The number of
 //! triangles is met by refining the furniture and then leaving off the last pieces. Cost: O(polygons).
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rand_pcg::Pcg32;
 
 use super::furniture::{self as piece, Piece};
 use super::plan::{CORRIDOR, HEIGHT, Plan, Rect, Room, Side, Wall};
 use super::shapes::{Frame, Sink};
-use super::{Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values};
-use crate::geometry::{Eye, Solid, View, ViewPath};
+use super::stand::{Inside, Spot};
+use super::walk::{EYE, Manner, figure_8};
+use super::{Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for};
+use crate::geometry::{Solid, ViewPath};
 use crate::scene::Report;
 use crate::scene::assemble::assemble;
 
@@ -34,12 +36,6 @@ pub(super) const GENERATOR: Generator = Generator {
 
 /// Thickness of a wall, m.
 const WALL: f64 = 0.15;
-/// Height of a walker's eyes, m.
-const EYE: f64 = 1.6;
-/// Views of the walk.
-const WALK: usize = 240;
-/// Finest furniture; a ball then has 131,072 triangles.
-const MAX_DETAIL: u32 = 64;
 
 fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
@@ -49,19 +45,7 @@ fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Pro
         given => given,
     };
     let plan = Plan::new(rooms, seed);
-    let mut detail = 1;
-    while detail < MAX_DETAIL {
-        progress.report(0.1, "planning");
-        if progress.cancelled() {
-            return Err(SceneError::Cancelled(source.to_owned()));
-        }
-        let mut count = Sink::counting();
-        furnish(&mut count, &plan, seed, detail, polygons);
-        if count.triangles >= polygons {
-            break;
-        }
-        detail += 1;
-    }
+    let detail = detail_for(polygons, source, progress, |sink, detail| furnish(sink, &plan, seed, detail, polygons))?;
     progress.report(0.3, "furnishing");
     let mut sink = Sink::keeping(piece::MATERIALS);
     furnish(&mut sink, &plan, seed, detail, polygons);
@@ -92,47 +76,41 @@ fn furnish(sink: &mut Sink, plan: &Plan, seed: u64, detail: u32, budget: u64) {
 
 /// Where a piece stands in a room.
 #[derive(Clone, Copy)]
-enum Spot {
+enum Place {
     /// In the doorway, on its hinge.
     Hinge,
-    /// Against the wall on the right (as one comes in), this far from the door's wall, 0..1.
-    Right(f64),
-    /// Against the wall on the left.
-    Left(f64),
-    /// Against the wall opposite, this far across, −1..1.
-    Back(f64),
-    /// In the middle.
-    Middle,
     /// Before the window, if there is one.
     Window,
+    /// Anywhere else.
+    At(Spot),
 }
 
 /// The pieces of a room, in the order in which all rooms get them.
-const ROUNDS: [(&str, Spot, Piece); 17] = [
-    ("door", Spot::Hinge, piece::door),
-    ("desk", Spot::Right(0.62), piece::desk),
-    ("chair", Spot::Right(0.62), piece::chair),
-    ("lamp", Spot::Middle, piece::hanging_lamp),
-    ("shelf", Spot::Left(0.6), piece::shelf),
-    ("computer", Spot::Right(0.62), piece::computer),
-    ("blind", Spot::Window, piece::blind),
-    ("picture", Spot::Right(0.3), piece::picture),
-    ("plant", Spot::Back(0.75), piece::plant),
-    ("desk lamp", Spot::Right(0.62), piece::desk_lamp),
-    ("basket", Spot::Right(0.36), piece::basket),
-    ("second desk", Spot::Left(0.84), piece::desk),
-    ("second chair", Spot::Left(0.84), piece::chair),
-    ("second computer", Spot::Left(0.84), piece::computer),
-    ("second shelf", Spot::Left(0.33), piece::shelf),
-    ("second plant", Spot::Back(-0.8), piece::plant),
-    ("second lamp", Spot::Left(0.84), piece::desk_lamp),
+const ROUNDS: [(&str, Place, Piece); 17] = [
+    ("door", Place::Hinge, piece::door),
+    ("desk", Place::At(Spot::Right(0.62)), piece::desk),
+    ("chair", Place::At(Spot::Right(0.62)), piece::chair),
+    ("lamp", Place::At(Spot::Middle), piece::hanging_lamp),
+    ("shelf", Place::At(Spot::Left(0.6)), piece::shelf),
+    ("computer", Place::At(Spot::Right(0.62)), piece::computer),
+    ("blind", Place::Window, piece::blind),
+    ("picture", Place::At(Spot::Right(0.3)), piece::picture),
+    ("plant", Place::At(Spot::Back(0.75)), piece::plant),
+    ("desk lamp", Place::At(Spot::Right(0.62)), piece::desk_lamp),
+    ("basket", Place::At(Spot::Right(0.36)), piece::basket),
+    ("second desk", Place::At(Spot::Left(0.84)), piece::desk),
+    ("second chair", Place::At(Spot::Left(0.84)), piece::chair),
+    ("second computer", Place::At(Spot::Left(0.84)), piece::computer),
+    ("second shelf", Place::At(Spot::Left(0.33)), piece::shelf),
+    ("second plant", Place::At(Spot::Back(-0.8)), piece::plant),
+    ("second lamp", Place::At(Spot::Left(0.84)), piece::desk_lamp),
 ];
 
 fn place(
     sink: &mut Sink,
     room: &Room,
     (side, door_at): (Side, f64),
-    (name, spot, draw): &(&str, Spot, Piece),
+    (name, spot, draw): &(&str, Place, Piece),
     detail: u32,
     rng: &mut Pcg32,
     group: impl FnOnce() -> String,
@@ -142,42 +120,30 @@ fn place(
     draw(sink, &frame, detail, rng);
 }
 
-/// The frame of a spot: its back (local +z) to the wall. `None` where the room has no such spot.
-fn stand(room: &Room, door: Side, door_at: f64, spot: Spot) -> Option<Frame> {
+/// The frame of a place: its back (local +z) to the wall. `None` where the room has no such place.
+fn stand(room: &Room, door: Side, door_at: f64, place: Place) -> Option<Frame> {
     let [x0, z0, x1, z1] = room.rect;
-    // Inside the plaster.
-    let (gap, middle) = (WALL * 0.5 + 0.01, DVec3::new((x0 + x1) * 0.5, 0.0, (z0 + z1) * 0.5));
-    // Going in from the door, and to the right of it.
-    let into = match door {
-        Side::North => DVec3::Z,
-        Side::South => -DVec3::Z,
-        Side::West => DVec3::X,
-        Side::East => -DVec3::X,
+    let outward = |side: Side| match side {
+        Side::North => -DVec3::Z,
+        Side::South => DVec3::Z,
+        Side::West => -DVec3::X,
+        Side::East => DVec3::X,
     };
-    let right = into.cross(DVec3::Y);
+    let into = -outward(door);
     let extent = |axis: DVec3| (axis.x.abs() * (x1 - x0) + axis.z.abs() * (z1 - z0)) * 0.5;
-    let (deep, wide) = (extent(into), extent(right));
-    let against =
-        |wall: DVec3, reach: f64, along: DVec3| Frame { origin: middle + wall * (reach - gap) + along, right: DVec3::Y.cross(wall), away: wall };
-    let depth_of = |t: f64| into * (deep * (2.0 * t - 1.0));
-    Some(match spot {
-        Spot::Middle => Frame { origin: middle, right, away: into },
-        Spot::Right(t) => against(right, wide, depth_of(t)),
-        Spot::Left(t) => against(-right, wide, depth_of(t)),
-        Spot::Back(t) => against(into, deep, right * (t * wide)),
-        Spot::Window => {
-            let outside = match room.window? {
-                Side::North => -DVec3::Z,
-                Side::South => DVec3::Z,
-                Side::West => -DVec3::X,
-                Side::East => DVec3::X,
-            };
-            against(outside, extent(outside), DVec3::ZERO)
+    let right = into.cross(DVec3::Y);
+    let middle = DVec3::new((x0 + x1) * 0.5, 0.0, (z0 + z1) * 0.5);
+    let inside = Inside { middle, into, right, deep: extent(into), wide: extent(right), plaster: WALL * 0.5 + 0.01 };
+    Some(match place {
+        Place::At(spot) => inside.frame(spot),
+        Place::Window => {
+            let outside = outward(room.window?);
+            inside.against(outside, extent(outside), DVec3::ZERO)
         }
-        Spot::Hinge => {
+        Place::Hinge => {
             let along = if matches!(door, Side::North | Side::South) { DVec3::X } else { DVec3::Z };
             let offset = along * (door_at + 0.475 - (middle * along).element_sum());
-            Frame { origin: middle - into * (deep - gap) + offset, right: along, away: into }
+            Frame { origin: middle - into * (inside.deep - inside.plaster) + offset, right: along, away: into }
         }
     })
 }
@@ -271,40 +237,15 @@ fn walk(plan: &Plan, origin: DVec3) -> ViewPath<Solid> {
     let ([west, middle, east], [north, south]) = (plan.aisles(), plan.lanes());
     let stops = [(middle, north), (west, north), (west, south), (middle, south), (middle, north), (east, north), (east, south), (middle, south)];
     let stops = stops.map(|(x, z)| DVec3::new(x, EYE, z));
-    let mut line = Vec::new();
-    for (i, corner) in stops.iter().enumerate() {
-        let to = |other: DVec3| (other - *corner).normalize();
-        let (from, on) = (stops[(i + stops.len() - 1) % stops.len()], stops[(i + 1) % stops.len()]);
-        // A parabola through a metre before and a metre after the corner stays well inside the corridor.
-        let (a, b) = (*corner + to(from), *corner + to(on));
-        line.extend((0..=8).map(|k| f64::from(k) / 8.0).map(|t| a * ((1.0 - t) * (1.0 - t)) + *corner * (2.0 * t * (1.0 - t)) + b * (t * t)));
-    }
-    line.push(line[0]);
-    let lengths: Vec<f64> = line.windows(2).map(|w| w[0].distance(w[1])).collect();
-    let step = lengths.iter().sum::<f64>() / WALK as f64;
-    let at = |mut s: f64| {
-        for (w, length) in line.windows(2).zip(&lengths) {
-            if s <= *length {
-                return w[0].lerp(w[1], s / length);
-            }
-            s -= length;
-        }
-        line[0]
-    };
-    let far = (plan.size[0] * plan.size[0] + plan.size[1] * plan.size[1]).sqrt() as f32;
-    let view = |k: usize| {
-        let (here, ahead) = (at(step * k as f64), at((step * k as f64 + 1.5) % (step * WALK as f64)));
-        let eye =
-            Eye { position: (here - origin).as_vec3(), target: (ahead - origin).as_vec3(), up: Vec3::Y, fov: 60f32.to_radians(), near: 0.1, far };
-        View { eye, width: 1024, height: 1024 }
-    };
-    ViewPath { name: "figure 8".into(), views: (0..WALK).map(view).collect() }
+    let far = (plan.size[0] * plan.size[0] + plan.size[1] * plan.size[1]).sqrt();
+    figure_8(&stops, &Manner { round: 1.0, ahead: 1.5, far }, origin)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::generate::generate;
+    use crate::scene::generate::walk::touched;
     use crate::scene::{Quiet, Scene};
 
     fn building(call: &str) -> Scene<Solid> {
@@ -335,19 +276,7 @@ mod tests {
     fn the_walk_touches_nothing() {
         for seed in [1, 2, 3] {
             let scene = building(&format!("building?polygons=20000&seed={seed}"));
-            let walk: Vec<Vec3> = scene.paths()[0].views.iter().map(|v| v.eye.position).collect();
-            for (i, from) in walk.iter().enumerate() {
-                let to = walk[(i + 1) % walk.len()];
-                for &prim in scene.live() {
-                    let p: Vec<DVec3> = scene.prim_points(prim).map(Vec3::as_dvec3).collect();
-                    let side = |a, b, c, d| crate::geometry::orient3d(a, b, c, d) > 0.0;
-                    let (a, b) = (from.as_dvec3(), to.as_dvec3());
-                    let apart = side(p[0], p[1], p[2], a) == side(p[0], p[1], p[2], b);
-                    let turns = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| side(a, b, p[i], p[j]));
-                    let hit = !apart && turns[0] == turns[1] && turns[1] == turns[2];
-                    assert!(!hit, "seed {seed}: view {i} walks through {}", scene.objects()[scene.object_of(prim).at()].name);
-                }
-            }
+            assert_eq!(touched(&scene), None, "seed {seed}");
         }
     }
 }

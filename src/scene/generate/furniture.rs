@@ -28,16 +28,16 @@ pub(super) const MATERIALS: &[(&str, [f32; 3])] = &[
 pub(super) const WALL: u32 = 0;
 pub(super) const FLOOR: u32 = 1;
 pub(super) const CEILING: u32 = 2;
-const WOOD: u32 = 3;
-const METAL: u32 = 4;
-const FABRIC: u32 = 5;
-const SCREEN: u32 = 6;
-const LAMP: u32 = 7;
-const LEAF: u32 = 8;
+pub(super) const WOOD: u32 = 3;
+pub(super) const METAL: u32 = 4;
+pub(super) const FABRIC: u32 = 5;
+pub(super) const SCREEN: u32 = 6;
+pub(super) const LAMP: u32 = 7;
+pub(super) const LEAF: u32 = 8;
 const POT: u32 = 9;
 const BOOKS: u32 = 10;
 const BLIND: u32 = 13;
-const PAPER: u32 = 14;
+pub(super) const PAPER: u32 = 14;
 
 /// Top of a desk, m.
 const DESK: f64 = 0.74;

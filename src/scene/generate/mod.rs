@@ -3,11 +3,18 @@
 //! Only addition, multiplication, division and square root are used, whose results IEEE 754 fixes; sines come
 //! from a series, since those of system libraries differ in their last bits.
 
+mod blocks;
 mod building;
+mod city;
 mod furniture;
+mod house;
 mod plan;
 mod shapes;
+mod stand;
+mod street;
+mod walk;
 
+use self::shapes::Sink;
 use super::{LoadOptions, Part, Parts, Progress, SceneError};
 use crate::geometry::Solid;
 
@@ -52,7 +59,7 @@ impl Values {
     }
 }
 
-static GENERATORS: &[Generator] = &[building::GENERATOR];
+static GENERATORS: &[Generator] = &[building::GENERATOR, city::GENERATOR];
 
 /// All generators, by name.
 pub fn generators() -> &'static [Generator] {
@@ -86,4 +93,23 @@ pub(super) fn generate(call: &str, options: &LoadOptions, progress: &dyn Progres
     let given: Vec<String> = generator.params.iter().zip(&values.values).map(|(p, v)| format!("{}={v}", p.name)).collect();
     let source = format!("generate:{name}?{}", given.join("&"));
     (generator.make)(&values, &source, options, &Part { whole: progress, start: 0.0, length: 0.95 })
+}
+
+/// Finest detail; a ball then has 131,072 triangles.
+const MAX_DETAIL: u32 = 64;
+
+/// The least detail at which `furnish` makes as many triangles as the budget asks, or the finest.
+fn detail_for(budget: u64, source: &str, progress: &dyn Progress, furnish: impl Fn(&mut Sink, u32)) -> Result<u32, SceneError> {
+    for detail in 1..MAX_DETAIL {
+        progress.report(0.1, "planning");
+        if progress.cancelled() {
+            return Err(SceneError::Cancelled(source.to_owned()));
+        }
+        let mut count = Sink::counting();
+        furnish(&mut count, detail);
+        if count.triangles >= budget {
+            return Ok(detail);
+        }
+    }
+    Ok(MAX_DETAIL)
 }

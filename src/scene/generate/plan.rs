@@ -185,7 +185,7 @@ impl Plan {
 }
 
 /// `n + 1` places from `from` to `to`, the inner ones moved a little.
-fn divide(from: f64, to: f64, n: u64, rng: &mut Pcg32) -> Vec<f64> {
+pub(super) fn divide(from: f64, to: f64, n: u64, rng: &mut Pcg32) -> Vec<f64> {
     let step = (to - from) / n as f64;
     let inner = (1..n).map(|i| from + step * (i as f64 + 0.12 * signed(rng)));
     std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect()

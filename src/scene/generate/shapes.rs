@@ -43,13 +43,24 @@ impl Sink {
     }
     /// A convex planar polygon, turned such that its normal points along `outward`.
     pub(super) fn face(&mut self, corners: &[DVec3], outward: DVec3) {
+        let turned = self.mesh.is_some() && crate::scene::polygon::newell(corners).dot(outward) < 0.0;
+        self.push(corners, turned);
+    }
+    /// The same, but its fan begins at the first corner whichever way it is turned.
+    pub(super) fn fan(&mut self, corners: &mut [DVec3], outward: DVec3) {
+        if crate::scene::polygon::newell(corners).dot(outward) < 0.0 {
+            corners[1..].reverse();
+        }
+        self.push(corners, false);
+    }
+    fn push(&mut self, corners: &[DVec3], turned: bool) {
         let ids = corners.len() as u32 - 2;
         self.triangles += u64::from(ids);
         let Some(mesh) = &mut self.mesh else { return };
         let first = mesh.points.len() as u32;
         mesh.points.extend_from_slice(corners);
         let numbers = first..first + corners.len() as u32;
-        if crate::scene::polygon::newell(corners).dot(outward) < 0.0 {
+        if turned {
             mesh.corners.extend(numbers.rev());
         } else {
             mesh.corners.extend(numbers);
@@ -59,7 +70,7 @@ impl Sink {
     }
 }
 
-/// Where a piece stands: local (right, up, away) to world, by a quarter turn or a mirror.
+/// Where a piece stands: local (right, up, away) to world, by a turn around the vertical or a mirror.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) origin: DVec3,

@@ -1,0 +1,75 @@
+//! A walk in the shape of an 8 along straight stretches with rounded corners. Shared by all generators.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Eye, Solid, View, ViewPath};
+
+/// Height of a walker's eyes above the ground, m.
+pub(super) const EYE: f64 = 1.6;
+/// Views of a walk.
+const VIEWS: usize = 240;
+
+/// How a walk goes round its corners and where it looks.
+pub(super) struct Manner {
+    /// A corner is cut from so far before it to so far after it, m. At most half a stretch.
+    pub(super) round: f64,
+    /// It looks at the point so far ahead on the way, m.
+    pub(super) ahead: f64,
+    /// Far plane, m.
+    pub(super) far: f64,
+}
+
+/// Once around the closed polyline of `stops`; `origin` is what was subtracted from the scene's coordinates.
+pub(super) fn figure_8(stops: &[DVec3], manner: &Manner, origin: DVec3) -> ViewPath<Solid> {
+    let mut line = Vec::new();
+    for (i, corner) in stops.iter().enumerate() {
+        let to = |other: DVec3| (other - *corner).normalize() * manner.round;
+        let (from, on) = (stops[(i + stops.len() - 1) % stops.len()], stops[(i + 1) % stops.len()]);
+        // A parabola that touches both stretches stays between them.
+        let (a, b) = (*corner + to(from), *corner + to(on));
+        line.extend((0..=8).map(|k| f64::from(k) / 8.0).map(|t| a * ((1.0 - t) * (1.0 - t)) + *corner * (2.0 * t * (1.0 - t)) + b * (t * t)));
+    }
+    line.push(line[0]);
+    let lengths: Vec<f64> = line.windows(2).map(|w| w[0].distance(w[1])).collect();
+    let step = lengths.iter().sum::<f64>() / VIEWS as f64;
+    let at = |mut s: f64| {
+        for (w, length) in line.windows(2).zip(&lengths) {
+            if s <= *length {
+                return w[0].lerp(w[1], s / length);
+            }
+            s -= length;
+        }
+        line[0]
+    };
+    let view = |k: usize| {
+        let (here, there) = (at(step * k as f64), at((step * k as f64 + manner.ahead) % (step * VIEWS as f64)));
+        let (position, target) = ((here - origin).as_vec3(), (there - origin).as_vec3());
+        let eye = Eye { position, target, up: Vec3::Y, fov: 60f32.to_radians(), near: 0.1, far: manner.far as f32 };
+        View { eye, width: 1024, height: 1024 }
+    };
+    ViewPath { name: "figure 8".into(), views: (0..VIEWS).map(view).collect() }
+}
+
+/// The first primitive that the closed walk of a scene goes through, if any: its object's name and the view before it.
+#[cfg(test)]
+pub(super) fn touched(scene: &crate::scene::Scene<Solid>) -> Option<(String, usize)> {
+    let walk: Vec<DVec3> = scene.paths()[0].views.iter().map(|v| v.eye.position.as_dvec3()).collect();
+    let side = |a, b, c, d| crate::geometry::orient3d(a, b, c, d) > 0.0;
+    for (i, &a) in walk.iter().enumerate() {
+        let b = walk[(i + 1) % walk.len()];
+        let (low, high) = (a.min(b).as_vec3(), a.max(b).as_vec3());
+        for &prim in scene.live() {
+            let bounds = scene.prim_bounds(prim);
+            if bounds.min.cmpgt(high).any() || bounds.max.cmplt(low).any() {
+                continue;
+            }
+            let p: Vec<DVec3> = scene.prim_points(prim).map(Vec3::as_dvec3).collect();
+            let apart = side(p[0], p[1], p[2], a) == side(p[0], p[1], p[2], b);
+            let turns = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| side(a, b, p[i], p[j]));
+            if !apart && turns[0] == turns[1] && turns[1] == turns[2] {
+                return Some((scene.objects()[scene.object_of(prim).at()].name.clone(), i));
+            }
+        }
+    }
+    None
+}
