@@ -8,10 +8,9 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::methods::{find, params_json, settings};
+use super::methods::params_json;
 use super::progress::Bar;
-use super::scene::SceneArgs;
-use super::view::ViewArgs;
+use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::culling::{DrawList, Run};
 use crate::drawing::Role;
@@ -28,9 +27,7 @@ use crate::truth::Truth;
 )]
 pub(super) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
-    #[command(flatten)]
-    view: ViewArgs,
+    task: Task,
     /// Compare with the exact answer at the view's resolution
     #[arg(long)]
     truth: bool,
@@ -87,23 +84,17 @@ struct TruthReport {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    match args.scene.load()? {
+    match args.task.load()? {
         AnyScene::Flat(scene) => of(args, &scene),
         AnyScene::Solid(scene) => of(args, &scene),
     }
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let entry = find::<S>(&args.scene.method)?;
-    let settings = settings(&args.scene.set)?;
-    entry.knobs(&settings)?;
-    let views = args.view.views(scene)?.views;
-    let bar = Bar::new();
-    let (ready, build_ms) = timed(|| entry.ready(scene, &settings, &bar));
-    let Some(mut run) = ready? else { return Err(CliError::Interrupted) };
+    let Ready { mut run, path, build_ms, bar } = args.task.ready(scene)?;
     let pool = (args.threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
     let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
-    let mut work = || frames(args, scene, &mut *run, &views, &bar);
+    let mut work = || frames(args, scene, &mut *run, &path.views, &bar);
     let frames = match &pool {
         Some(pool) => pool.install(&mut work)?,
         None => work()?,

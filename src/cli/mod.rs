@@ -15,6 +15,7 @@ mod progress;
 mod scene;
 mod step;
 mod suggest;
+mod task;
 mod trace;
 mod view;
 mod words;

@@ -5,10 +5,8 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value as Json};
 
-use super::methods::{find, params_json, settings};
-use super::progress::Bar;
-use super::scene::SceneArgs;
-use super::view::ViewArgs;
+use super::methods::params_json;
+use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::geometry::ViewPath;
 use crate::scene::{AnyScene, Progress, Scene, write_views};
@@ -24,9 +22,7 @@ const FILM_CAP: usize = 10_000_000;
 )]
 pub(super) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
-    #[command(flatten)]
-    view: ViewArgs,
+    task: Task,
     /// `coarse` leaves out the lines of pseudocode
     #[arg(long, value_enum, default_value = "full")]
     detail: Fineness,
@@ -42,25 +38,20 @@ enum Fineness {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    match args.scene.load()? {
+    match args.task.load()? {
         AnyScene::Flat(scene) => of(args, &scene),
         AnyScene::Solid(scene) => of(args, &scene),
     }
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let entry = find::<S>(&args.scene.method)?;
-    let settings = settings(&args.scene.set)?;
-    entry.knobs(&settings)?;
-    let path = args.view.views(scene)?;
-    let bar = Bar::new();
-    let Some(mut run) = entry.ready(scene, &settings, &bar)? else { return Err(CliError::Interrupted) };
+    let Ready { mut run, path, bar, .. } = args.task.ready(scene)?;
     let (detail, name) = match args.detail {
         Fineness::Coarse => (Detail::Coarse, "coarse"),
         Fineness::Full => (Detail::Full, "full"),
     };
     let params = params_json(&run.knobs()).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-    let header = header(scene, entry.card().key, params, &path, name);
+    let header = header(scene, run.card().key, params, &path, name);
     output::emit(args.out.as_deref(), |mut to| {
         write_header(&header, &mut to)?;
         for (frame, view) in path.views.iter().enumerate() {
