@@ -23,14 +23,14 @@ run:
 test:
 	.ci/setup test
 	cargo fmt --check
-	cargo clippy --locked --all-targets -- -D warnings
+	cargo clippy --locked --all-targets --features ui-tests -- -D warnings
 	cargo check --locked --no-default-features
 	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps --lib
-	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-$$(mktemp -d)} cargo test --locked
+	XDG_RUNTIME_DIR=$${XDG_RUNTIME_DIR:-$$(mktemp -d)} cargo test --locked --features ui-tests
 
 bench:
 	.ci/setup build
-	cargo bench --locked
+	cargo bench --locked --no-default-features
 
 screenshots:
 	.ci/setup test

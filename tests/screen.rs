@@ -1,7 +1,6 @@
 //! The screen's reader of drawings, without a window.
 //!
 //! `FIGURES_OUT=folder` writes what it paints there (this alone needs a GPU driver).
-#![cfg(feature = "gui")]
 
 mod sample;
 

@@ -1,5 +1,4 @@
 //! The window, driven by accessibility labels, the pointer and keys, as a person does.
-#![cfg(feature = "gui")]
 
 use cullscope::app::{Action, Command, Dialog, Start, Theme};
 use cullscope::drawing::Subject;
