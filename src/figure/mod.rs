@@ -17,6 +17,6 @@ pub use builtin::{BUILTIN, Builtin, Tint};
 pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};
-pub use panels::{Panel, Picture, panels};
+pub use panels::{Panel, Picture, panels, plate_labels};
 pub use pick::{pick, pick_node, pick_segment};
 pub use place::{Sheet, project};

@@ -42,6 +42,7 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
         if let Some((_, world)) = &cache.flat {
             let mut paper = Drawing { size_pt: Vec2::new(rect.width(), rect.height()), ..Drawing::default() };
             sheet.place(world, &mut paper);
+            super::readable_labels(&mut paper);
             screen::paint(&painter, &paper, state.shown.theme, rect.min, 1.0);
         }
     }

@@ -6,7 +6,7 @@ use super::icons::{self, Icon};
 use super::inspector::value;
 use super::{Answers, palette};
 use crate::app::{Breakpoint, Command, State};
-use crate::culling::{Event, Verdict};
+use crate::culling::{CodeLine, Event, Verdict};
 use crate::trace::Counts;
 
 /// Shows the pseudocode.
@@ -25,39 +25,72 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         }
     });
+    // A step scrolls to its line; in between the person may scroll away.
+    let is_new = ui.data_mut(|d| d.get_temp_mut_or_default::<Option<usize>>(ui.id().with("shown step")).replace(state.step)) != Some(state.step);
+    let width = ui.available_width() - ui.spacing().scroll.bar_width;
     ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
-        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        let right = ui.cursor().left() + width;
         for (i, line) in card.code.iter().enumerate() {
             let i = i as u8;
             let is_lit = lit == Some(i);
-            ui.horizontal(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                let stops = state.breakpoints.contains(&Breakpoint::Line(i));
-                let (icon, color) = if stops { (Icon::Dot, ui.visuals().error_fg_color) } else { (Icon::Ring, palette::panel(state).border) };
-                let response = icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
-                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label)));
-                if response.clicked() {
-                    answers.push(Command::BreakLine(i));
-                }
-                let here = if is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
-                icons::plain(ui, Icon::Here, Sense::hover(), here);
-                let small = egui::TextStyle::Body.resolve(ui.style()).size;
-                let mut text = RichText::new(line.text).monospace().size(small);
-                if is_lit {
-                    text = text.background_color(palette::panel(state).lit_line);
-                }
-                let response = ui.selectable_label(false, text).on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
-                if response.clicked()
-                    && let Some(step) = next_time(state, i)
-                {
-                    answers.push(Command::GoTo(step));
-                }
-                if is_lit && !values.is_empty() {
-                    ui.label(RichText::new(format!("   {values}")).color(palette::panel(state).accent));
-                }
-            });
+            let row = ui.horizontal(|ui| line_row(state, ui, i, line, is_lit, answers)).response;
+            let mut shown = row.rect;
+            if is_lit && !values.is_empty() {
+                shown = shown.union(values_beside(state, ui, row.rect, right, &values));
+            }
+            if is_lit && is_new {
+                ui.scroll_to_rect(shown, None);
+            }
         }
     });
+}
+
+/// A line of pseudocode: its breakpoint, a mark at the current one, its text.
+fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bool, answers: &mut Answers) {
+    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+    ui.spacing_mut().item_spacing.x = 4.0;
+    let stops = state.breakpoints.contains(&Breakpoint::Line(i));
+    let (icon, color) = if stops { (Icon::Dot, ui.visuals().error_fg_color) } else { (Icon::Ring, palette::panel(state).border) };
+    let response = icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label)));
+    if response.clicked() {
+        answers.push(Command::BreakLine(i));
+    }
+    let here = if is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
+    icons::plain(ui, Icon::Here, Sense::hover(), here);
+    let small = egui::TextStyle::Body.resolve(ui.style()).size;
+    let mut text = RichText::new(line.text).monospace().size(small);
+    if is_lit {
+        text = text.background_color(palette::panel(state).lit_line);
+    }
+    let response = ui.selectable_label(false, text).on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
+    if response.clicked()
+        && let Some(step) = next_time(state, i)
+    {
+        answers.push(Command::GoTo(step));
+    }
+}
+
+/// The values beside their line where they fit, else below it, wrapped at the panel's edge.
+fn values_beside(state: &State, ui: &mut egui::Ui, row: egui::Rect, right: f32, values: &str) -> egui::Rect {
+    const GAP: f32 = 16.0;
+    let text = RichText::new(values).color(palette::panel(state).accent);
+    let galley = egui::WidgetText::from(text.clone()).into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
+    if row.right() + GAP + galley.size().x <= right {
+        let place = egui::Rect::from_min_max(egui::pos2(row.right() + GAP, row.top()), egui::pos2(right, row.bottom()));
+        let left = egui::Layout::left_to_right(egui::Align::Center);
+        return ui.scope_builder(egui::UiBuilder::new().max_rect(place).layout(left), |ui| ui.label(text)).response.rect;
+    }
+    let indent = 3.0 * GAP;
+    let width = (right - row.left() - indent).max(60.0);
+    let wrapped = ui.horizontal(|ui| {
+        ui.add_space(indent);
+        ui.vertical(|ui| {
+            ui.set_max_width(width);
+            ui.add(egui::Label::new(text).wrap());
+        });
+    });
+    wrapped.response.rect
 }
 
 /// The next time that a line runs; from the beginning if it does not run again.

@@ -26,8 +26,11 @@ mod why;
 pub mod window;
 
 use eframe::egui;
+use glam::Vec2;
 
 use crate::app::{Action, Command, State};
+use crate::drawing::{Drawing, Mark};
+use crate::figure;
 
 /// What a person asked for in a frame.
 pub type Answers = Vec<Command>;
@@ -55,4 +58,20 @@ fn action_button(state: &State, ui: &mut egui::Ui, action: Action, text: &str, a
         answers.push(action.into());
     }
     button
+}
+
+/// Least size of text in pictures, points of egui: that of the panels' small text. Figures have smaller type, but they
+/// are read from paper.
+const LABEL: f32 = 12.0;
+
+/// Makes the labels of a picture on screen large enough to read, and keeps those of evidence inside it and off what
+/// lies below them.
+fn readable_labels(paper: &mut Drawing) {
+    for item in &mut paper.items {
+        if let Mark::Text { size_pt, .. } = &mut item.mark {
+            *size_pt = size_pt.max(LABEL);
+        }
+    }
+    let size = paper.size_pt;
+    figure::plate_labels(paper, Vec2::ZERO, size);
 }

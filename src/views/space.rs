@@ -186,6 +186,7 @@ fn labels(state: &State, stage: &Stage<Solid>, cache: &Cache, ui: &egui::Ui, rec
     let size = Vec2::new(rect.width(), rect.height());
     let mut paper = Drawing { size_pt: size, ..Drawing::default() };
     figure::project(&Drawing { items: texts, ..Drawing::default() }, view, Vec2::ZERO, size, &mut paper);
+    super::readable_labels(&mut paper);
     screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
 }
 

@@ -12,6 +12,9 @@ struct Stroke {
 const DOT: u32 = 16u;
 const HEAD: u32 = 32u;
 const NODE: u32 = 64u;
+// A node that is decided: there are hundreds of them in the end, and none is what the step is about.
+const DONE: u32 = 128u;
+const DONE_STRENGTH: f32 = 0.6;
 
 // Where a segment enters the half-space in which `from` and `to` are the signed distances of its ends.
 fn entry(from_d: f32, to_d: f32) -> f32 {
@@ -49,7 +52,7 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     let dir = select(vec2<f32>(1.0, 0.0), (pb - pa) / max(length_px, 1e-6), length_px > 1e-4);
     let across = vec2<f32>(-dir.y, dir.x);
     // Boxes of nodes are many, so they are thinner.
-    let thin = select(0.5, 0.3, (role & NODE) != 0u);
+    let thin = select(select(0.5, 0.3, (role & NODE) != 0u), 0.22, (role & DONE) != 0u);
     let line_px = select(thin * f.stroke[role & 15u].w, radius_px, (role & DOT) != 0u);
     // A line without a halo gets a thin casing of paper, so that it is read on any ground.
     out.half_px = vec2<f32>(line_px, line_px + max(f.dot[role & 15u].w, 0.7 * f.target_px.z));
@@ -96,7 +99,8 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     // The frontier: decided as a whole, a leaf, or entered and not yet decided.
     let decided = (times.y >> 4u) <= f.what.x;
     let frontier = role != PARTIAL || is_leaf || !decided;
-    var out = stroke(i % 6u, mix(low, high, from_c), mix(low, high, to_c), role | NODE, 0.0);
+    let kind = NODE | select(0u, DONE, decided);
+    var out = stroke(i % 6u, mix(low, high, from_c), mix(low, high, to_c), role | kind, 0.0);
     if !entered || ((f.shown.z >> role) & 1u) == 0u || (f.shown.w == 1u && !frontier) { out.at = nowhere(); }
     return out;
 }
@@ -117,8 +121,9 @@ fn inked(in: Stroke, strength: f32) -> vec4<f32> {
     var ink = f.stroke[role].rgb;
     if (in.role & DOT) != 0u && d < in.half_px.x - f.target_px.z { ink = f.dot[role].rgb; }
     let has_halo = f.dot[role].w > 0.0;
-    let band = (1.0 - line) * whole * select(0.4, 1.0, has_halo);
-    let alpha = (line + band) * strength;
+    let is_done = (in.role & DONE) != 0u;
+    let band = (1.0 - line) * whole * select(select(0.4, 1.0, has_halo), 0.0, is_done);
+    let alpha = (line + band) * strength * select(1.0, DONE_STRENGTH, is_done);
     let color = mix(select(f.flat_color[PAPER].rgb, f.halo[role].rgb, has_halo), ink, line / max(line + band, 1e-4));
     return vec4<f32>(color * alpha, alpha);
 }
