@@ -204,7 +204,7 @@ fn views_come_from_files_paths_options_or_chance() {
 #[test]
 fn steps_are_written_the_same_each_time_and_check() {
     let here = folder("step");
-    for (scene, more) in [("boxes.obj", &ALONG[..]), ("walls.json", &["--path", "eyes"])] {
+    for (scene, more, frames) in [("boxes.obj", &ALONG[..], 1), ("walls.json", &["--path", "eyes"], 2)] {
         let words = with(&["step", scene, "--method", "frustum", "--set", "tree-height=4"], more);
         let first = done(&here, &words);
         assert_eq!(first, done(&here, &words));
@@ -219,6 +219,8 @@ fn steps_are_written_the_same_each_time_and_check() {
         let events: Vec<Json> = lines.map(json).collect();
         assert!(events.iter().any(|e| e["event"] == "NodeClassified" && e["line"] == "Visible:2" && e["far_corner_units"].is_array()));
         assert!(events.iter().all(|e| e["step"].is_u64() && e["frame"].is_u64() && e["event"].is_string()));
+        let first_steps = events.iter().filter(|e| e["step"] == 1).map(|e| &e["frame"]);
+        assert!(first_steps.eq((0..frames).map(Json::from).collect::<Vec<_>>().iter()), "every view is a frame");
         let coarse = done(&here, &with(&words, &["--detail", "coarse"]));
         assert!(coarse.lines().count() < first.lines().count() && !coarse.contains("LineReached"));
     }

@@ -2,6 +2,7 @@
 //!
 //! - plain = counted = recorded: a watched run decides the same;
 //! - told = answered: what the film says was kept is what was drawn;
+//! - what is entered is left, the last one first;
 //! - stamps = a naive fold of the events, at every step;
 //! - any way to a step shows the same evidence;
 //! - truth ⊆ answer, and the same image, if the method says that it is conservative;
@@ -134,6 +135,7 @@ fn watched_runs_decide_the_same<S: World>(scenes: &[Arc<Scene<S>>]) {
             assert_eq!(list, film.list, "{what}: recorded");
             assert_eq!(list, capped.record(view, 5).list, "{what}: recorded in part");
             told_is_answered(&*film.film, &list.prims, &what);
+            entered_is_left(film.film.events(), &what);
             if let Err(why) = check_film(&*film.film) {
                 panic!("{what}: {why}");
             }
@@ -157,6 +159,18 @@ fn told_is_answered<S: Space>(film: &dyn Film<S>, drawn: &[PrimId], what: &str) 
     };
     let told: Vec<PrimId> = film.scene().live().iter().filter(decided).copied().collect();
     assert_eq!(told, kept, "{what}: told and answered");
+}
+
+fn entered_is_left(events: &[Event], what: &str) {
+    let mut open = Vec::new();
+    for (at, event) in events.iter().enumerate() {
+        match event {
+            Event::Entered(node) => open.push(*node),
+            Event::Left(node) => assert_eq!(open.pop(), Some(*node), "{what}: event {at} leaves the node that was entered last"),
+            _ => {}
+        }
+    }
+    assert_eq!(open, [], "{what}: every node is left");
 }
 
 #[test]

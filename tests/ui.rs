@@ -2,7 +2,7 @@
 
 use cullscope::app::{Action, Command, Dialog, Start, Theme};
 use cullscope::drawing::Subject;
-use cullscope::geometry::NodeId;
+use cullscope::geometry::{Flat, NodeId, View};
 use cullscope::views::window::App;
 use eframe::egui::{self, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
@@ -135,15 +135,19 @@ fn a_click_in_the_picture_selects() {
     assert!(h.state().state.is_swapped);
 }
 
-#[test]
-fn the_eye_is_dragged_and_undone() {
-    let mut h = window(FLAT);
+/// The view that culling sees with, and where its eye stands on the screen.
+fn flat_eye(h: &Harness<'_, App>) -> (View<Flat>, egui::Pos2, f32) {
     let rect = h.get_by_label_contains("Observer view.").rect();
     let state = &h.state().state;
     let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
-    let (eye, before) = (stage.view.eye.position, stage.view);
     let scale = rect.height() / (2.0 * state.observer.distance);
-    let at = rect.center() + vec2(eye.x - state.observer.pivot[0], state.observer.pivot[1] - eye.y) * scale;
+    let eye = stage.view.eye.position;
+    (stage.view, rect.center() + vec2(eye.x - state.observer.pivot[0], state.observer.pivot[1] - eye.y) * scale, scale)
+}
+
+/// Drags the Eye to the right, in steps.
+fn drag_eye(h: &mut Harness<'_, App>) {
+    let (_, at, _) = flat_eye(h);
     h.hover_at(at);
     h.run_steps(1);
     h.drag_at(at);
@@ -153,15 +157,23 @@ fn the_eye_is_dragged_and_undone() {
         h.run_steps(1);
     }
     h.drop_at(at + vec2(30.0, 0.0));
-    settle(&mut h);
-    let moved = |h: &Harness<'_, App>| match &h.state().state.stage {
-        Some(cullscope::app::Any::Flat(stage)) => stage.view,
-        _ => panic!("flatland"),
-    };
-    let by = moved(&h).eye.position - before.eye.position;
+    settle(h);
+}
+
+#[test]
+fn the_eye_is_dragged_and_undone() {
+    let mut h = window(FLAT);
+    let (before, _, scale) = flat_eye(&h);
+    drag_eye(&mut h);
+    let (once, ..) = flat_eye(&h);
+    let by = once.eye.position - before.eye.position;
     assert!(by.x > 10.0 / scale && by.y.abs() < 1e-3, "{by}");
+    drag_eye(&mut h);
+    assert_ne!(flat_eye(&h).0, once);
     press(&mut h, Modifiers::COMMAND, Key::Z);
-    assert_eq!(moved(&h), before, "one undo takes the whole drag back");
+    assert_eq!(flat_eye(&h).0, once, "one undo takes a whole drag back, and no other");
+    press(&mut h, Modifiers::COMMAND, Key::Z);
+    assert_eq!(flat_eye(&h).0, before);
 }
 
 #[test]

@@ -26,7 +26,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         }
     });
     // A step scrolls to its line; in between the person may scroll away.
-    let is_new = ui.data_mut(|d| d.get_temp_mut_or_default::<Option<usize>>(ui.id().with("shown step")).replace(state.step)) != Some(state.step);
+    let is_new =
+        ui.data_mut(|d| d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)) != Some(state.step);
     let width = ui.available_width() - ui.spacing().scroll.bar_width;
     ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
         let right = ui.cursor().left() + width;

@@ -55,9 +55,9 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.label(format!("of {}", super::events::grouped(state.len())));
         ui.add_space(4.0);
         let mut speed = state.speed;
-        let label = ui.label("Speed");
-        let drag = egui::DragValue::new(&mut speed).range(0.25..=1e6).speed(state.speed * 0.02).suffix("/s").max_decimals(1);
-        if ui.add(drag).labelled_by(label.id).on_hover_text("Events a second (− and +)").changed() {
+        // One widget, so that the name and the number wrap together.
+        let drag = egui::DragValue::new(&mut speed).range(0.25..=1e6).speed(state.speed * 0.02).prefix("Speed ").suffix("/s").max_decimals(1);
+        if ui.add(drag).on_hover_text("Events a second (− and +)").changed() {
             answers.push(Command::Speed(speed));
         }
         let mut coarse = state.detail == Detail::Coarse;

@@ -52,9 +52,24 @@ const PIECES: &[&[u8]] = &[
     b"Kd 1\n",
 ];
 
-/// A copy with a few bytes changed, cut, doubled, swapped or replaced by a piece.
+/// Numbers at the ends of what readers expect.
+const NUMBERS: &[&[u8]] = &[b"0", b"-1", b"3", b"180", b"65536", b"16777217", b"4294967295", b"99999999999", b"1e39", b"-1e-46", b"1e999", b"nan"];
+
+/// Replaces a whole number, so that the text around it stays valid and what lies behind the parser is reached.
+fn renumber(bytes: &mut Vec<u8>, rng: &mut Pcg32) {
+    let from = rng.next_u32() as usize % bytes.len();
+    let Some(start) = (from..bytes.len()).find(|&i| bytes[i].is_ascii_digit()) else { return };
+    let end = (start..bytes.len()).find(|&i| !bytes[i].is_ascii_digit() && bytes[i] != b'.').unwrap_or(bytes.len());
+    bytes.splice(start..end, NUMBERS[rng.next_u32() as usize % NUMBERS.len()].iter().copied());
+}
+
+/// A copy with a few bytes changed, cut, doubled, swapped or replaced by a piece; every third has only other numbers.
 fn mutated(seed: &[u8], rng: &mut Pcg32) -> Vec<u8> {
     let mut bytes = seed.to_vec();
+    if rng.next_u32().is_multiple_of(3) {
+        (0..1 + rng.next_u32() % 2).for_each(|_| renumber(&mut bytes, rng));
+        return bytes;
+    }
     for _ in 0..1 + rng.next_u32() % 6 {
         if bytes.is_empty() {
             return bytes;

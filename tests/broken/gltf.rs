@@ -114,6 +114,13 @@ fn broken_files_are_refused() {
             changed("\"bufferView\":0,\"componentType\":5126,\"count\":4,", "\"componentType\":5126,\"count\":20000000,"),
             "m.gltf: accessors[0].bufferView: Missing data (1 faults)",
         ),
+        (
+            changed(
+                "\"bufferView\":0,\"componentType\":5126,\"count\":4,",
+                "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5123},\"values\":{\"bufferView\":0}},\"componentType\":5126,\"count\":20000000,",
+            ),
+            "m.gltf: mesh 0, primitive 0: accessor 0: 20000000 items and no data",
+        ),
         (changed("\"byteOffset\":48,", "\"byteOffset\":49,"), "m.gltf: mesh 0, primitive 0: accessor 1: buffer view 1 lies outside of buffer 0"),
         (
             changed("\"type\":\"VEC3\"", "\"type\":\"VEC2\"").replace("\"min\":[0,0,0],\"max\":[1,1,0]", "\"min\":[0,0],\"max\":[1,1]"),
