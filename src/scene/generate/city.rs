@@ -122,8 +122,8 @@ const ROUNDS: [Round; 21] = [
     Round::Chimney,
     Round::Floor("table", Spot::Middle, street::table),
     Round::Street("tree", 3, 0.9, 0.2, street::tree),
-    Round::Floor("bed", Spot::Back(-0.5), street::bed),
     Round::Street("car", 1, -1.2, 0.8, street::car),
+    Round::Floor("bed", Spot::Back(-0.5), street::bed),
     Round::Floor("wardrobe", Spot::Left(0.3), street::wardrobe),
     Round::Street("bench", 1, 0.9, 0.0, piece::bench),
     Round::Windows(false),
@@ -340,6 +340,28 @@ mod tests {
             let scene = city(&format!("city?polygons=30000&seed={seed}&blocks={blocks}"));
             assert_eq!(touched(&scene), None, "seed {seed}");
         }
+    }
+
+    /// Upright edges of walls that meet, in streets and between houses of different heights, are the same edge: then
+    /// walls hide together what none hides alone. Left over are only corners of yards where three houses meet: edges of
+    /// one wall, or of four where two houses touch above a lower one.
+    #[test]
+    fn walls_that_meet_share_their_edges() {
+        let scene = city("city?polygons=20000&seed=2&blocks=12");
+        let mut edges = std::collections::BTreeMap::<[u32; 2], u32>::new();
+        for face in scene.faces().iter().filter(|f| scene.objects()[scene.object_of(f.prims[0]).at()].name == "walls") {
+            let at = |k: usize| scene.points()[face.corners[k % face.corners.len()] as usize];
+            // A wall drawn back from the street has a height that no other has.
+            let drawn_back = (0..face.corners.len()).any(|k| ((at(k).y - 0.45) / 3.0).fract() > 0.9 && at(k).y > 1.0);
+            for k in (0..face.corners.len()).filter(|k| !drawn_back && at(*k).with_y(0.0) == at(k + 1).with_y(0.0)) {
+                let mut edge = [face.corners[k], face.corners[(k + 1) % face.corners.len()]];
+                edge.sort_unstable();
+                *edges.entry(edge).or_default() += 1;
+            }
+        }
+        let of = |count: u32| edges.values().filter(|c| **c == count).count();
+        assert_eq!(of(1) + of(2) + of(4), edges.len(), "an edge of three walls");
+        assert!(edges.len() > 300 && of(2) * 100 > edges.len() * 88, "{} single edges of {}", of(1), edges.len());
     }
 
     #[test]
