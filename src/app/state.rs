@@ -308,7 +308,14 @@ impl State {
     /// What is on screen in a picture of this state.
     pub fn look(&self) -> crate::figure::Look {
         let s = &self.shown;
-        crate::figure::Look { prims: s.prims, nodes: s.nodes, eye: s.eye, evidence: s.evidence, selected: self.selection }
+        crate::figure::Look {
+            prims: s.prims,
+            nodes: s.nodes,
+            eye: s.eye,
+            evidence: s.evidence,
+            selected: self.selection,
+            current: self.current_subject(),
+        }
     }
     /// Tells the person something.
     pub fn tell(&mut self, text: impl Into<String>) {

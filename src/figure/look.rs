@@ -22,11 +22,13 @@ pub struct Look {
     pub evidence: bool,
     /// What is marked as selected.
     pub selected: Subject,
+    /// What is marked as the thing that the step is about, where the evidence does not mark it.
+    pub current: Subject,
 }
 
 impl Default for Look {
     fn default() -> Self {
-        Self { prims: true, nodes: true, eye: true, evidence: true, selected: Subject::None }
+        Self { prims: true, nodes: true, eye: true, evidence: true, selected: Subject::None, current: Subject::None }
     }
 }
 
@@ -63,7 +65,10 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
     if look.evidence {
         film.explain(step, &mut to);
     }
-    selected(film, look.selected, &mut to);
+    if !to.items.iter().any(|i| i.role == Role::Current) {
+        emphasized(film, look.current, Role::Current, &mut to);
+    }
+    emphasized(film, look.selected, Role::Selected, &mut to);
     to
 }
 
@@ -113,18 +118,18 @@ pub fn observer_above(scene: &Scene<Solid>, aspect: f32) -> View<Solid> {
     view
 }
 
-fn selected<S: Space>(film: &dyn Film<S>, subject: Subject, to: &mut Drawing<S::Vector>) {
+fn emphasized<S: Space>(film: &dyn Film<S>, subject: Subject, role: Role, to: &mut Drawing<S::Vector>) {
     let scene = film.scene();
     let mut outline = |prim| {
         let points: Vec<_> = scene.prim_points(prim).collect();
         let closed = points.len() > 2;
-        to.push(Layer::Emphasis, Role::Selected, Subject::Prim(prim), Mark::Line { points, closed });
+        to.push(Layer::Emphasis, role, Subject::Prim(prim), Mark::Line { points, closed });
     };
     match subject {
         Subject::Prim(prim) if prim.at() < scene.prim_count() => outline(prim),
         Subject::Object(object) => scene.live().iter().filter(|&&p| scene.object_of(p) == object).for_each(|&p| outline(p)),
         Subject::Node(node) if node.at() < film.hierarchy().node_count() => {
-            to.bounds(Layer::Emphasis, Role::Selected, subject, &film.hierarchy().bounds(node));
+            to.bounds(Layer::Emphasis, role, subject, &film.hierarchy().bounds(node));
         }
         _ => {}
     }

@@ -31,10 +31,11 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let width = ui.available_width() - ui.spacing().scroll.bar_width;
     ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
         let right = ui.cursor().left() + width;
+        let size = fitting_size(ui, card.code, width);
         for (i, line) in card.code.iter().enumerate() {
             let i = i as u8;
             let is_lit = lit == Some(i);
-            let row = ui.horizontal(|ui| line_row(state, ui, i, line, is_lit, answers)).response;
+            let row = ui.horizontal(|ui| line_row(state, ui, i, line, is_lit, size, answers)).response;
             let mut shown = row.rect;
             if is_lit && !values.is_empty() {
                 shown = shown.union(values_beside(state, ui, row.rect, right, &values));
@@ -46,8 +47,19 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     });
 }
 
+/// Size of type in which every line fits into a panel of that width, if it can be read.
+fn fitting_size(ui: &egui::Ui, code: &[CodeLine], width: f32) -> f32 {
+    const LEAST: f32 = 10.0;
+    /// Breakpoint, mark, padding and the gaps between.
+    const BEFORE: f32 = 48.0;
+    let body = egui::TextStyle::Body.resolve(ui.style()).size;
+    let longest = code.iter().map(|l| l.text.chars().count()).max().unwrap_or(0);
+    let advance = ui.fonts_mut(|f| f.glyph_width(&egui::FontId::monospace(body), 'M'));
+    (body * (width - BEFORE) / (longest as f32 * advance).max(1.0)).clamp(LEAST.min(body), body)
+}
+
 /// A line of pseudocode: its breakpoint, a mark at the current one, its text.
-fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bool, answers: &mut Answers) {
+fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bool, size: f32, answers: &mut Answers) {
     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
     ui.spacing_mut().item_spacing.x = 4.0;
     let stops = state.breakpoints.contains(&Breakpoint::Line(i));
@@ -59,8 +71,7 @@ fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bo
     }
     let here = if is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
     icons::plain(ui, Icon::Here, Sense::hover(), here);
-    let small = egui::TextStyle::Body.resolve(ui.style()).size;
-    let mut text = RichText::new(line.text).monospace().size(small);
+    let mut text = RichText::new(line.text).monospace().size(size);
     if is_lit {
         text = text.background_color(palette::panel(state).lit_line);
     }

@@ -112,7 +112,7 @@ fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderSt
         now.film = recorded.serial;
         layer.set_film(&gpu.device, &gpu.queue, &recorded.stamps, recorded.film.hierarchy(), &[]);
     }
-    let look = figure::Look { prims: false, nodes: false, selected: Subject::None, ..state.look() };
+    let look = figure::Look { prims: false, nodes: false, selected: Subject::None, current: Subject::None, ..state.look() };
     let key = (recorded.serial, state.step, look);
     if now.marks != Some(key) {
         now.marks = Some(key);
