@@ -134,3 +134,26 @@ fn emphasized<S: Space>(film: &dyn Film<S>, subject: Subject, role: Role, to: &m
         _ => {}
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::culling::{Methods, Settings};
+    use crate::geometry::Flat;
+    use crate::scene::{Quiet, samples};
+
+    #[test]
+    fn every_step_about_a_node_marks_it() {
+        let scene = samples::soup::<Flat>(7, 60);
+        let mut run = Flat::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+        let film = run.record(&framing_view(&scene.bounds(), 64, 1), usize::MAX).film;
+        let stamps = Stamps::new(&*film);
+        let current = Subject::Node(NodeId(1));
+        for step in 1..=film.events().len() {
+            let marked = |look: &Look| world(&*film, &stamps, step, look).items.iter().filter(|i| i.role == Role::Current).count();
+            assert_eq!(marked(&Look { current, ..Look::default() }), 1, "once, whether by the evidence or not, at step {step}");
+            assert_eq!(marked(&Look { current, evidence: false, ..Look::default() }), 1, "step {step}");
+            assert_eq!(marked(&Look { evidence: false, ..Look::default() }), 0, "step {step}");
+        }
+    }
+}
