@@ -183,3 +183,14 @@ impl Knobs for Apply<'_> {
         self.set(knob, || "a number of primitives such as 2000, or a share such as 10%".into(), |_| true, value);
     }
 }
+
+/// The parameter that every method has.
+pub(super) fn backface_knob(knobs: &mut dyn Knobs, value: &mut bool) {
+    let knob = Knob {
+        name: "backface-culling",
+        unit: "",
+        meaning: "primitives have one side: those that face away from the eye are neither drawn nor part of the truth",
+        source: "Klosowski and Silva 2000, Section 5",
+    };
+    knobs.switch(knob, value);
+}

@@ -9,7 +9,9 @@ mod entry;
 #[cfg(test)]
 mod entry_tests;
 mod event;
+mod evidence;
 mod knobs;
+mod large_occluders;
 mod method;
 
 pub use entry::{Entry, Film, Recording, Run};
@@ -20,11 +22,19 @@ pub use method::{Card, CodeLine, DrawList, Field, Method, Note, Value};
 use crate::geometry::{Flat, Solid, Space};
 
 /// Every method that runs in flatland, in the order of menus.
-pub static FLAT: &[&dyn Entry<Flat>] =
-    &[&entry::Of::<baseline::ZBuffer>::NEW, &entry::Of::<baseline::Frustum>::NEW, &entry::Of::<baseline::Centroid>::NEW];
+pub static FLAT: &[&dyn Entry<Flat>] = &[
+    &entry::Of::<baseline::ZBuffer>::NEW,
+    &entry::Of::<baseline::Frustum>::NEW,
+    &entry::Of::<baseline::Centroid>::NEW,
+    &entry::Of::<large_occluders::LargeOccluders>::NEW,
+];
 /// Every method that runs in space, in the order of menus.
-pub static SOLID: &[&dyn Entry<Solid>] =
-    &[&entry::Of::<baseline::ZBuffer>::NEW, &entry::Of::<baseline::Frustum>::NEW, &entry::Of::<baseline::Centroid>::NEW];
+pub static SOLID: &[&dyn Entry<Solid>] = &[
+    &entry::Of::<baseline::ZBuffer>::NEW,
+    &entry::Of::<baseline::Frustum>::NEW,
+    &entry::Of::<baseline::Centroid>::NEW,
+    &entry::Of::<large_occluders::LargeOccluders>::NEW,
+];
 
 /// The methods of a space, for code that is generic over it.
 pub trait Methods: Space {

@@ -1,4 +1,5 @@
-//! Merging coplanar neighbors of one object and one material into larger convex polygons.
+//! Merging coplanar neighbors into larger convex polygons: for the scene's own faces those of one object and one
+//! material, for occluders whatever their object and material.
 //!
 //! Greedy, in the order of ids: a polygon swallows the neighbor across an edge as long as the two together are
 //! planar and convex by the same test that faces of a file pass. The primitives stay as they are; only
@@ -7,8 +8,8 @@
 use glam::{DVec3, Vec3};
 
 use super::polygon::{Cutter, Shape, newell};
-use super::{Face, Parts, Progress};
-use crate::geometry::{PrimId, Solid};
+use super::{Face, Parts, Progress, Scene};
+use crate::geometry::{Flat, PrimId, Solid, orient2d};
 
 /// Most corners of a merged polygon: more help no method, and bound the work.
 const MAX_CORNERS: usize = 64;
@@ -29,36 +30,75 @@ struct Merger<'a> {
 
 /// Merges; see the module.
 pub(super) fn merge_coplanar(parts: &mut Parts<Solid>, progress: &dyn Progress) {
-    let mut merger = Merger::new(parts);
+    let mut merger = Merger::new(parts, false);
     let before: Vec<usize> = merger.prims.iter().map(Vec::len).collect();
-    for polygon in 0..merger.rings.len() {
-        if polygon % 16_384 == 0 {
-            progress.report(polygon as f32 / merger.rings.len() as f32, "merging coplanar neighbors");
-            if progress.cancelled() {
-                return;
-            }
-        }
-        if merger.into[polygon] == polygon as u32 {
-            while merger.grow(polygon) {}
-        }
+    if !merger.run(progress) {
+        return;
     }
-    let Merger { rings, prims, into, .. } = merger;
-    let mut faces = Vec::new();
-    let mut merged = 0;
-    for (k, (corners, mut prims)) in rings.into_iter().zip(prims).enumerate() {
-        if into[k] == k as u32 && prims.len() > 1 {
-            merged += if prims.len() > before[k] { prims.len() } else { 0 };
-            prims.sort_unstable();
-            faces.push(Face { corners, prims });
-        }
-    }
-    faces.sort_by_key(|f| f.prims[0]);
+    let grown = |k: usize| if merger.prims[k].len() > before[k] { merger.prims[k].len() } else { 0 };
+    let merged = (0..before.len()).map(grown).sum();
+    let mut faces = merger.into_faces();
+    faces.retain(|f| f.prims.len() > 1);
     parts.faces = faces;
     parts.report.merged_prims = merged;
 }
 
+impl Scene<Solid> {
+    /// The live primitives as planar convex polygons, coplanar neighbors merged whatever their object and
+    /// material: what occluders are. Ordered by their first primitive. `None` when cancelled.
+    pub fn convex_polygons(&self, progress: &dyn Progress) -> Option<Vec<Face>> {
+        let mut merger = Merger::new(&self.parts, true);
+        merger.run(progress).then(|| merger.into_faces())
+    }
+}
+
+impl Scene<Flat> {
+    /// The live segments, those merged that continue each other exactly straight on: what occluders are in
+    /// flatland. The first primitive gives the direction. Ordered by their first primitive. `None` when cancelled.
+    pub fn convex_polygons(&self, progress: &dyn Progress) -> Option<Vec<Face>> {
+        progress.report(0.0, "merging collinear segments");
+        let mut next: Vec<(u32, PrimId)> = self.live().iter().filter_map(|&p| Some((self.corners(p)?[0], p))).collect();
+        next.sort_unstable();
+        let mut ends: Vec<u32> = self.live().iter().filter_map(|&p| Some(self.corners(p)?[1])).collect();
+        ends.sort_unstable();
+        let times = |list: &[u32], c: u32| list.partition_point(|e| *e <= c) - list.partition_point(|e| *e < c);
+        // The one segment that goes on from a point at which one segment ends.
+        let follower = |c: u32| {
+            let first = next.partition_point(|e| e.0 < c);
+            let found = next.get(first).filter(|e| e.0 == c)?;
+            let alone = next.get(first + 1).is_none_or(|e| e.0 != c) && times(&ends, c) == 1;
+            alone.then_some(found.1)
+        };
+        let at = |c: u32| self.points()[c as usize].as_dvec2();
+        let goes_on = |[a, b]: [u32; 2], to: u32| orient2d(at(a), at(b), at(to)) == 0.0 && (at(b) - at(a)).dot(at(to) - at(b)) > 0.0;
+        let straight = |p: PrimId| {
+            let corners = self.corners(p)?;
+            let after = follower(corners[1])?;
+            (after != p && goes_on(corners, self.corners(after)?[1])).then_some(after)
+        };
+        let mut continues = vec![false; self.prim_count()];
+        self.live().iter().filter_map(|&p| straight(p)).for_each(|p| continues[p.at()] = true);
+        let heads = self.live().iter().copied().filter(|p| !continues[p.at()]);
+        let face = |head: PrimId| {
+            let mut prims = vec![head];
+            let mut last = head;
+            while let Some(after) = straight(last) {
+                prims.push(after);
+                last = after;
+            }
+            let corners = vec![self.corners(head)?[0], self.corners(last)?[1]];
+            prims.sort_unstable();
+            Some(Face { corners, prims })
+        };
+        let mut faces: Vec<Face> = heads.filter_map(face).collect();
+        faces.sort_by_key(|f| f.prims[0]);
+        Some(faces)
+    }
+}
+
 impl<'a> Merger<'a> {
-    fn new(parts: &'a Parts<Solid>) -> Self {
+    /// All polygons of `parts`; `mixed`: those of different objects and materials merge too.
+    fn new(parts: &'a Parts<Solid>, mixed: bool) -> Self {
         let mut covered = vec![false; parts.prims.len()];
         let mut polygons: Vec<(Vec<u32>, Vec<PrimId>)> = Vec::new();
         for face in &parts.faces {
@@ -71,7 +111,7 @@ impl<'a> Merger<'a> {
             }
         }
         polygons.sort_by_key(|(_, prims)| prims[0]);
-        let kind = |p: PrimId| (parts.prim_object[p.at()].0, parts.prim_material[p.at()].0);
+        let kind = |p: PrimId| if mixed { (0, 0) } else { (parts.prim_object[p.at()].0, parts.prim_material[p.at()].0) };
         let kinds = polygons.iter().map(|(_, prims)| kind(prims[0])).collect();
         let (rings, prims): (Vec<_>, Vec<_>) = polygons.into_iter().unzip();
         let mut edges: Vec<(u32, u32, u32)> = Vec::new();
@@ -81,6 +121,35 @@ impl<'a> Merger<'a> {
         edges.sort_unstable();
         let into = (0..rings.len() as u32).collect();
         Self { points: &parts.points, rings, prims, kinds, edges, into, cutter: Cutter::default(), scratch: Vec::new() }
+    }
+
+    /// Merges what can be merged; whether it was not cancelled.
+    fn run(&mut self, progress: &dyn Progress) -> bool {
+        for polygon in 0..self.rings.len() {
+            if polygon % 16_384 == 0 {
+                progress.report(polygon as f32 / self.rings.len() as f32, "merging coplanar neighbors");
+                if progress.cancelled() {
+                    return false;
+                }
+            }
+            if self.into[polygon] == polygon as u32 {
+                while self.grow(polygon) {}
+            }
+        }
+        true
+    }
+
+    /// The polygons that are left, by their first primitive.
+    fn into_faces(self) -> Vec<Face> {
+        let Self { rings, prims, into, .. } = self;
+        let left = rings.into_iter().zip(prims).enumerate().filter(|(k, _)| into[*k] == *k as u32);
+        let face = |(_, (corners, mut prims)): (usize, (Vec<u32>, Vec<PrimId>))| {
+            prims.sort_unstable();
+            Face { corners, prims }
+        };
+        let mut faces: Vec<Face> = left.map(face).collect();
+        faces.sort_by_key(|f| f.prims[0]);
+        faces
     }
 
     fn root(&mut self, mut polygon: u32) -> u32 {

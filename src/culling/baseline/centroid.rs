@@ -7,8 +7,9 @@
 
 use std::sync::Arc;
 
-use super::explain::{Distance, Evidence, Facing, Tested};
-use super::{backface_knob, prim_faces_away};
+use super::explain::{Distance, Evidence};
+use crate::culling::evidence::{Facing, Tested, middle, prim_faces_away};
+use crate::culling::knobs::backface_knob;
 use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, PrimId, Space, Vector, View};
@@ -119,14 +120,9 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(scene: &Scene<S>, view: &View<S>,
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else {
             watch.event(Event::Line(2));
-            let toward = centroid(scene, prim) - eye;
+            let toward = middle(scene, prim) - eye;
             queue.push((toward.dot(toward), prim));
         }
     }
     queue
-}
-
-/// Mean of a live primitive's corners.
-pub(super) fn centroid<S: Space>(scene: &Scene<S>, prim: PrimId) -> S::Vector {
-    scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32)
 }

@@ -1,15 +1,11 @@
 //! The baselines' evidence: as fields, as sentences and as marks in the world.
 
 use crate::culling::event::Tallied;
-use crate::culling::{Field, Note, Tally, Value};
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
-use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View};
+use crate::culling::evidence::{Facing, Tested, integer, label, middle, number, outline, short};
+use crate::culling::{Field, Note, Tally};
+use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::geometry::{PrimId, Space, View};
 use crate::scene::Scene;
-
-use super::centroid::centroid;
-
-/// Size of labels beside evidence.
-const LABEL_PT: f32 = 8.0;
 
 /// What a baseline records.
 #[derive(Clone, Copy, Debug)]
@@ -20,151 +16,6 @@ pub enum Evidence<S: Space> {
     Facing(Facing),
     /// A primitive's place in the order.
     Distance(Distance<S>),
-}
-
-/// A box was tested against the planes of the frustum.
-#[derive(Clone, Copy, Debug)]
-pub struct Tested<S: Space> {
-    /// Whose box.
-    subject: Subject,
-    bounds: Aabb<S::Vector>,
-    /// The tests in order, up to the first that says outside.
-    tests: [PlaneTest; 6],
-    count: u8,
-    /// Planes that still cut the box; meaningless if outside.
-    cutting: u8,
-    outside: bool,
-}
-
-impl<S: Space> Tested<S> {
-    /// The operands of `frustum.test(bounds, planes)`, which returned `result`.
-    pub fn of(subject: Subject, frustum: &Frustum<S::Vector>, bounds: &Aabb<S::Vector>, planes: u8, result: FrustumTest) -> Self {
-        let mut tested = Self {
-            subject,
-            bounds: *bounds,
-            tests: [PlaneTest { plane: 0, far_corner: 0.0, near_corner: 0.0, error: 0.0 }; 6],
-            count: 0,
-            cutting: if let FrustumTest::Partial(cutting) = result { cutting } else { 0 },
-            outside: matches!(result, FrustumTest::Outside(_)),
-        };
-        for plane in (0..Frustum::<S::Vector>::PLANES).filter(|p| planes >> p & 1 == 1) {
-            let test = frustum.test_plane(plane, bounds);
-            tested.tests[tested.count as usize] = test;
-            tested.count += 1;
-            if test.is_outside() {
-                break;
-            }
-        }
-        tested
-    }
-    fn tests(&self) -> &[PlaneTest] {
-        &self.tests[..self.count as usize]
-    }
-    /// The test that decided: the one that says outside, or else the one with the least margin.
-    fn decisive(&self) -> Option<PlaneTest> {
-        if self.outside { self.tests().last().copied() } else { self.tests().iter().copied().min_by(|a, b| a.near_corner.total_cmp(&b.near_corner)) }
-    }
-    fn name(&self) -> String {
-        match self.subject {
-            Subject::Node(n) => format!("Node {n}"),
-            Subject::Prim(p) => format!("The box of {} {p}", S::PRIM),
-            _ => "The box".into(),
-        }
-    }
-    fn result(&self) -> &'static str {
-        match (self.outside, self.cutting) {
-            (true, _) => "outside",
-            (false, 0) => "inside",
-            (false, _) => "partial",
-        }
-    }
-
-    fn sentence(&self) -> String {
-        let name = self.name();
-        let plane = |t: &PlaneTest| Frustum::<S::Vector>::plane_name(t.plane as usize);
-        match (self.outside, self.cutting, self.decisive()) {
-            (true, _, Some(t)) => format!(
-                "{name} lies outside the {} plane: even its corner that reaches farthest in is {} units outside (rounding could account for {}).",
-                plane(&t),
-                short(-t.far_corner),
-                short(t.error)
-            ),
-            (_, 0, Some(t)) => {
-                format!("{name} lies inside every plane tested; the closest is the {} plane, {} units away.", plane(&t), short(t.near_corner))
-            }
-            (_, 0, None) => format!("{name} lies inside all planes: its parents already did."),
-            _ => {
-                let cut: Vec<_> = self.tests().iter().filter(|t| self.cutting >> t.plane & 1 == 1).map(|t| plane(t).to_owned()).collect();
-                let (plural, verb) = if cut.len() == 1 { ("", "cuts") } else { ("s", "cut") };
-                let cut = match cut.split_last() {
-                    Some((last, [])) => last.clone(),
-                    Some((last, rest)) => format!("{} and {last}", rest.join(", ")),
-                    None => String::new(),
-                };
-                format!("The {cut} plane{plural} {verb} {}: part of it may be in view.", name.to_lowercase())
-            }
-        }
-    }
-
-    fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
-        to.bounds(Layer::Emphasis, Role::Current, self.subject, &self.bounds);
-        let Some(test) = self.decisive() else { return };
-        let frustum = view.frustum();
-        let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
-        let side: &[usize] = match (S::Vector::AXES, test.plane) {
-            (2, 0) => &[0, 2],
-            (2, 1) => &[1, 3],
-            (2, 2) => &[0, 1],
-            (2, _) => &[2, 3],
-            (_, 0) => &[0, 3, 7, 4],
-            (_, 1) => &[1, 2, 6, 5],
-            (_, 2) => &[0, 1, 5, 4],
-            (_, 3) => &[3, 2, 6, 7],
-            (_, 4) => &[0, 1, 2, 3],
-            _ => &[4, 5, 6, 7],
-        };
-        let points: Vec<_> = side.iter().map(|&i| corners[i]).collect();
-        let mark = if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
-        to.push(Layer::Evidence, Role::Evidence, Subject::Plane(test.plane), mark);
-
-        // The corner that decided, and its distance from the plane.
-        let (normal, _) = frustum.plane(test.plane as usize);
-        let inward = if self.outside { normal } else { -normal };
-        let corner = S::Vector::from_fn(|a| if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) });
-        let distance = if self.outside { test.far_corner } else { test.near_corner };
-        let foot = corner - normal * distance;
-        to.line(Layer::Evidence, Role::Evidence, Subject::None, [corner, foot]);
-        to.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Dot { at: corner, radius_pt: 2.5 });
-        label(to, (corner + foot) * 0.5, format!("{} units {}", short(distance.abs()), if distance < 0.0 { "outside" } else { "inside" }));
-    }
-}
-
-/// A primitive was asked whether it faces the eye.
-#[derive(Clone, Copy, Debug)]
-pub struct Facing {
-    prim: PrimId,
-    /// Signed distance of the eye from the primitive's plane, world units; negative behind it.
-    eye_distance: f32,
-}
-
-impl Facing {
-    /// The operands of [`crate::geometry::faces_away`] for a primitive.
-    pub fn of<S: Space>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> Self {
-        let normal = scene.normal(prim);
-        let corner = scene.prim_points(prim).next().unwrap_or_default();
-        Self { prim, eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE) }
-    }
-    fn sentence<S: Space>(&self) -> String {
-        let (side, verdict) = if self.eye_distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
-        format!("The eye is {} units {side} the plane of {} {}, so it faces {verdict} the eye.", short(self.eye_distance.abs()), S::PRIM, self.prim)
-    }
-    fn draw<S: Space>(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
-        outline(scene, self.prim, to);
-        let (center, normal) = (centroid(scene, self.prim), scene.normal(self.prim));
-        let length = 0.25 * (view.eye.position - center).length() / normal.length().max(f32::MIN_POSITIVE);
-        to.push(Layer::Evidence, Role::Evidence, Subject::Prim(self.prim), Mark::Arrow(center, center + normal * length));
-        to.line(Layer::Evidence, Role::Faint, Subject::None, [center, view.eye.position]);
-    }
 }
 
 /// A primitive got its place in the order of centroids.
@@ -180,7 +31,7 @@ pub struct Distance<S: Space> {
 impl<S: Space> Distance<S> {
     /// The operands of the ordering for a primitive at `rank`, of which `budget` are drawn.
     pub fn of(scene: &Scene<S>, prim: PrimId, squared: f32, rank: usize, budget: usize) -> Self {
-        Self { prim, centroid: centroid(scene, prim), distance: squared.sqrt(), rank: rank as u32, budget: budget as u32 }
+        Self { prim, centroid: middle(scene, prim), distance: squared.sqrt(), rank: rank as u32, budget: budget as u32 }
     }
     fn sentence(&self) -> String {
         let (prim, rank, budget) = (self.prim, self.rank + 1, self.budget);
@@ -213,11 +64,8 @@ impl<S: Space> Evidence<S> {
 impl<S: Space> Tallied for Evidence<S> {
     fn tally(&self, tally: &mut Tally) {
         match self {
-            Self::Tested(n) => {
-                tally.add("boxes_tested", 1);
-                tally.add("planes_tested", n.count.into());
-            }
-            Self::Facing(_) => tally.add("orientations_tested", 1),
+            Self::Tested(n) => n.tally(tally),
+            Self::Facing(_) => Facing::tally(tally),
             Self::Distance(_) => tally.add("primitives_sorted", 1),
         }
     }
@@ -226,39 +74,17 @@ impl<S: Space> Tallied for Evidence<S> {
 impl<S: Space> Note<S> for Evidence<S> {
     fn kind(&self) -> &'static str {
         match self {
-            Self::Tested(Tested { subject: Subject::Node(_), .. }) => "NodeClassified",
-            Self::Tested(_) => "PrimClassified",
+            Self::Tested(n) => n.kind(),
             Self::Facing(_) => "OrientationTested",
             Self::Distance(_) => "CentroidRanked",
         }
     }
     fn fields(&self) -> Vec<Field> {
-        let number = |name, v: f32| Field { name, value: Value::Number(v.into()) };
-        let integer = |name, v: u32| Field { name, value: Value::Integer(v.into()) };
         match self {
-            Self::Tested(n) => {
-                let id = match n.subject {
-                    Subject::Prim(p) => integer("prim", p.0),
-                    Subject::Node(id) => integer("node", id.0),
-                    _ => integer("subject", 0),
-                };
-                let list = |f: fn(&PlaneTest) -> f64| Value::List(n.tests().iter().map(f).collect());
-                let planes = n.tests().iter().map(|t| Frustum::<S::Vector>::plane_name(t.plane as usize)).collect::<Vec<_>>().join(" ");
-                let axes = |v: S::Vector| Value::List((0..S::Vector::AXES).map(|a| v.get(a).into()).collect());
-                vec![
-                    id,
-                    Field { name: "result", value: Value::Word(n.result().into()) },
-                    Field { name: "planes", value: Value::Word(planes) },
-                    Field { name: "far_corner_units", value: list(|t| t.far_corner.into()) },
-                    Field { name: "near_corner_units", value: list(|t| t.near_corner.into()) },
-                    Field { name: "error_units", value: list(|t| t.error.into()) },
-                    Field { name: "box_min", value: axes(n.bounds.min) },
-                    Field { name: "box_max", value: axes(n.bounds.max) },
-                ]
-            }
-            Self::Facing(n) => vec![integer("prim", n.prim.0), number("eye_distance_units", n.eye_distance)],
+            Self::Tested(n) => n.fields(),
+            Self::Facing(n) => n.fields(),
             Self::Distance(n) => {
-                vec![integer("prim", n.prim.0), number("distance_units", n.distance), integer("rank", n.rank), integer("budget", n.budget)]
+                vec![integer("prim", n.prim.0), number("distance_units", n.distance.into()), integer("rank", n.rank), integer("budget", n.budget)]
             }
         }
     }
@@ -268,26 +94,5 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence::<S>(),
             Self::Distance(n) => n.sentence(),
         }
-    }
-}
-
-fn outline<S: Space>(scene: &Scene<S>, prim: PrimId, to: &mut Drawing<S::Vector>) {
-    let points: Vec<_> = scene.prim_points(prim).collect();
-    to.outline(Layer::Emphasis, Role::Current, Subject::Prim(prim), points);
-}
-
-fn label<V>(to: &mut Drawing<V>, at: V, text: String) {
-    let mark = Mark::Text { at, text, size_pt: LABEL_PT, anchor: Anchor::Start, font: Font::Regular };
-    to.push(Layer::Labels, Role::Evidence, Subject::None, mark);
-}
-
-/// A length with as many digits as a person reads.
-fn short(v: f32) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e5).contains(&a) => format!("{v:.1e}"),
-        a if a < 1.0 => format!("{v:.3}"),
-        a if a < 100.0 => format!("{v:.2}"),
-        _ => format!("{v:.0}"),
     }
 }

@@ -9,8 +9,9 @@
 
 use std::sync::Arc;
 
-use super::explain::{Evidence, Facing, Tested};
-use super::{backface_knob, prim_faces_away};
+use super::explain::Evidence;
+use crate::culling::evidence::{Facing, Tested, prim_faces_away};
+use crate::culling::knobs::backface_knob;
 use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, NodeId, Space, View};

@@ -5,8 +5,9 @@
 
 use std::sync::Arc;
 
-use super::explain::{Evidence, Facing};
-use super::{backface_knob, prim_faces_away};
+use super::explain::Evidence;
+use crate::culling::evidence::{Facing, prim_faces_away};
+use crate::culling::knobs::backface_knob;
 use crate::culling::{Card, CodeLine, DrawList, Event, Knobs, Method, Observer, Verdict};
 use crate::drawing::Drawing;
 use crate::geometry::{Space, View};

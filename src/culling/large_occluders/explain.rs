@@ -1,0 +1,415 @@
+//! The evidence of this method: as fields, as sentences, and as marks in the world.
+
+use super::Index;
+use super::joint::{Candidate, Members};
+use super::memory::Owner;
+use super::occluders::Occluders;
+use super::relation::{Classified, Decisive, Margin, Occlusion, Planes, Relation, Sight};
+use super::space::{Point, Shape, corner};
+use crate::culling::event::Tallied;
+use crate::culling::evidence::{Facing, Tested, integer, label, number, short};
+use crate::culling::{Field, Note, Tally, Value};
+use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::geometry::{Aabb, PrimId, Vector, View};
+use crate::scene::Scene;
+
+/// What the method records.
+#[derive(Clone, Copy, Debug)]
+pub enum Evidence<S: Shape> {
+    /// An occluder is active in this frame.
+    Chosen(Chosen),
+    /// A box against the frustum.
+    Tested(Tested<S>),
+    /// A box against one occluder.
+    Related(Related),
+    /// A box against connected occluders together.
+    Joined(Joined),
+    /// A primitive's orientation.
+    Facing(Facing),
+}
+
+/// An occluder was chosen for the eye's leaf and direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen {
+    occluder: u32,
+    name: PrimId,
+    rank: u32,
+    area_angle: f32,
+    leaf: u32,
+    direction: u32,
+    /// Not in the set of the frame before.
+    new: bool,
+}
+
+impl Chosen {
+    /// An occluder of a list with its rank there.
+    pub fn of<S: Shape>(occluders: &Occluders<S>, id: u32, rank: usize, area_angle: f32, [leaf, direction]: [u32; 2], new: bool) -> Self {
+        Self { occluder: id, name: occluders.name(id), rank: rank as u32, area_angle, leaf, direction, new }
+    }
+}
+
+/// A box was classified against an occluder.
+#[derive(Clone, Copy, Debug)]
+pub struct Related {
+    owner: Owner,
+    occluder: u32,
+    name: PrimId,
+    side: i8,
+    occlusion: Occlusion,
+    inside: u64,
+    edges: u8,
+    /// The planes were kept from an earlier frame.
+    reused: bool,
+    /// Distances of the box's nearest and farthest corner behind the occluder, and of the eye before it.
+    behind: [f64; 2],
+    height: f64,
+    /// The test that decided.
+    decisive: Decisive,
+}
+
+impl Related {
+    /// The operands of a classification.
+    #[allow(clippy::too_many_arguments)]
+    pub fn of<S: Shape>(
+        occluders: &Occluders<S>,
+        owner: Owner,
+        relation: &Relation<S>,
+        sight: &Sight<S>,
+        seen: Classified,
+        depth: f64,
+        margin: Margin,
+        reused: bool,
+    ) -> Self {
+        Self {
+            owner,
+            occluder: relation.occluder,
+            name: occluders.name(relation.occluder),
+            side: relation.side,
+            occlusion: seen.occlusion,
+            inside: seen.inside,
+            edges: relation.planes.len() as u8,
+            reused,
+            behind: relation.behind,
+            height: sight.height,
+            decisive: relation.decisive(sight, seen, depth, margin),
+        }
+    }
+    fn result(&self) -> &'static str {
+        match self.occlusion {
+            Occlusion::None => "none",
+            Occlusion::Partial => "partial",
+            Occlusion::Full => "full",
+        }
+    }
+
+    fn sentence<S: Shape>(&self) -> String {
+        let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
+        let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
+        let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
+        let d = self.decisive;
+        let why = match self.occlusion {
+            Occlusion::None if self.behind[1] <= 0.0 => format!("{who} lies wholly on the eye's side of {by}: no occlusion."),
+            Occlusion::None => format!(
+                "The eye is outside a separating {plane} of {by} and {who}, by {} units: no part of the one is behind the other.",
+                short(-d.distance as f32)
+            ),
+            Occlusion::Partial if self.behind[0] <= 0.0 => {
+                format!("The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial occlusion.")
+            }
+            Occlusion::Partial if d.distance < 0.0 => format!(
+                "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, by {} units: partial occlusion.",
+                short(-d.distance as f32)
+            ),
+            Occlusion::Partial => format!(
+                "{who} is behind {by} by less than the margin that pixels need (inside by {} units, {} needed): partial occlusion.",
+                short(d.distance as f32),
+                short(d.needed as f32)
+            ),
+            Occlusion::Full => format!(
+                "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {} units, where {} are needed: full occlusion.",
+                self.edges,
+                short(d.distance as f32),
+                short(d.needed as f32)
+            ),
+        };
+        let mut why = why + kept;
+        if let Some(first) = why.get_mut(..1) {
+            first.make_ascii_uppercase();
+        }
+        why
+    }
+}
+
+/// Connected occluders were found to hide a box together.
+#[derive(Clone, Copy, Debug)]
+pub struct Joined {
+    owner: Owner,
+    count: u32,
+    candidates: u32,
+    /// The first of them, and how many edges cancelled.
+    members: [u32; MEMBERS],
+    shared: u32,
+}
+
+/// Members of a joint set that a note names.
+const MEMBERS: usize = 16;
+
+impl Joined {
+    /// The members of a set that [`super::jointly`] found.
+    pub fn of<S: Shape>(occluders: &Occluders<S>, owner: Owner, candidates: &[Candidate], members: Members) -> Self {
+        let mut joined = Self { owner, count: 0, candidates: candidates.len() as u32, members: [0; MEMBERS], shared: 0 };
+        for (_, candidate) in candidates.iter().enumerate().filter(|(i, _)| members >> i & 1 == 1) {
+            if let Some(to) = joined.members.get_mut(joined.count as usize) {
+                *to = candidate.occluder;
+            }
+            joined.count += 1;
+            joined.shared += (occluders.keys(candidate.occluder).len() as u32).saturating_sub(candidate.seen.inside.count_ones());
+        }
+        joined
+    }
+    fn members(&self) -> &[u32] {
+        &self.members[..(self.count as usize).min(MEMBERS)]
+    }
+}
+
+/// The method's private state at a step: what is active, and who culled what.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    active: Vec<u32>,
+    culled: Vec<(Owner, u32)>,
+}
+
+fn owner_name(owner: Owner) -> String {
+    match owner {
+        Owner::Node(n) => format!("node {n}"),
+        Owner::Object(o) => format!("object {o}"),
+    }
+}
+
+fn owner_field(owner: Owner) -> Field {
+    match owner {
+        Owner::Node(n) => integer("node", n.0),
+        Owner::Object(o) => integer("object", o.0),
+    }
+}
+
+fn owner_subject(owner: Owner) -> Subject {
+    match owner {
+        Owner::Node(n) => Subject::Node(n),
+        Owner::Object(o) => Subject::Object(o),
+    }
+}
+
+impl<S: Shape> Evidence<S> {
+    /// Changes the state that [`draw`] shows.
+    pub fn apply(&self, seen: &mut Seen) {
+        match self {
+            Self::Chosen(n) => seen.active.push(n.occluder),
+            Self::Related(n) if n.occlusion == Occlusion::Full => seen.culled.push((n.owner, n.occluder)),
+            Self::Joined(n) => seen.culled.extend(n.members().iter().map(|&o| (n.owner, o))),
+            _ => {}
+        }
+    }
+}
+
+impl<S: Shape> Tallied for Evidence<S> {
+    fn tally(&self, tally: &mut Tally) {
+        match self {
+            Self::Chosen(n) => {
+                tally.add("occluders_active", 1);
+                tally.add("occluders_exchanged", n.new.into());
+            }
+            Self::Tested(n) => n.tally(tally),
+            Self::Related(n) => {
+                tally.add("occluders_tested", 1);
+                tally.add("relations_reused", n.reused.into());
+                tally.add("relations_made", (!n.reused).into());
+                tally.add(if matches!(n.owner, Owner::Node(_)) { "node_tests" } else { "object_tests" }, 1);
+            }
+            Self::Joined(_) => tally.add("joint_occlusions", 1),
+            Self::Facing(_) => Facing::tally(tally),
+        }
+    }
+}
+
+impl<S: Shape> Note<S> for Evidence<S> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Chosen(_) => "OccluderChosen",
+            Self::Tested(n) => n.kind(),
+            Self::Related(_) => "OcclusionTested",
+            Self::Joined(_) => "JointlyOccluded",
+            Self::Facing(_) => "OrientationTested",
+        }
+    }
+    fn fields(&self) -> Vec<Field> {
+        let switch = |name, v| Field { name, value: Value::Switch(v) };
+        match self {
+            Self::Chosen(n) => vec![
+                integer("prim", n.name.0),
+                integer("occluder", n.occluder),
+                integer("rank", n.rank),
+                number("area_angle", n.area_angle.into()),
+                integer("leaf", n.leaf),
+                integer("direction", n.direction),
+                switch("new", n.new),
+            ],
+            Self::Tested(n) => n.fields(),
+            Self::Related(n) => vec![
+                owner_field(n.owner),
+                integer("occluder", n.occluder),
+                integer("occluder_prim", n.name.0),
+                Field { name: "occlusion", value: Value::Word(n.result().into()) },
+                switch("reused", n.reused),
+                Field { name: "eye_side", value: Value::Word(if n.side > 0 { "front" } else { "back" }.into()) },
+                number("eye_height_units", n.height),
+                number("box_nearest_behind_units", n.behind[0]),
+                number("box_farthest_behind_units", n.behind[1]),
+                integer("edge", n.decisive.edge.into()),
+                integer("tangent_corner", n.decisive.vertex.into()),
+                number("eye_distance_units", n.decisive.distance),
+                number("needed_units", n.decisive.needed),
+                number("margin_units", n.decisive.distance - n.decisive.needed),
+                Field { name: "supporting_satisfied", value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)) },
+            ],
+            Self::Joined(n) => vec![
+                owner_field(n.owner),
+                integer("members", n.count),
+                Field { name: "occluders", value: Value::List(n.members().iter().map(|&m| m.into()).collect()) },
+                integer("partial_occluders", n.candidates),
+                integer("shared_edges_ignored", n.shared),
+            ],
+            Self::Facing(n) => n.fields(),
+        }
+    }
+    fn sentence(&self, _: &Scene<S>) -> String {
+        match self {
+            Self::Chosen(n) => format!(
+                "The occluder of {} {} is active, number {} by area-angle ({}) seen from leaf {} in direction {}{}.",
+                S::PRIM,
+                n.name,
+                n.rank + 1,
+                short(n.area_angle),
+                n.leaf,
+                n.direction,
+                if n.new { "; it was not in the frame before" } else { "" }
+            ),
+            Self::Tested(n) => n.sentence(),
+            Self::Related(n) => n.sentence::<S>(),
+            Self::Joined(n) => format!(
+                "{} connected occluders hide {} together: the eye is inside all their supporting planes but the {} through edges that they share from opposite sides.",
+                n.count,
+                owner_name(n.owner),
+                n.shared
+            ),
+            Self::Facing(n) => n.sentence::<S>(),
+        }
+    }
+}
+
+/// Draws the active occluders, and the evidence of a note.
+pub fn draw<S: Shape>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    for &id in &seen.active {
+        outline(index, id, Layer::Evidence, Role::Occluder, to);
+    }
+    match note {
+        Some(Evidence::Tested(n)) => n.draw(view, to),
+        Some(Evidence::Facing(n)) => n.draw(scene, view, to),
+        Some(Evidence::Chosen(n)) => {
+            outline(index, n.occluder, Layer::Emphasis, Role::Current, to);
+            let center = S::rounded(index.occluders.get(n.occluder).center);
+            to.line(Layer::Evidence, Role::Evidence, Subject::Prim(n.name), [view.eye.position, center]);
+            label(to, (view.eye.position + center) * 0.5, format!("area-angle {}", short(n.area_angle)));
+        }
+        Some(Evidence::Related(n)) => draw_relation(n, index, view, to),
+        Some(Evidence::Joined(n)) => {
+            to.bounds(Layer::Emphasis, Role::Current, owner_subject(n.owner), &index.bounds_of(n.owner));
+            for &id in n.members() {
+                outline(index, id, Layer::Emphasis, Role::Occluder, to);
+            }
+            shadow(n, index, view, to);
+        }
+        None => {}
+    }
+}
+
+fn outline<S: Shape>(index: &Index<S>, id: u32, layer: Layer, role: Role, to: &mut Drawing<S::Vector>) {
+    let points = index.occluders.outline(id);
+    let subject = Subject::Prim(index.occluders.name(id));
+    if points.len() == 2 {
+        to.line(layer, role, subject, points);
+    } else {
+        to.outline(layer, role, subject, points);
+    }
+}
+
+/// The border lines of what a set hides: from the eye past the members' corners to behind the box.
+fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    let bounds = index.bounds_of(note.owner);
+    let eye = view.eye.position;
+    let reach = bounds.corners().map(|c| (c - eye).length()).fold(0.0, f32::max);
+    for &id in note.members() {
+        for corner in index.occluders.outline(id) {
+            let ray = corner - eye;
+            let far = eye + ray * (reach / ray.length().max(f32::MIN_POSITIVE));
+            to.line(Layer::Evidence, Role::Faint, Subject::None, [corner, far]);
+        }
+    }
+}
+
+fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    let bounds = index.bounds_of(note.owner);
+    to.bounds(Layer::Emphasis, Role::Current, owner_subject(note.owner), &bounds);
+    outline(index, note.occluder, Layer::Emphasis, Role::Occluder, to);
+    // The same function that the run called; it depends on nothing but its arguments.
+    let relation = Relation::new(&index.occluders, note.occluder, note.side, &bounds, false);
+    for (i, planes) in relation.planes.iter().enumerate() {
+        let Planes::Tangent([supporting, separating]) = planes else { continue };
+        let decisive = i == note.decisive.edge as usize;
+        draw_plane::<S>(index, note, i, supporting.vertex, if decisive { Role::Evidence } else { Role::Faint }, view, &bounds, to);
+        if S::Vector::AXES == 2 && note.occlusion != Occlusion::Full {
+            draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
+        }
+    }
+    let d = note.decisive;
+    if note.behind[1] > 0.0 && d.needed.is_finite() {
+        let side = if d.distance < 0.0 { "outside" } else { "inside" };
+        label(to, view.eye.position, format!("{} units {side}", short(d.distance.abs() as f32)));
+    }
+}
+
+/// A plane through an edge and a corner of the box, from the box past the edge toward the eye: a line in flatland, in
+/// space the triangle between the corner and the edge, drawn out.
+#[allow(clippy::too_many_arguments)]
+fn draw_plane<S: Shape>(
+    index: &Index<S>,
+    note: &Related,
+    edge: usize,
+    vertex: u8,
+    role: Role,
+    view: &View<S>,
+    bounds: &Aabb<S::Vector>,
+    to: &mut Drawing<S::Vector>,
+) {
+    let at = corner::<S>(bounds, vertex);
+    let ends = index.occluders.edges(note.occluder);
+    let flat = S::Vector::AXES == 2;
+    let ends = if flat { vec![ends[edge].from] } else { vec![ends[edge].from, ends[(edge + 1) % ends.len()].from] };
+    let reach = (S::widened(view.eye.position) - at).length() * 1.15;
+    let drawn_out = |p: S::Point| {
+        let ray = p - at;
+        let length = ray.length().max(f64::MIN_POSITIVE);
+        S::rounded(at + ray * (reach.max(length) / length))
+    };
+    let mut points = vec![S::rounded(at)];
+    points.extend(ends.iter().map(|&e| drawn_out(e)));
+    let subject = owner_subject(note.owner);
+    if flat {
+        to.line(Layer::Evidence, role, subject, points);
+    } else if role == Role::Evidence {
+        to.push(Layer::Evidence, role, subject, Mark::Area(points));
+    } else {
+        to.outline(Layer::Evidence, role, subject, points);
+    }
+    to.push(Layer::Evidence, role, subject, Mark::Dot { at: S::rounded(at), radius_pt: 2.0 });
+}

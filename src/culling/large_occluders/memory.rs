@@ -1,0 +1,150 @@
+//! What is kept from frame to frame (Section 3): the relations of nodes and detail objects to occluders.
+//!
+//! A relation holds as long as the eye stays on one side of the occluder, so it is checked and not computed
+//! again. Those below a node that is decided as a whole are forgotten; those outside the frustum are kept.
+//! At most [`KEPT`] relations a node are kept, so memory is bounded by the tree and not by the length of a walk.
+
+use super::relation::{Relation, Sight};
+use super::space::Shape;
+use crate::geometry::{NodeId, ObjectId};
+use crate::index::KdTree;
+
+/// Relations that one node or object keeps at most, twice the largest set of active occluders: one set for the
+/// way a walker looks and one for where it looked before.
+const KEPT: usize = 128;
+
+/// See the module. Made for one scene and its parameters.
+#[derive(Clone, Debug)]
+pub struct Memory<S: Shape> {
+    nodes: Vec<Vec<Relation<S>>>,
+    objects: Vec<Vec<Relation<S>>>,
+    /// Whether a node or one below it keeps anything.
+    below: Vec<bool>,
+    /// The occluders in use, best first.
+    pub active: Vec<u32>,
+    /// The leaf and direction that they were chosen for.
+    pub chosen_for: Option<(NodeId, u32)>,
+    /// How the eye of this frame sees each occluder it was asked about.
+    sights: Vec<Option<Box<Sight<S>>>>,
+    seen: Vec<u32>,
+    pub joint: super::joint::Scratch,
+    /// Objects that keep relations, in no order that matters.
+    asked: Vec<ObjectId>,
+    /// What this frame found out about each detail object.
+    pub hidden: Vec<Option<bool>>,
+}
+
+impl<S: Shape> Default for Memory<S> {
+    fn default() -> Self {
+        Self {
+            nodes: Vec::new(),
+            objects: Vec::new(),
+            below: Vec::new(),
+            active: Vec::new(),
+            chosen_for: None,
+            sights: Vec::new(),
+            seen: Vec::new(),
+            joint: super::joint::Scratch::default(),
+            asked: Vec::new(),
+            hidden: Vec::new(),
+        }
+    }
+}
+
+/// Whose relations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    Node(NodeId),
+    Object(ObjectId),
+}
+
+impl<S: Shape> Memory<S> {
+    /// Begins a frame: earlier sights are stale, relations are not.
+    pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize) {
+        self.nodes.resize_with(nodes, Vec::new);
+        self.below.resize(nodes, false);
+        self.objects.resize_with(objects, Vec::new);
+        self.sights.resize_with(occluders, || None);
+        self.seen.drain(..).for_each(|id| self.sights[id as usize] = None);
+        self.hidden.resize(objects, None);
+        // Objects that the last frame did not ask about are out of the calculation.
+        let (hidden, kept) = (&mut self.hidden, &mut self.objects);
+        self.asked.retain(|object| {
+            let asked = hidden[object.at()].take().is_some();
+            if !asked {
+                kept[object.at()] = Vec::new();
+            }
+            asked
+        });
+        hidden.fill(None);
+    }
+    /// How the eye sees an occluder, computed at the first question of a frame.
+    pub fn sight(&mut self, id: u32, make: impl FnOnce() -> Sight<S>) {
+        if self.sights[id as usize].is_none() {
+            self.sights[id as usize] = Some(Box::new(make()));
+            self.seen.push(id);
+        }
+    }
+    /// What [`Memory::sight`] computed.
+    pub fn sight_of(&self, id: u32) -> Option<&Sight<S>> {
+        self.sights[id as usize].as_deref()
+    }
+    /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look first.
+    pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {
+        let kept = self.of(owner);
+        let fits = |r: &Relation<S>| r.occluder == occluder && r.side == side;
+        let n = kept.len();
+        (near..n).chain(0..near.min(n)).find(|&i| fits(&kept[i]))
+    }
+    /// A kept relation.
+    pub fn get(&self, owner: Owner, at: usize) -> &Relation<S> {
+        &self.of(owner)[at]
+    }
+    fn of(&self, owner: Owner) -> &Vec<Relation<S>> {
+        match owner {
+            Owner::Node(n) => &self.nodes[n.at()],
+            Owner::Object(o) => &self.objects[o.at()],
+        }
+    }
+    /// Keeps a relation in place of one for the other side; returns where it is.
+    pub fn keep(&mut self, owner: Owner, relation: Relation<S>) -> usize {
+        let kept = match owner {
+            Owner::Node(n) => {
+                self.below[n.at()] = true;
+                &mut self.nodes[n.at()]
+            }
+            Owner::Object(o) => {
+                if self.objects[o.at()].is_empty() {
+                    self.asked.push(o);
+                }
+                &mut self.objects[o.at()]
+            }
+        };
+        if let Some(at) = kept.iter().position(|r| r.occluder == relation.occluder) {
+            kept[at] = relation;
+            return at;
+        }
+        if kept.len() >= KEPT {
+            // The oldest half goes: what is in use will be kept again.
+            kept.drain(..KEPT / 2);
+        }
+        kept.push(relation);
+        kept.len() - 1
+    }
+    /// A node on the way down keeps something below it.
+    pub fn passed(&mut self, node: NodeId) {
+        self.below[node.at()] = true;
+    }
+    /// Forgets what is kept below a node (and not at it), since it was decided as a whole.
+    pub fn forget_below(&mut self, tree: &KdTree<S::Vector>, node: NodeId) {
+        if !self.below[node.at()] {
+            return;
+        }
+        let Some(children) = tree.nodes()[node.at()].children() else { return };
+        for child in children {
+            self.forget_below(tree, child);
+            self.nodes[child.at()].clear();
+            self.below[child.at()] = false;
+        }
+    }
+}

@@ -1,0 +1,511 @@
+//! `large-occluders`: conservative occlusion culling by a few large convex polygons.
+//!
+//! Coorg and Teller, "Real-Time Occlusion Culling for Models with Large Occluders", I3D 1997,
+//! <https://doi.org/10.1145/253284.253312>. A kD-tree is walked from the root (Figure 9); each node's box is
+//! tested against a small set of occluders by supporting and separating planes (Section 2, [`relation`]), one by one
+//! and as connected sets ([`joint`]); only those that partially occlude a node are passed to its children. The set is
+//! chosen by place and viewing direction (Section 3.1, [`selection`]); the planes are kept from frame to frame
+//! (Section 3, [`memory`]); what survives is tested object by object against the occluders near it (Section 3.2).
+//!
+//! Departures: occlusion is demanded with a margin, so that it also holds for the pixels of the rasterizer (see
+//! [`relation`]); where an occluder's own plane cuts a box the relation is partial, not none, since what
+//! lies behind it can be occluded; the jointly occluding set need not be a whole component (see [`joint`]).
+//! Cost: O(occluders · nodes visited); memory O(nodes · occluders).
+
+mod explain;
+mod joint;
+mod memory;
+mod occluders;
+mod relation;
+mod saved;
+mod selection;
+mod space;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use self::explain::{Chosen, Evidence, Joined, Related};
+use self::joint::{Candidate, jointly};
+use self::memory::{Memory, Owner};
+use self::occluders::Occluders;
+use self::relation::{Margin, Occlusion, Relation, Sight};
+use self::selection::{Selection, leaf_at};
+use self::space::Shape;
+use crate::culling::evidence::{Facing, Tested, prim_faces_away};
+use crate::culling::knobs::backface_knob;
+use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
+use crate::drawing::{Drawing, Subject};
+use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Space, Vector, View};
+use crate::index::{Hierarchy, KdTree};
+use crate::scene::{Part, Progress, Scene};
+
+/// The method.
+pub struct LargeOccluders;
+
+/// Parameters of [`LargeOccluders`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    tree_height: u32,
+    occluders: u32,
+    directions: u32,
+    marginal_gain: u32,
+    cache: bool,
+    detail_objects: bool,
+    backface_culling: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        // The paper's: height 8, 32 occluders for each of 8 directions.
+        Self { tree_height: 8, occluders: 32, directions: 8, marginal_gain: 0, cache: true, detail_objects: true, backface_culling: false }
+    }
+}
+
+/// What is built once: the kD-tree, the occluders that any place can choose, and which each chooses.
+#[derive(Clone, Debug)]
+pub struct Index<S: Shape> {
+    tree: KdTree<S::Vector>,
+    occluders: Occluders<S>,
+    selection: Selection,
+    /// Bounds of each object that is small enough to be tested as a whole.
+    details: Vec<Option<Aabb<S::Vector>>>,
+}
+
+/// The most that a detail object measures, as a share of the scene's diagonal.
+const DETAIL_SHARE: f32 = 0.05;
+/// The fewest primitives that are worth a test of their own.
+const DETAIL_PRIMS: u32 = 4;
+
+impl<S: Shape> Index<S> {
+    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+        progress.report(0.0, "building the kD-tree");
+        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
+        let tree = KdTree::build(boxes, params.tree_height, || progress.cancelled())?;
+        let faces = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 })?;
+        let all = Occluders::new(scene, &faces);
+        let rest = Part { whole: progress, start: 0.4, length: 0.55 };
+        let gain = f64::from(params.marginal_gain) / 100.0;
+        let selection = Selection::new(&tree, &all, [params.directions, params.occluders], gain, &rest)?;
+        // Only what some list names can ever be active.
+        let kept = selection.named();
+        let faces: Vec<_> = kept.iter().map(|&id| faces[all.get(id).source as usize].clone()).collect();
+        let occluders = Occluders::new(scene, &faces);
+        Some(Self { tree, occluders, selection: selection.renumbered(&kept), details: details(scene) })
+    }
+    /// The box that a test was about.
+    fn bounds_of(&self, owner: Owner) -> Aabb<S::Vector> {
+        match owner {
+            Owner::Node(n) => self.tree.nodes()[n.at()].bounds,
+            Owner::Object(o) => self.details[o.at()].unwrap_or(Aabb::empty()),
+        }
+    }
+}
+
+/// Bounds of the objects that count as details (Section 3.2).
+fn details<S: Space>(scene: &Scene<S>) -> Vec<Option<Aabb<S::Vector>>> {
+    let mut found = vec![(0, Aabb::empty()); scene.objects().len()];
+    for &prim in scene.live() {
+        let (count, bounds) = &mut found[scene.object_of(prim).at()];
+        *count += 1;
+        *bounds = bounds.union(scene.prim_bounds(prim));
+    }
+    let most = scene.bounds().diagonal() * DETAIL_SHARE;
+    found.into_iter().map(|(count, bounds)| (count >= DETAIL_PRIMS && bounds.diagonal() <= most).then_some(bounds)).collect()
+}
+
+impl<S: Shape> Hierarchy<S> for Index<S> {
+    fn node_count(&self) -> usize {
+        self.tree.nodes().len()
+    }
+    fn bounds(&self, node: NodeId) -> Aabb<S::Vector> {
+        self.tree.nodes()[node.at()].bounds
+    }
+    fn parent(&self, node: NodeId) -> Option<NodeId> {
+        Hierarchy::<S>::parent(&self.tree, node)
+    }
+    fn children(&self, node: NodeId) -> Range<u32> {
+        Hierarchy::<S>::children(&self.tree, node)
+    }
+    fn level(&self, node: NodeId) -> u32 {
+        Hierarchy::<S>::level(&self.tree, node)
+    }
+    fn prims(&self, node: NodeId) -> &[PrimId] {
+        self.tree.prims_below(node)
+    }
+    fn bytes(&self) -> usize {
+        Hierarchy::<S>::bytes(&self.tree)
+            + self.occluders.bytes()
+            + self.selection.bytes()
+            + self.details.len() * size_of::<Option<Aabb<S::Vector>>>()
+    }
+}
+
+const CODE: &[CodeLine] = &[
+    CodeLine { label: "Select:1", text: "S := the occluders chosen for P's leaf and direction" },
+    CodeLine { label: "Visible:1", text: "Visible(occluders S, node T, viewpoint P)" },
+    CodeLine { label: "Visible:2", text: "  if T lies outside the view frustum" },
+    CodeLine { label: "Visible:3", text: "    return" },
+    CodeLine { label: "Visible:4", text: "  TestOcclusion(S, T, P)" },
+    CodeLine { label: "Visible:5", text: "  if S does not occlude T" },
+    CodeLine { label: "Visible:6", text: "    Gather(T)" },
+    CodeLine { label: "Visible:7", text: "  else if T is occluded" },
+    CodeLine { label: "Visible:8", text: "    return" },
+    CodeLine { label: "Visible:9", text: "  else if T is a leaf" },
+    CodeLine { label: "Visible:10", text: "    Gather(T)" },
+    CodeLine { label: "Visible:11", text: "  else" },
+    CodeLine { label: "Visible:12", text: "    S' := those of S that partially occlude T" },
+    CodeLine { label: "Visible:13", text: "    for each child T' of T: Visible(S', T', P)" },
+    CodeLine { label: "TestOcclusion:1", text: "TestOcclusion(S, T, P)" },
+    CodeLine { label: "TestOcclusion:2", text: "  for each A of S" },
+    CodeLine { label: "TestOcclusion:3", text: "    planes of A and T: kept ones, or made" },
+    CodeLine { label: "TestOcclusion:4", text: "    if P satisfies all supporting planes" },
+    CodeLine { label: "TestOcclusion:5", text: "      T is occluded by A" },
+    CodeLine { label: "TestOcclusion:6", text: "    else if P satisfies all separating planes" },
+    CodeLine { label: "TestOcclusion:7", text: "      A partially occludes T" },
+    CodeLine { label: "TestOcclusion:8", text: "  if connected partial occluders jointly occlude T" },
+    CodeLine { label: "TestOcclusion:9", text: "    T is occluded by them" },
+    CodeLine { label: "Gather:1", text: "Gather(T)" },
+    CodeLine { label: "Gather:2", text: "  for each detail object D of T" },
+    CodeLine { label: "Gather:3", text: "    TestOcclusion(occluders near D, D, P)" },
+    CodeLine { label: "Gather:4", text: "  draw all of T but the occluded objects" },
+];
+
+/// Numbers of the lines that events refer to.
+mod line {
+    pub const SELECT: u8 = 0;
+    pub const OUTSIDE: u8 = 3;
+    pub const TEST: u8 = 4;
+    pub const GATHER: u8 = 6;
+    pub const OCCLUDED: u8 = 8;
+    pub const LEAF: u8 = 10;
+    pub const CHILD: u8 = 13;
+    pub const FULL: u8 = 18;
+    pub const PARTIAL: u8 = 20;
+    pub const JOINT: u8 = 22;
+    pub const DETAIL: u8 = 25;
+}
+
+/// A parameter.
+fn knob(name: &'static str, unit: &'static str, meaning: &'static str, source: &'static str) -> Knob {
+    Knob { name, unit, meaning, source }
+}
+
+impl<S: Shape> Method<S> for LargeOccluders {
+    type Params = Params;
+    type Index = Index<S>;
+    type Memory = Memory<S>;
+    type Note = Evidence<S>;
+    type Dense = explain::Seen;
+    const CARD: Card = Card {
+        key: "large-occluders",
+        name: "Large occluders",
+        summary: "Drops every node of a kD-tree that one large convex polygon, or connected ones together, hide from the Eye.",
+        paper: "Coorg and Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997.",
+        doi: "10.1145/253284.253312",
+        conservative: true,
+        code: CODE,
+    };
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let height = knob("tree-height", "levels", "levels of the kD-tree; 8 gives 255 nodes", "Coorg and Teller 1997, Section 4");
+        knobs.integer(height, 1..=24, &mut params.tree_height);
+        let most = knob("occluders", "", "how many occluders are active at most, k in the paper", "Coorg and Teller 1997, Section 3.1");
+        knobs.integer(most, 1..=64, &mut params.occluders);
+        let directions = knob("directions", "", "viewing directions that have a set of their own", "Coorg and Teller 1997, Section 3.1");
+        knobs.integer(directions, 1..=64, &mut params.directions);
+        let meaning = "leaves out an occluder whose area-angle is below this share of the sum of the better ones; 0: never";
+        knobs.integer(knob("marginal-gain", "%", meaning, "Coorg and Teller 1997, Section 5"), 0..=100, &mut params.marginal_gain);
+        let cache = knob("cache", "", "keeps planes from frame to frame", "Coorg and Teller 1997, Section 3");
+        knobs.switch(cache, &mut params.cache);
+        let detail =
+            knob("detail-objects", "", "tests what survives object by object against the occluders near it", "Coorg and Teller 1997, Section 3.2");
+        knobs.switch(detail, &mut params.detail_objects);
+        backface_knob(knobs, &mut params.backface_culling);
+    }
+    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Index<S>> {
+        Index::build(scene, params, progress)
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        index: &Index<S>,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Params,
+        memory: &mut Memory<S>,
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        memory.begin(index.tree.nodes().len(), index.details.len(), index.occluders.len());
+        let forward = S::widened(view.eye.forward());
+        let mut walk = Walk {
+            index,
+            scene,
+            view,
+            params,
+            memory,
+            out,
+            watch,
+            frustum: view.frustum(),
+            eye: S::widened(view.eye.position),
+            forward,
+            margin: Margin::of(view),
+            sets: Vec::new(),
+            candidates: Vec::new(),
+        };
+        walk.select();
+        let active = 0..walk.sets.len();
+        walk.visible(NodeId(0), Frustum::<S::Vector>::ALL, active);
+    }
+    fn dense(_: &Scene<S>, _: &View<S>) -> explain::Seen {
+        explain::Seen::default()
+    }
+    fn apply(dense: &mut explain::Seen, _: &Scene<S>, note: &Evidence<S>) {
+        note.apply(dense);
+    }
+    fn explain(dense: &explain::Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+        explain::draw(dense, scene, index, view, note, to);
+    }
+}
+
+/// One traversal.
+struct Walk<'a, S: Shape, O> {
+    index: &'a Index<S>,
+    scene: &'a Scene<S>,
+    view: &'a View<S>,
+    params: &'a Params,
+    memory: &'a mut Memory<S>,
+    out: &'a mut DrawList,
+    watch: &'a mut O,
+    frustum: Frustum<S::Vector>,
+    eye: S::Point,
+    forward: S::Point,
+    margin: Margin,
+    /// The occluder sets of the nodes on the way down, one after the other.
+    sets: Vec<u32>,
+    candidates: Vec<Candidate>,
+}
+
+/// What the occluders of a set do to a box.
+enum Fate {
+    Hidden,
+    /// Those that partially occlude it; may be empty.
+    Left(Range<usize>),
+}
+
+impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
+    /// Section 3.1: the active occluders of this frame.
+    fn select(&mut self) {
+        self.watch.event(Event::Line(line::SELECT));
+        let index = self.index;
+        let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
+        let direction = index.selection.direction_of::<S>(self.forward);
+        let list = index.selection.list(leaf, direction);
+        let new = self.memory.chosen_for != Some((leaf, direction));
+        for (rank, &(id, area_angle)) in list.iter().enumerate() {
+            let memory = &self.memory;
+            self.watch
+                .note(|| Evidence::Chosen(Chosen::of(&index.occluders, id, rank, area_angle, [leaf.0, direction], !memory.active.contains(&id))));
+            if self.looks_at(id) {
+                self.sets.push(id);
+            }
+        }
+        if new {
+            self.memory.active.clear();
+            self.memory.active.extend(list.iter().map(|l| l.0));
+            self.memory.chosen_for = Some((leaf, direction));
+        }
+    }
+
+    /// Computes how the eye sees an occluder; whether it can hide anything.
+    fn looks_at(&mut self, id: u32) -> bool {
+        let (occluders, eye, margin) = (&self.index.occluders, self.eye, self.margin);
+        let (scene, position, one_sided) = (self.scene, self.view.eye.position, self.params.backface_culling);
+        self.memory.sight(id, || {
+            let mut sight = Sight::of(occluders, id, eye, margin);
+            // What is not drawn hides nothing.
+            if sight.side != 0 && one_sided && occluders.prims(id).iter().any(|&p| prim_faces_away(scene, position, p)) {
+                sight.side = 0;
+            }
+            sight
+        });
+        self.memory.sight_of(id).is_some_and(|s| s.side != 0)
+    }
+
+    /// Figure 9, with view-frustum culling in front.
+    fn visible(&mut self, id: NodeId, planes: u8, set: Range<usize>) {
+        let index = self.index;
+        let node = &index.tree.nodes()[id.at()];
+        self.watch.event(Event::Entered(id));
+        let mut cutting = 0;
+        if planes != 0 {
+            let test = self.frustum.test(&node.bounds, planes);
+            let frustum = &self.frustum;
+            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+            match test {
+                FrustumTest::Outside(_) => {
+                    self.watch.event(Event::Line(line::OUTSIDE));
+                    self.watch.event(Event::DecidedNode(id, Verdict::Outside));
+                    self.watch.event(Event::Left(id));
+                    return;
+                }
+                FrustumTest::Partial(planes) => cutting = planes,
+                FrustumTest::Inside => {}
+            }
+        }
+        self.watch.event(Event::Line(line::TEST));
+        let end = self.sets.len();
+        match self.test_occlusion(Owner::Node(id), &node.bounds, set) {
+            Fate::Hidden => {
+                self.watch.event(Event::Line(line::OCCLUDED));
+                self.memory.forget_below(&index.tree, id);
+                self.watch.event(Event::DecidedNode(id, Verdict::Hidden));
+            }
+            Fate::Left(left) => self.go_on(id, cutting, left),
+        }
+        self.sets.truncate(end);
+        self.watch.event(Event::Left(id));
+    }
+
+    /// A node that is not hidden: its children, or all of it.
+    fn go_on(&mut self, id: NodeId, cutting: u8, left: Range<usize>) {
+        let index = self.index;
+        if left.is_empty() {
+            self.memory.forget_below(&index.tree, id);
+        }
+        let undecided = cutting != 0 || !left.is_empty();
+        match index.tree.nodes()[id.at()].children() {
+            Some(children) if undecided => {
+                self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+                if self.params.cache && !left.is_empty() {
+                    self.memory.passed(id);
+                }
+                for child in children {
+                    self.watch.event(Event::Line(line::CHILD));
+                    self.visible(child, cutting, left.clone());
+                }
+            }
+            _ => {
+                self.watch.event(Event::Line(if undecided { line::LEAF } else { line::GATHER }));
+                self.gather(index.tree.prims_below(id));
+                self.watch.event(Event::DecidedNode(id, Verdict::Visible));
+            }
+        }
+    }
+
+    /// Section 2. On return the occluders that partially occlude the box stand at the end of `self.sets`.
+    fn test_occlusion(&mut self, owner: Owner, bounds: &Aabb<S::Vector>, set: Range<usize>) -> Fate {
+        let depth = self.depth(bounds);
+        let start = self.sets.len();
+        self.candidates.clear();
+        for at in set.clone() {
+            let occluder = self.sets[at];
+            let (occlusion, candidate) = self.test_one(owner, bounds, occluder, depth, at - set.start);
+            match occlusion {
+                Occlusion::Full => {
+                    self.watch.event(Event::Line(line::FULL));
+                    return Fate::Hidden;
+                }
+                Occlusion::Partial => {
+                    self.watch.event(Event::Line(line::PARTIAL));
+                    self.sets.push(occluder);
+                    self.candidates.extend(candidate);
+                }
+                Occlusion::None => {}
+            }
+        }
+        if self.candidates.len() > 1 {
+            let members = jointly(&self.index.occluders, &self.candidates, &mut self.memory.joint);
+            if members != 0 {
+                let (occluders, candidates) = (&self.index.occluders, &self.candidates);
+                self.watch.note(move || Evidence::Joined(Joined::of(occluders, owner, candidates, members)));
+                self.watch.event(Event::Line(line::JOINT));
+                return Fate::Hidden;
+            }
+        }
+        Fate::Left(start..self.sets.len())
+    }
+
+    /// One occluder and one box.
+    fn test_one(&mut self, owner: Owner, bounds: &Aabb<S::Vector>, id: u32, depth: f64, near: usize) -> (Occlusion, Option<Candidate>) {
+        let (index, margin) = (self.index, self.margin);
+        let Some(side) = self.memory.sight_of(id).map(|s| s.side) else { return (Occlusion::None, None) };
+        let kept = if self.params.cache { self.memory.find(owner, id, side, near) } else { None };
+        let made;
+        let relation = match kept {
+            Some(at) => self.memory.get(owner, at),
+            None => {
+                let relation = Relation::new(&index.occluders, id, side, bounds, false);
+                if self.params.cache {
+                    let at = self.memory.keep(owner, relation);
+                    self.memory.get(owner, at)
+                } else {
+                    made = relation;
+                    &made
+                }
+            }
+        };
+        let Some(sight) = self.memory.sight_of(id) else { return (Occlusion::None, None) };
+        let thickness = index.occluders.thickness(id);
+        let seen = relation.classify(sight, thickness, depth, margin);
+        self.watch.note(|| Evidence::Related(Related::of(&index.occluders, owner, relation, sight, seen, depth, margin, kept.is_some())));
+        let candidate = seen.behind.then_some(Candidate { occluder: id, side, seen });
+        (seen.occlusion, candidate)
+    }
+
+    /// The greatest view depth of a box, rounded up.
+    fn depth(&self, bounds: &Aabb<S::Vector>) -> f64 {
+        use self::space::Point;
+        let axis = |a: usize| {
+            let (f, e) = (self.forward.get(a), self.eye.get(a));
+            (f * (f64::from(bounds.min.get(a)) - e)).max(f * (f64::from(bounds.max.get(a)) - e))
+        };
+        (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
+    }
+
+    /// Draws primitives, but for detail objects that the occluders near them hide.
+    fn gather(&mut self, prims: &[PrimId]) {
+        if !(self.params.detail_objects || self.params.backface_culling) {
+            self.out.prims.extend_from_slice(prims);
+            return;
+        }
+        let (scene, view) = (self.scene, self.view);
+        for &prim in prims {
+            if self.params.detail_objects && self.is_hidden(scene.object_of(prim)) {
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+            } else if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+            } else {
+                self.out.prims.push(prim);
+            }
+        }
+    }
+
+    /// Section 3.2: whether a detail object is hidden by what looks large from it toward the eye, since visibility between
+    /// two points goes both ways.
+    fn is_hidden(&mut self, object: ObjectId) -> bool {
+        if let Some(known) = self.memory.hidden[object.at()] {
+            return known;
+        }
+        let index = self.index;
+        let mut hidden = false;
+        if let Some(bounds) = &index.details[object.at()] {
+            self.watch.event(Event::Line(line::DETAIL));
+            let center = bounds.center();
+            let leaf = leaf_at::<S>(&index.tree, center);
+            let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
+            let start = self.sets.len();
+            for &(id, _) in index.selection.list(leaf, direction) {
+                if self.looks_at(id) {
+                    self.sets.push(id);
+                }
+            }
+            let set = start..self.sets.len();
+            hidden = matches!(self.test_occlusion(Owner::Object(object), bounds, set), Fate::Hidden);
+            self.sets.truncate(start);
+        }
+        self.memory.hidden[object.at()] = Some(hidden);
+        hidden
+    }
+}

@@ -1,0 +1,236 @@
+//! One occluder and one box: supporting and separating planes (Section 2).
+//!
+//! Everything here is about the viewpoint P, one edge e of the occluder, and a corner t of the box. P lies inside
+//! the plane through e and t exactly if t lies on the occluder's side of the plane through P and e. Inside all
+//! *supporting* planes, every corner of the box lies on the occluder's side of every edge: full occlusion. Inside
+//! all *separating* planes, some corner does: partial occlusion. Besides, the occluder's own plane must separate
+//! P and the box; where it cuts the box, what lies behind it can still be occluded, so that is partial too.
+//!
+//! # The margin
+//! The answer is to hold for the image, so a point that is called hidden must be hidden at every pixel center
+//! that any triangle through it could reach. Vertices are snapped to 1/256 pixel, so both outlines move by up to
+//! ε = √2/512 pixel, together 2ε. It suffices that every corner t of the box lies inside the plane through P and e by
+//! at least `lateral = δ·W` world units, with δ > 2ε pixels at unit depth and W the greatest view depth of the box.
+//! Let s be the least distance of the box behind the occluder's plane, h the height of P above it, |r| the
+//! distance of P from e's line, and ψ the angle between the plane through P and e and the nearest tangent plane. No
+//! corner is nearer to the line than s, and none makes an angle with the plane through P and e that is nearer to 0
+//! than ψ or nearer to π than P's own height: so each is inside by s·min(sin ψ, h/|r|) or more. As
+//! `|r|·sin ψ` is P's distance from the supporting plane, the condition is
+//! `s · min(distance, h) ≥ |r| · lateral`, plus what f64 rounds (see [`ROUNDING`]).
+//! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping tilts it by at most 2ε·px/h; so
+//! `s ≥ lateral + DEPTH_ROUNDING·(h + thickness)` keeps it in front.
+
+use super::occluders::Occluders;
+use super::space::{Point, Shape, corner};
+use crate::geometry::{Aabb, View};
+
+/// δ of the margin in pixels: 1/128, where 2ε is 1/181.
+const SNAP_PX: f64 = 1.0 / 128.0;
+/// Relative error of the 1/w that the rasterizer interpolates in 32 bits.
+const DEPTH_ROUNDING: f64 = 1.0 / (1u32 << 17) as f64;
+/// Relative error of a distance in f64, generously: a normal of products of exact differences, one sum of three
+/// products, is within 20 roundings of 2⁻⁵³; a tangent corner that lost a tie is off by as much.
+const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
+
+/// A plane through an edge of the occluder and a corner of the box.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Plane<P> {
+    /// Unit length, toward the occluder.
+    pub normal: P,
+    /// The corner of the box.
+    pub vertex: u8,
+}
+
+/// The two planes through an edge that touch the box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Planes<P> {
+    /// The edge's line meets the box.
+    Crossing,
+    /// Occluder and box on one side of the first; on opposite sides of the second. Where the occluder's plane
+    /// cuts the box there is no such order.
+    Tangent([Plane<P>; 2]),
+}
+
+/// What does not change about an occluder and a box while the eye stays on one side of the occluder.
+#[derive(Clone, Debug)]
+pub struct Relation<S: Shape> {
+    pub occluder: u32,
+    /// On which side of the occluder the eye is: 1 in front, −1 behind.
+    pub side: i8,
+    /// Distances of the box's nearest and farthest corner behind the occluder, world units; negative: on the eye's side.
+    pub behind: [f64; 2],
+    /// Greatest distance of a tangent corner from its edge, world units; for the error bound.
+    arm: f64,
+    /// Diagonal of the box.
+    diagonal: f64,
+    /// By edge; empty where the box lies wholly on the eye's side.
+    pub planes: Vec<Planes<S::Point>>,
+}
+
+/// The kinds of occlusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Occlusion {
+    None,
+    Partial,
+    Full,
+}
+
+/// What an eye is told about an occluder and a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Classified {
+    pub occlusion: Occlusion,
+    /// The edges, as bits, whose supporting plane the eye is inside of by more than the margin.
+    pub inside: u64,
+    /// Whether the box lies behind the occluder's plane by more than the margin.
+    pub behind: bool,
+}
+
+/// The test that decided a classification: for full occlusion the supporting plane that the eye is least inside of, for
+/// partial the one it is farthest outside of, for none the separating one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Decisive {
+    /// The edge, and the corner of the box, that span the plane.
+    pub edge: u8,
+    pub vertex: u8,
+    /// Signed distance of the eye from the plane, world units; positive inside.
+    pub distance: f64,
+    /// What it must exceed.
+    pub needed: f64,
+}
+
+/// An occluder as the eye sees it in one frame.
+#[derive(Clone, Debug)]
+pub struct Sight<S: Shape> {
+    /// 1: the eye is in front; −1: behind; 0: it cannot hide anything from here.
+    pub side: i8,
+    /// Distance of the eye from the occluder's slab, world units.
+    pub height: f64,
+    /// By edge: the eye from the edge's first corner, that vector's length, and the eye's distance from the edge's line.
+    pub edges: Vec<(S::Point, f64, f64)>,
+    /// The greatest of those distances.
+    reach: f64,
+}
+
+/// What a view demands before it calls anything hidden.
+#[derive(Clone, Copy, Debug)]
+pub struct Margin {
+    /// World units per unit of view depth.
+    pub lateral: f64,
+    /// Least height of the eye above an occluder: below it the near plane may cut a hole that the eye looks through.
+    pub height: f64,
+}
+
+impl Margin {
+    /// The margin of a view.
+    pub fn of<S: Shape>(view: &View<S>) -> Self {
+        let tan = f64::from(view.eye.fov * 0.5).tan();
+        let aspect = f64::from(view.width) / f64::from(view.height.max(1));
+        let (across, pixels) = if Relation::<S>::AXES > 2 { (tan * tan * (1.0 + aspect * aspect), view.height) } else { (tan * tan, view.width) };
+        // A ray within the image makes at most this angle with the line of sight; a hundredth for the snapped border.
+        let secant = (1.0 + across).sqrt();
+        Self { lateral: SNAP_PX * 2.0 * tan / f64::from(pixels), height: f64::from(view.eye.near) * secant * 1.01 }
+    }
+}
+
+impl<S: Shape> Sight<S> {
+    /// How `eye` sees an occluder.
+    pub fn of(occluders: &Occluders<S>, id: u32, eye: S::Point, margin: Margin) -> Self {
+        let occluder = occluders.get(id);
+        let at = occluder.normal.dot(eye - occluder.anchor);
+        let [low, high] = occluder.slab;
+        let (side, height) = if at > high { (1, at - high) } else { (-1, low - at) };
+        let mut sight = Self { side, height, edges: Vec::new(), reach: 0.0 };
+        if height.is_nan() || height < margin.height {
+            sight.side = 0;
+            return sight;
+        }
+        for edge in occluders.edges(id) {
+            let r = eye - edge.from;
+            let distance = S::distance(edge, r);
+            sight.reach = sight.reach.max(distance);
+            sight.edges.push((r, r.length(), distance));
+        }
+        sight
+    }
+}
+
+impl<S: Shape> Relation<S> {
+    /// Computes the planes; `naive` looks at every corner of the box instead of the table.
+    pub fn new(occluders: &Occluders<S>, id: u32, side: i8, bounds: &Aabb<S::Vector>, naive: bool) -> Self {
+        let occluder = occluders.get(id);
+        let [low, high] = occluders.heights(id, bounds);
+        let behind = if side > 0 { [occluder.slab[0] - high, occluder.slab[0] - low] } else { [low - occluder.slab[1], high - occluder.slab[1]] };
+        let diagonal = (corner::<S>(bounds, (1 << Self::AXES) - 1) - corner::<S>(bounds, 0)).length();
+        let mut relation = Self { occluder: id, side, behind, arm: 0.0, diagonal, planes: Vec::new() };
+        if behind[1] > 0.0 {
+            let edges = occluders.edges(id);
+            relation.planes.reserve_exact(edges.len());
+            for edge in edges {
+                let touched = if naive { S::tangents_naive(edge, bounds) } else { S::tangents(edge, bounds) };
+                let planes = touched.map_or(Planes::Crossing, |touched| relation.tangent(edge, touched, bounds));
+                relation.planes.push(planes);
+            }
+        }
+        relation
+    }
+
+    const AXES: usize = <S::Vector as crate::geometry::Vector>::AXES;
+
+    fn tangent(&mut self, edge: &super::space::Edge<S::Point>, touched: [u8; 2], bounds: &Aabb<S::Vector>) -> Planes<S::Point> {
+        let side = f64::from(self.side);
+        let arms = touched.map(|vertex| corner::<S>(bounds, vertex) - edge.from);
+        let plane = |i: usize| {
+            let normal = S::through(edge, arms[i]) * side;
+            Plane { normal: normal * (1.0 / normal.length()), vertex: touched[i] }
+        };
+        let planes = [plane(0), plane(1)];
+        self.arm = self.arm.max(arms[0].length()).max(arms[1].length());
+        // The other corner lies on the positive side of the supporting plane.
+        Planes::Tangent(if planes[0].normal.dot(arms[1]) >= 0.0 { planes } else { [planes[1], planes[0]] })
+    }
+
+    /// The classification from an eye. `thickness`: of the occluder's slab; `depth`: the greatest view depth of the box.
+    #[inline]
+    pub fn classify(&self, sight: &Sight<S>, thickness: f64, depth: f64, margin: Margin) -> Classified {
+        let mut found = Classified { occlusion: Occlusion::None, inside: 0, behind: false };
+        if self.planes.is_empty() {
+            return found;
+        }
+        let [s, _] = self.behind;
+        let lateral = margin.lateral * depth.max(0.0);
+        found.behind = s > 0.0 && s >= lateral + DEPTH_ROUNDING * (sight.height + thickness + s) && s * sight.height >= sight.reach * lateral;
+        // What a lost tie between two tangent corners may turn a plane by, and what rounding may move it.
+        let lateral = lateral + ROUNDING * self.arm * self.diagonal / s;
+        let blur = ROUNDING * (self.arm + s);
+        let mut inside = 0;
+        for (i, (planes, &(r, length, distance))) in self.planes.iter().zip(&sight.edges).enumerate() {
+            let Planes::Tangent([supporting, separating]) = planes else { continue };
+            let (reached, touched) = (supporting.normal.dot(r), separating.normal.dot(r));
+            // Where the occluder's plane cuts the box, either corner will do.
+            let partial = if s > 0.0 { touched > 0.0 } else { touched > 0.0 || reached > 0.0 };
+            if !partial {
+                found.behind = false;
+                return found;
+            }
+            inside |= u64::from(reached * s >= distance * lateral + blur * length) << i;
+        }
+        found.inside = if found.behind { inside } else { 0 };
+        let all = u64::MAX >> (64 - self.planes.len());
+        found.occlusion = if found.inside == all { Occlusion::Full } else { Occlusion::Partial };
+        found
+    }
+
+    /// The operands that decided; for explanations.
+    pub fn decisive(&self, sight: &Sight<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
+        let s = self.behind[0];
+        let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
+        let blur = ROUNDING * (self.arm + s);
+        let tests = self.planes.iter().zip(&sight.edges).enumerate().filter_map(|(i, (planes, &(r, length, distance)))| {
+            let Planes::Tangent([supporting, separating]) = planes else { return None };
+            let (plane, needed) =
+                if seen.occlusion == Occlusion::None { (separating, 0.0) } else { (supporting, (distance * lateral + blur * length) / s) };
+            Some(Decisive { edge: i as u8, vertex: plane.vertex, distance: plane.normal.dot(r), needed })
+        });
+        tests.min_by(|a, b| (a.distance - a.needed).total_cmp(&(b.distance - b.needed))).unwrap_or_default()
+    }
+}

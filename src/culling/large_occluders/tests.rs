@@ -1,0 +1,1 @@
+//! Coorg and Teller's method against brute force and exact arithmetic.
