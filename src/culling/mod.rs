@@ -17,6 +17,7 @@ mod method;
 pub use entry::{Entry, Film, Recording, Run};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
+pub use large_occluders::anatomy;
 pub use method::{Card, CodeLine, DrawList, Field, Method, Note, Value};
 
 use crate::geometry::{Flat, Solid, Space};

@@ -12,6 +12,7 @@
 //! lies behind it can be occluded; the jointly occluding set need not be a whole component (see [`joint`]).
 //! Cost: O(occluders · nodes visited); memory O(nodes · occluders).
 
+pub mod anatomy;
 mod explain;
 mod joint;
 mod memory;
@@ -84,14 +85,14 @@ impl<S: Shape> Index<S> {
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         let tree = KdTree::build(boxes, params.tree_height, || progress.cancelled())?;
         let faces = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 })?;
-        let all = Occluders::new(scene, &faces);
+        let all = Occluders::<S>::new(scene.points(), &faces);
         let rest = Part { whole: progress, start: 0.4, length: 0.55 };
         let gain = f64::from(params.marginal_gain) / 100.0;
         let selection = Selection::new(&tree, &all, [params.directions, params.occluders], gain, &rest)?;
         // Only what some list names can ever be active.
         let kept = selection.named();
         let faces: Vec<_> = kept.iter().map(|&id| faces[all.get(id).source as usize].clone()).collect();
-        let occluders = Occluders::new(scene, &faces);
+        let occluders = Occluders::<S>::new(scene.points(), &faces);
         Some(Self { tree, occluders, selection: selection.renumbered(&kept), details: details(scene) })
     }
     /// The box that a test was about.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::space::{Edge, Point, Shape, corners_of};
 use crate::geometry::{Aabb, PrimId, Vector};
-use crate::scene::{Face, Scene};
+use crate::scene::Face;
 
 /// Most corners of an occluder: a mask of its edges fits a word.
 pub const MAX_EDGES: usize = 64;
@@ -44,11 +44,11 @@ pub struct Occluders<S: Shape> {
 
 impl<S: Shape> Occluders<S> {
     /// Makes ready those faces that can hide anything: at most [`MAX_EDGES`] corners and some area.
-    pub fn new(scene: &Scene<S>, faces: &[Face]) -> Self {
+    pub fn new(points: &[S::Vector], faces: &[Face]) -> Self {
         let mut made = Self { all: Vec::new(), edges: Vec::new(), keys: Vec::new(), key_count: 0, prims: Vec::new() };
         let mut names: Vec<([u32; 2], u32)> = Vec::new();
         for (source, face) in faces.iter().enumerate().filter(|(_, f)| f.corners.len() <= MAX_EDGES) {
-            let corners = corners_of(scene, &face.corners);
+            let corners = corners_of::<S>(points, &face.corners);
             let vector = S::area(&corners);
             let area = vector.length();
             if area.is_nan() || area <= 0.0 {

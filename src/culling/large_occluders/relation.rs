@@ -121,6 +121,8 @@ pub struct Margin {
 }
 
 impl Margin {
+    /// Occlusion in the sense of geometry: no pixels, no near plane; only what f64 rounds is on the safe side.
+    pub const GEOMETRIC: Self = Self { lateral: 0.0, height: 0.0 };
     /// The margin of a view.
     pub fn of<S: Shape>(view: &View<S>) -> Self {
         let tan = f64::from(view.eye.fov * 0.5).tan();

@@ -12,6 +12,8 @@ use crate::scene::{Face, Progress, Scene};
 mod flat;
 mod solid;
 
+pub use solid::{outline_seen_from, sides_of_outline};
+
 /// A point or direction in f64.
 pub trait Point:
     Copy + Debug + Default + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f64, Output = Self>
@@ -69,8 +71,8 @@ pub fn corner<S: Shape>(bounds: &Aabb<S::Vector>, i: u8) -> S::Point {
 }
 
 /// The corners of a polygon.
-pub fn corners_of<S: Shape>(scene: &Scene<S>, ids: &[u32]) -> Vec<S::Point> {
-    ids.iter().map(|&c| S::widened(scene.points()[c as usize])).collect()
+pub fn corners_of<S: Shape>(points: &[S::Vector], ids: &[u32]) -> Vec<S::Point> {
+    ids.iter().map(|&c| S::widened(points[c as usize])).collect()
 }
 
 /// The axis code of a coordinate against an interval: below, inside or above.

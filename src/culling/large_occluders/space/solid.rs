@@ -56,14 +56,8 @@ impl Shape for Solid {
     }
     #[inline]
     fn tangents(edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> Option<[u8; 2]> {
-        let code = |axis: usize| slab(edge.from[axis], side(bounds, 0, axis), side(bounds, 7, axis));
-        let silhouette = &SILHOUETTES[code(0) + 3 * code(1) + 9 * code(2)];
-        let mut bits = 0;
-        for (i, line) in silhouette.lines[..silhouette.count].iter().enumerate() {
-            let [b, c] = line.axes;
-            let arm = |axis: usize| side(bounds, line.corner, axis) - edge.from[axis];
-            bits |= usize::from((edge.along[b] * arm(c) > edge.along[c] * arm(b)) != line.flip) << i;
-        }
+        let silhouette = silhouette(edge.from, bounds);
+        let bits = sides(silhouette, edge, bounds);
         match TOUCHING[usize::from(silhouette.count == 6)][bits] {
             [NONE, _] if silhouette.count == 0 || bits == 0 || bits + 1 == 1 << silhouette.count => None,
             // Signs that no convex outline has: two lines so close that rounding swapped them.
@@ -74,6 +68,35 @@ impl Shape for Solid {
     fn tangents_naive(edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> Option<[u8; 2]> {
         tangents_naive(edge, bounds)
     }
+}
+
+/// The outline of a box as seen from a point, in order around it, as box corners (Figure 7); empty from inside.
+pub fn outline_seen_from(point: Vec3, bounds: &Aabb<Vec3>) -> Vec<u8> {
+    let silhouette = silhouette(point.as_dvec3(), bounds);
+    silhouette.lines[..silhouette.count].iter().map(|l| l.corner).collect()
+}
+
+/// The code of Figure 8: bit `i` says on which side of line `i` of the outline seen from `from` the edge's projection lies.
+pub fn sides_of_outline(from: Vec3, to: Vec3, bounds: &Aabb<Vec3>) -> u8 {
+    let edge = Edge { from: from.as_dvec3(), along: (to - from).as_dvec3() };
+    sides(silhouette(edge.from, bounds), &edge, bounds) as u8
+}
+
+#[inline]
+fn silhouette(from: DVec3, bounds: &Aabb<Vec3>) -> &'static Silhouette {
+    let code = |axis: usize| slab(from[axis], side(bounds, 0, axis), side(bounds, 7, axis));
+    &SILHOUETTES[code(0) + 3 * code(1) + 9 * code(2)]
+}
+
+#[inline]
+fn sides(silhouette: &Silhouette, edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> usize {
+    let mut bits = 0;
+    for (i, line) in silhouette.lines[..silhouette.count].iter().enumerate() {
+        let [b, c] = line.axes;
+        let arm = |axis: usize| side(bounds, line.corner, axis) - edge.from[axis];
+        bits |= usize::from((edge.along[b] * arm(c) > edge.along[c] * arm(b)) != line.flip) << i;
+    }
+    bits
 }
 
 /// A directed line of a silhouette: from `corner` along the one axis that is not in `axes`.

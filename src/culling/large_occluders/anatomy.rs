@@ -1,0 +1,118 @@
+//! The parts of the method by themselves: one eye, some occluders, one box. For figures, benchmarks and tests, which
+//! all look at the very functions that the method runs.
+
+use super::joint::{Candidate, Scratch, jointly};
+use super::occluders::Occluders;
+use super::relation::{Margin, Planes, Relation, Sight};
+use super::selection;
+use super::space::{Edge, Point, Shape, corner};
+use crate::geometry::{Aabb, View};
+use crate::scene::Face;
+
+pub use super::relation::Occlusion;
+
+/// A few occluders, out of any scene.
+#[derive(Clone, Debug)]
+pub struct Blockers<S: Shape> {
+    occluders: Occluders<S>,
+    margin: Margin,
+}
+
+/// A plane (a line in flatland) through an edge of an occluder and a corner of a box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tangent<V> {
+    /// The edge: two points in space, one in flatland.
+    pub edge: Vec<V>,
+    /// The box corner where it touches.
+    pub vertex: V,
+    /// Unit normal, toward the occluder.
+    pub normal: V,
+    /// Signed distance of the eye from it, world units; positive inside.
+    pub eye_distance: f64,
+}
+
+impl<S: Shape> Blockers<S> {
+    /// Occluders from polygons (segments in flatland) over shared points, front side counter-clockwise. Polygons
+    /// without area are left out, so check [`Blockers::len`].
+    pub fn new(points: &[S::Vector], polygons: &[Vec<u32>]) -> Self {
+        let faces: Vec<Face> = polygons.iter().map(|c| Face { corners: c.clone(), prims: Vec::new() }).collect();
+        Self { occluders: Occluders::new(points, &faces), margin: Margin::GEOMETRIC }
+    }
+    /// Demands what the pixels of a view demand, where it is otherwise plain geometry.
+    pub fn for_view(mut self, view: &View<S>) -> Self {
+        self.margin = Margin::of(view);
+        self
+    }
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.occluders.len()
+    }
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn candidate(&self, id: u32, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Option<Candidate> {
+        let sight = Sight::of(&self.occluders, id, S::widened(eye), self.margin);
+        if sight.side == 0 {
+            return None;
+        }
+        let relation = Relation::new(&self.occluders, id, sight.side, bounds, false);
+        let depth = bounds.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max);
+        let seen = relation.classify(&sight, self.occluders.thickness(id), depth, self.margin);
+        Some(Candidate { occluder: id, side: sight.side, seen })
+    }
+    /// What one occluder does to a box (Section 2).
+    pub fn classify(&self, id: usize, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Occlusion {
+        self.candidate(id as u32, bounds, eye).map_or(Occlusion::None, |c| c.seen.occlusion)
+    }
+    /// The occluders that hide a box: one, or several together; empty if it is not hidden.
+    pub fn hiding(&self, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Vec<usize> {
+        let all = (0..self.len() as u32).filter_map(|id| self.candidate(id, bounds, eye));
+        let candidates: Vec<Candidate> = all.filter(|c| c.seen.occlusion != Occlusion::None).collect();
+        if let Some(full) = candidates.iter().find(|c| c.seen.occlusion == Occlusion::Full) {
+            return vec![full.occluder as usize];
+        }
+        let members = jointly(&self.occluders, &candidates, &mut Scratch::default());
+        candidates.iter().enumerate().filter(|(i, _)| members >> i & 1 == 1).map(|(_, c)| c.occluder as usize).collect()
+    }
+    /// The supporting and the separating plane through each edge of an occluder, for an eye; `None` where the edge's
+    /// line meets the box, empty where the box lies on the eye's side.
+    pub fn planes(&self, id: usize, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Vec<Option<[Tangent<S::Vector>; 2]>> {
+        let sight = Sight::of(&self.occluders, id as u32, S::widened(eye), self.margin);
+        let relation = Relation::new(&self.occluders, id as u32, if sight.side == 0 { 1 } else { sight.side }, bounds, false);
+        let outline = self.occluders.outline(id as u32);
+        let tangents = relation.planes.iter().enumerate().map(|(i, planes)| {
+            let Planes::Tangent(pair) = planes else { return None };
+            let edge = if outline.len() == 2 { vec![outline[i]] } else { vec![outline[i], outline[(i + 1) % outline.len()]] };
+            Some((*pair).map(|plane| Tangent {
+                vertex: S::rounded(corner::<S>(bounds, plane.vertex)),
+                normal: S::rounded(plane.normal),
+                eye_distance: plane.normal.dot(S::widened(eye) - S::widened(edge[0])),
+                edge: edge.clone(),
+            }))
+        });
+        tangents.collect()
+    }
+    /// The area-angle of an occluder from a point (Section 3.1).
+    pub fn area_angle(&self, id: usize, from: S::Vector) -> f64 {
+        selection::area_angle(self.occluders.get(id as u32), S::widened(from))
+    }
+    /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a number that
+    /// depends on all of them.
+    pub fn make_relations(&self, bounds: &Aabb<S::Vector>, eye: S::Vector, naive: bool) -> f64 {
+        let side = |id: u32| Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
+        let arm = |planes: &Planes<S::Point>| if let Planes::Tangent([plane, _]) = planes { plane.normal.get(0) } else { 1.0 };
+        let relation = |id: u32| Relation::new(&self.occluders, id, if side(id) < 0 { -1 } else { 1 }, bounds, naive);
+        (0..self.len() as u32).map(|id| relation(id).planes.iter().map(arm).sum::<f64>()).sum()
+    }
+}
+
+/// The two box corners at which planes through an edge touch it, by table and by looking at every corner (Section 2.1);
+/// `None` where the edge's line meets the box. In flatland `to` is not used.
+pub fn tangent_corners<S: Shape>(from: S::Vector, to: S::Vector, bounds: &Aabb<S::Vector>) -> [Option<[u8; 2]>; 2] {
+    let edge = Edge { from: S::widened(from), along: S::widened(to) - S::widened(from) };
+    [S::tangents(&edge, bounds), S::tangents_naive(&edge, bounds)]
+}
+
+pub use super::space::{outline_seen_from, sides_of_outline};
