@@ -24,6 +24,28 @@ pub trait Entry<S: Space>: Sync {
     /// # Errors
     /// As [`Entry::knobs`].
     fn ready(&self, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Box<dyn Run<S>>>, SettingError>;
+    /// As [`Entry::ready`], with the part of the index that [`Run::save`] returned earlier.
+    ///
+    /// # Errors
+    /// As [`Entry::knobs`], and if the bytes do not fit the scene and the settings.
+    fn restore(
+        &self,
+        scene: &Arc<Scene<S>>,
+        settings: &Settings,
+        saved: &[u8],
+        progress: &dyn Progress,
+    ) -> Result<Option<Box<dyn Run<S>>>, RestoreError>;
+}
+
+/// Why a saved preprocess was not taken. Displays as one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RestoreError {
+    /// A setting does not fit.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// The bytes do not fit.
+    #[error("{0}")]
+    Saved(String),
 }
 
 /// A method bound to a scene and parameters, with what it remembers from frame to frame.
@@ -42,6 +64,8 @@ pub trait Run<S: Space>: Send {
     fn record(&mut self, view: &View<S>, cap: usize) -> Recording<S>;
     /// Forgets all earlier frames.
     fn forget(&mut self);
+    /// What took long to build, for [`Entry::restore`]; `None` if nothing did.
+    fn save(&self) -> Option<Vec<u8>>;
     /// Whether earlier frames can matter at all.
     fn remembers(&self) -> bool;
 }
@@ -113,8 +137,18 @@ impl<S: Space, M: Method<S>> Entry<S> for Of<M> {
     }
     fn ready(&self, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Box<dyn Run<S>>>, SettingError> {
         let params = params::<S, M>(settings)?;
-        let Some(index) = M::build(scene, &params, progress) else { return Ok(None) };
-        Ok(Some(Box::new(Bound::<S, M> { scene: scene.clone(), index: Arc::new(index), params, memory: M::Memory::default() })))
+        Ok(M::build(scene, &params, progress).map(|index| Bound::<S, M>::boxed(scene, index, params)))
+    }
+    fn restore(
+        &self,
+        scene: &Arc<Scene<S>>,
+        settings: &Settings,
+        saved: &[u8],
+        progress: &dyn Progress,
+    ) -> Result<Option<Box<dyn Run<S>>>, RestoreError> {
+        let params = params::<S, M>(settings)?;
+        let index = M::restore(scene, &params, saved, progress).map_err(RestoreError::Saved)?;
+        Ok(index.map(|index| Bound::<S, M>::boxed(scene, index, params)))
     }
 }
 
@@ -123,6 +157,12 @@ struct Bound<S: Space, M: Method<S>> {
     index: Arc<M::Index>,
     params: M::Params,
     memory: M::Memory,
+}
+
+impl<S: Space, M: Method<S>> Bound<S, M> {
+    fn boxed(scene: &Arc<Scene<S>>, index: M::Index, params: M::Params) -> Box<dyn Run<S>> {
+        Box::new(Self { scene: scene.clone(), index: Arc::new(index), params, memory: M::Memory::default() })
+    }
 }
 
 impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
@@ -162,6 +202,9 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
     }
     fn forget(&mut self) {
         self.memory = M::Memory::default();
+    }
+    fn save(&self) -> Option<Vec<u8>> {
+        M::save(&self.index)
     }
     fn remembers(&self) -> bool {
         size_of::<M::Memory>() > 0

@@ -105,6 +105,17 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     fn knobs(params: &mut Self::Params, knobs: &mut dyn Knobs);
     /// Scene to index; `None` when cancelled.
     fn build(scene: &Arc<Scene<S>>, params: &Self::Params, progress: &dyn Progress) -> Option<Self::Index>;
+    /// The part of the index that took long to build, as bytes that [`Method::restore`] reads; `None` if none did.
+    fn save(_: &Self::Index) -> Option<Vec<u8>> {
+        None
+    }
+    /// Builds the index around what [`Method::save`] kept; `Ok(None)` when cancelled.
+    ///
+    /// # Errors
+    /// Why the bytes do not fit the scene and the parameters.
+    fn restore(_: &Arc<Scene<S>>, _: &Self::Params, _: &[u8], _: &dyn Progress) -> Result<Option<Self::Index>, String> {
+        Err("this method keeps no preprocess".into())
+    }
     /// The method. There is no second copy of this function.
     #[allow(clippy::too_many_arguments)]
     fn cull<O: Observer<Self::Note>>(

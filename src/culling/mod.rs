@@ -14,7 +14,7 @@ mod knobs;
 mod large_occluders;
 mod method;
 
-pub use entry::{Entry, Film, Recording, Run};
+pub use entry::{Entry, Film, Recording, RestoreError, Run};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
 pub use large_occluders::anatomy;

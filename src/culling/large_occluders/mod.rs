@@ -72,6 +72,14 @@ pub struct Index<S: Shape> {
     selection: Selection,
     /// Bounds of each object that is small enough to be tested as a whole.
     details: Vec<Option<Aabb<S::Vector>>>,
+    /// The selection with the numbers that all polygons of the scene have, to be saved.
+    saved: Arc<[u8]>,
+}
+
+impl Params {
+    fn key<S: Space>(&self, scene: &Scene<S>) -> saved::Key {
+        saved::Key { scene: scene.hash_hex(), params: [self.tree_height, self.directions, self.occluders, self.marginal_gain] }
+    }
 }
 
 /// The most that a detail object measures, as a share of the scene's diagonal.
@@ -80,20 +88,26 @@ const DETAIL_SHARE: f32 = 0.05;
 const DETAIL_PRIMS: u32 = 4;
 
 impl<S: Shape> Index<S> {
-    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+    /// Builds it, with the selection out of `saved` bytes if there are any. `Ok(None)` when cancelled.
+    fn build(scene: &Arc<Scene<S>>, params: &Params, saved: Option<&[u8]>, progress: &dyn Progress) -> Result<Option<Self>, String> {
         progress.report(0.0, "building the kD-tree");
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
-        let tree = KdTree::build(boxes, params.tree_height, || progress.cancelled())?;
-        let faces = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 })?;
+        let Some(tree) = KdTree::build(boxes, params.tree_height, || progress.cancelled()) else { return Ok(None) };
+        let Some(faces) = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 }) else { return Ok(None) };
         let all = Occluders::<S>::new(scene.points(), &faces);
         let rest = Part { whole: progress, start: 0.4, length: 0.55 };
         let gain = f64::from(params.marginal_gain) / 100.0;
-        let selection = Selection::new(&tree, &all, [params.directions, params.occluders], gain, &rest)?;
+        let made = match saved {
+            Some(bytes) => Some(saved::read(bytes, &params.key(scene), tree.nodes().len(), all.len())?),
+            None => Selection::new(&tree, &all, [params.directions, params.occluders], gain, &rest),
+        };
+        let Some(selection) = made else { return Ok(None) };
+        let saved = saved::write(&params.key(scene), &selection);
         // Only what some list names can ever be active.
         let kept = selection.named();
         let faces: Vec<_> = kept.iter().map(|&id| faces[all.get(id).source as usize].clone()).collect();
         let occluders = Occluders::<S>::new(scene.points(), &faces);
-        Some(Self { tree, occluders, selection: selection.renumbered(&kept), details: details(scene) })
+        Ok(Some(Self { tree, occluders, selection: selection.renumbered(&kept), details: details(scene), saved: saved.into() }))
     }
     /// The box that a test was about.
     fn bounds_of(&self, owner: Owner) -> Aabb<S::Vector> {
@@ -225,7 +239,14 @@ impl<S: Shape> Method<S> for LargeOccluders {
         backface_knob(knobs, &mut params.backface_culling);
     }
     fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Index<S>> {
-        Index::build(scene, params, progress)
+        // Without saved bytes nothing can be wrong with them.
+        Index::build(scene, params, None, progress).unwrap_or_default()
+    }
+    fn save(index: &Index<S>) -> Option<Vec<u8>> {
+        Some(index.saved.to_vec())
+    }
+    fn restore(scene: &Arc<Scene<S>>, params: &Params, saved: &[u8], progress: &dyn Progress) -> Result<Option<Index<S>>, String> {
+        Index::build(scene, params, Some(saved), progress)
     }
     fn cull<O: Observer<Evidence<S>>>(
         index: &Index<S>,

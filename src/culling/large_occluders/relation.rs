@@ -70,8 +70,11 @@ pub struct Relation<S: Shape> {
 /// The kinds of occlusion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Occlusion {
+    /// Region 1 of Figure 2.
     None,
+    /// Region 2: part of the box may be hidden.
     Partial,
+    /// Region 3: all of it is.
     Full,
 }
 

@@ -108,6 +108,24 @@ impl Selection {
         let at = (self.leaf_of[leaf.at()] * self.directions + direction) as usize;
         &self.lists[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
+    /// The tables, to be saved: leaf numbers by node, starts of lists, lists.
+    pub fn tables(&self) -> (&[u32], &[u32], &[(u32, f32)]) {
+        (&self.leaf_of, &self.starts, &self.lists)
+    }
+    /// A selection from its tables, if they fit each other and a tree of `nodes` nodes and `occluders` occluders.
+    pub fn of_tables(
+        directions: u32,
+        (leaf_of, starts, lists): (Vec<u32>, Vec<u32>, Vec<(u32, f32)>),
+        nodes: usize,
+        occluders: usize,
+    ) -> Option<Self> {
+        let ascending = starts.windows(2).all(|w| w[0] <= w[1]) && starts.first() == Some(&0);
+        let whole = starts.last().is_some_and(|&end| end as usize == lists.len());
+        let leaves = leaf_of.iter().max().map_or(0, |&most| most as usize + 1);
+        let fits = leaf_of.len() == nodes && starts.len() == leaves * directions as usize + 1;
+        let known = lists.iter().all(|l| (l.0 as usize) < occluders);
+        (ascending && whole && fits && known).then_some(Self { directions, leaf_of, starts, lists })
+    }
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
         self.lists.len() * size_of::<(u32, f32)>() + (self.starts.len() + self.leaf_of.len()) * size_of::<u32>()
