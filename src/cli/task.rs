@@ -1,13 +1,16 @@
 //! What `cull` and `step` have in common: a scene, a method that is ready to run on it, and views.
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::error::reason;
 use super::methods::{find, settings};
 use super::progress::Bar;
 use super::scene::SceneArgs;
 use super::view::ViewArgs;
-use super::{CliError, World};
-use crate::culling::Run;
+use super::{CliError, World, output};
+use crate::culling::{RestoreError, Run};
 use crate::geometry::ViewPath;
 use crate::measure::timed;
 use crate::scene::{AnyScene, Scene};
@@ -19,6 +22,9 @@ pub(super) struct Task {
     scene: SceneArgs,
     #[command(flatten)]
     view: ViewArgs,
+    /// Keep what takes long to build, such as chosen occluders: FILE is read if it is there, else written
+    #[arg(long, value_name = "FILE")]
+    preprocess: Option<PathBuf>,
 }
 
 /// A task that can begin.
@@ -43,8 +49,32 @@ impl Task {
         entry.knobs(&settings)?;
         let path = self.view.views(scene)?;
         let bar = Bar::new();
-        let (run, build_ms) = timed(|| entry.ready(scene, &settings, &bar));
+        let saved = self.saved()?;
+        let (run, build_ms) = timed(|| match &saved {
+            Some(bytes) => entry.restore(scene, &settings, bytes, &bar).map_err(|e| self.refused(&e)),
+            None => entry.ready(scene, &settings, &bar).map_err(CliError::from),
+        });
         let run = run?.ok_or(CliError::Interrupted)?;
+        if let (Some(path), None) = (&self.preprocess, saved) {
+            let Some(bytes) = run.save() else {
+                return Err(CliError::words("--preprocess", format!("the method `{}` has nothing that takes long to build", run.card().key)));
+            };
+            output::write_file(path, |to| to.write_all(&bytes).map(|()| true))?;
+        }
         Ok(Ready { run, path, build_ms, bar })
+    }
+
+    /// The bytes of `--preprocess`, if the file is there.
+    fn saved(&self) -> Result<Option<Vec<u8>>, CliError> {
+        let Some(path) = self.preprocess.as_ref().filter(|p| p.exists()) else { return Ok(None) };
+        fs::read(path).map(Some).map_err(|e| CliError::work(path.display().to_string(), reason(&e)))
+    }
+
+    fn refused(&self, error: &RestoreError) -> CliError {
+        let file = self.preprocess.as_deref().unwrap_or(Path::new("")).display().to_string();
+        match error {
+            RestoreError::Setting(error) => error.clone().into(),
+            RestoreError::Saved(why) => CliError::work(file, why.clone()).with_help("delete the file, and it is made anew"),
+        }
     }
 }

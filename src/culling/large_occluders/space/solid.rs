@@ -211,8 +211,9 @@ fn tangents_naive(edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> Option<[u8; 2]> {
     let touches = |sign: f64| {
         (0..8u8).find(|&i| {
             let normal = edge.along.cross(arms[i as usize]) * sign;
-            // A corner on the line itself spans no plane.
-            normal != DVec3::ZERO && arms.iter().all(|arm| normal.dot(*arm) >= 0.0)
+            // A corner on the line itself spans no plane; one that the plane contains too may round to either side.
+            let slack = -1e-14 * normal.length();
+            normal != DVec3::ZERO && arms.iter().all(|arm| normal.dot(*arm) >= slack * arm.length())
         })
     };
     Some([touches(1.0)?, touches(-1.0)?])
