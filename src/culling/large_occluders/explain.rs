@@ -267,7 +267,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 number("box_farthest_behind_units", n.behind[1]),
                 integer("edge", n.decisive.edge.into()),
                 integer("tangent_corner", n.decisive.vertex.into()),
-                number("eye_distance_units", n.decisive.distance),
+                number("viewpoint_distance_units", n.decisive.distance),
                 number("needed_units", n.decisive.needed),
                 number("margin_units", n.decisive.distance - n.decisive.needed),
                 Field { name: "supporting_satisfied", value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)) },
