@@ -11,6 +11,7 @@ mod explore;
 mod figure;
 mod methods;
 mod output;
+mod paper;
 mod progress;
 mod scene;
 mod step;
@@ -56,6 +57,8 @@ enum Command {
     Step(step::Args),
     /// Write built-in figures as SVG, PDF or PNG
     Figure(figure::Args),
+    /// Measure the tables of the papers, beside the papers' own figures
+    Paper(paper::Args),
     /// List the methods and their parameters
     Methods(methods::Args),
     /// Look into scenes and convert them
@@ -81,6 +84,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Cull(args)) => cull::run(&args),
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Figure(args)) => figure::run(&args),
+        Some(Command::Paper(args)) => paper::run(&args),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Trace(command)) => trace::run(&command),

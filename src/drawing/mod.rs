@@ -6,6 +6,9 @@
 //! readers of one list, so they cannot disagree.
 
 pub mod metrics;
+mod plot;
+
+pub use plot::{Plot, Series, Shape};
 
 use std::sync::Arc;
 

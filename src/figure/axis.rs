@@ -135,17 +135,32 @@ impl Axis {
 /// Draws the frame, grid and labels of a chart and returns the rectangle of its data; `min` and `max` are the corners of
 /// all that it takes.
 pub fn axes(to: &mut Drawing, x: &Axis, y: &Axis, min: Vec2, max: Vec2) -> [Vec2; 2] {
-    const SIZE_PT: f32 = 7.0;
-    let (x_marks, y_marks) = (x.marks(6), y.marks(6));
+    let marks: Vec<(f32, String)> = x.marks(6).into_iter().map(|(value, text)| (x.place(value), text)).collect();
+    axes_with(to, &marks, &x.label, true, y, [min, max])
+}
+
+/// Size of the labels of axes.
+const SIZE_PT: f32 = 7.0;
+
+/// As [`axes`], with these marks along x: place from 0 to 1 and label, of several lines if there are line breaks in it;
+/// `grid`: with a line up from each.
+pub fn axes_with(to: &mut Drawing, x_marks: &[(f32, String)], x_label: &str, grid: bool, y: &Axis, [min, max]: [Vec2; 2]) -> [Vec2; 2] {
+    let y_marks = y.marks(6);
     let widest = y_marks.iter().map(|(_, text)| metrics::width_pt(text, crate::drawing::Font::Regular, SIZE_PT)).fold(0.0, f32::max);
+    let lines = x_marks.iter().map(|(_, text)| text.split('\n').count()).max().unwrap_or(1);
+    let below = SIZE_PT * (1.8 + 1.2 * (lines as f32 - 1.0)) + if x_label.is_empty() { 0.0 } else { SIZE_PT * 1.2 };
     // The label of the y axis stands above it, so that no text is turned.
-    let inner = [min + vec2(widest + 4.0, SIZE_PT * 2.0), max - vec2(SIZE_PT * 1.5, SIZE_PT * 3.0)];
+    let inner = [min + vec2(widest + 4.0, SIZE_PT * 2.0), max - vec2(SIZE_PT * 1.5, below)];
     let size = (inner[1] - inner[0]).max(Vec2::ONE);
     let at = |u: f32, v: f32| vec2(inner[0].x + u * size.x, inner[1].y - v * size.y);
-    for (value, text) in &x_marks {
-        let p = at(x.place(*value), 0.0);
-        to.line(Layer::Ground, Role::Faint, Subject::None, [p, vec2(p.x, inner[0].y)]);
-        to.text(Layer::Labels, Role::Ink, p + vec2(0.0, SIZE_PT * 1.2), SIZE_PT, Anchor::Middle, text.clone());
+    for (place, text) in x_marks {
+        let p = at(*place, 0.0);
+        if grid {
+            to.line(Layer::Ground, Role::Faint, Subject::None, [p, vec2(p.x, inner[0].y)]);
+        }
+        for (i, line) in text.split('\n').enumerate() {
+            to.text(Layer::Labels, Role::Ink, p + vec2(0.0, SIZE_PT * 1.2 * (i as f32 + 1.0)), SIZE_PT, Anchor::Middle, line);
+        }
     }
     for (value, text) in &y_marks {
         let p = at(0.0, y.place(*value));
@@ -154,7 +169,9 @@ pub fn axes(to: &mut Drawing, x: &Axis, y: &Axis, min: Vec2, max: Vec2) -> [Vec2
     }
     let corners = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
     to.push(Layer::Ground, Role::Ink, Subject::None, Mark::Line { points: corners.to_vec(), closed: true });
-    to.text(Layer::Labels, Role::Ink, vec2(inner[1].x, max.y - SIZE_PT * 0.4), SIZE_PT, Anchor::End, x.label.clone());
+    if !x_label.is_empty() {
+        to.text(Layer::Labels, Role::Ink, vec2(inner[1].x, max.y - SIZE_PT * 0.4), SIZE_PT, Anchor::End, x_label);
+    }
     to.text(Layer::Labels, Role::Ink, vec2(min.x, min.y + SIZE_PT), SIZE_PT, Anchor::Start, y.label.clone());
     inner
 }

@@ -6,6 +6,7 @@
 
 pub mod axis;
 mod builtin;
+mod chart;
 mod clip;
 mod look;
 pub mod page;
@@ -14,6 +15,7 @@ mod pick;
 mod place;
 
 pub use builtin::{BUILTIN, Builtin, Tint};
+pub use chart::chart;
 pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};

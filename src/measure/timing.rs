@@ -73,8 +73,14 @@ pub fn paired(rounds: usize, mut a: impl FnMut(), mut b: impl FnMut()) -> Paired
     }
 }
 
+/// The middle one of some values; 0 if there are none.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    quantile(&values, 0.5)
+}
+
 /// The value below which a share of an ascending list lies, interpolated; 0 for an empty one.
-fn quantile(ascending: &[f64], share: f64) -> f64 {
+pub(super) fn quantile(ascending: &[f64], share: f64) -> f64 {
     let Some(last) = ascending.len().checked_sub(1) else { return 0.0 };
     let at = share * last as f64;
     let (low, high) = (ascending[at.floor() as usize], ascending[at.ceil() as usize]);

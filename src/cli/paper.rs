@@ -1,0 +1,165 @@
+//! `cullscope paper`: the tables of the papers, measured here, beside the papers' own figures.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::reason;
+use super::methods::{json_text, settings};
+use super::progress::Bar;
+use super::{CliError, output, scene, suggest};
+use crate::figure::chart;
+use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::raster::Target;
+use crate::render::{self, PngSize, SvgOptions, Theme};
+use crate::scene::{LoadOptions, Part};
+
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  cullscope paper coorg-teller-table-1\n  cullscope paper coorg-teller-table-3 --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n\nA file for each format but text, which is printed. Times are wall clock on one thread; measure with a release build."
+)]
+pub(super) struct Args {
+    /// Which tables; --list names them
+    #[arg(value_name = "NAME", conflicts_with_all = ["all", "list"])]
+    names: Vec<String>,
+    /// All of them
+    #[arg(long, conflicts_with = "list")]
+    all: bool,
+    /// List the tables instead
+    #[arg(long)]
+    list: bool,
+    /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]; may be given several times [default:
+    /// generate:building and generate:city]
+    #[arg(long, value_name = "SCENE")]
+    scene: Vec<String>,
+    /// Frames that are measured on each scene
+    #[arg(long, value_name = "N", default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    frames: u32,
+    /// A parameter of the method; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Every how many frames the answer is compared with the truth; 0: never
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    check_every: u32,
+    /// Image size in pixels [default: that of the path]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// Formats, separated by commas
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "text")]
+    format: Vec<Format>,
+    /// Folder for the files; it is made if it is missing
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
+enum Format {
+    /// Aligned, to standard output
+    Text,
+    /// The table, with every digit
+    Csv,
+    /// The table, its scenes and parameters, with every digit
+    Json,
+    /// The chart
+    Svg,
+    /// The chart
+    Pdf,
+    /// The chart
+    Png,
+}
+
+/// Dots an inch of PNG charts: what journals ask for.
+const DPI: f32 = 300.0;
+/// What the paper's models are likened to.
+const SCENES: [&str; 2] = ["generate:building", "generate:city"];
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
+    let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    both.ok_or_else(|| format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX))
+}
+
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
+    if args.list {
+        let mut text = String::new();
+        for experiment in EXPERIMENTS {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{:<24} {}", experiment.name, experiment.summary);
+        }
+        return output::print(text.as_bytes());
+    }
+    let experiments = chosen(args)?;
+    let setup = Setup { frames: args.frames as usize, settings: settings(&args.set)?, check_every: args.check_every as usize, size_px: args.size };
+    for experiment in &experiments {
+        experiment.check(&setup.settings).map_err(explained)?;
+    }
+    let formats: BTreeSet<Format> = args.format.iter().copied().collect();
+    let sources: Vec<&str> = if args.scene.is_empty() { SCENES.to_vec() } else { args.scene.iter().map(String::as_str).collect() };
+    let scenes = sources.iter().map(|s| scene::open(s, &LoadOptions::default())).collect::<Result<Vec<_>, _>>()?;
+    if formats.iter().any(|f| *f != Format::Text) {
+        fs::create_dir_all(&args.out).map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
+    }
+    for (i, experiment) in experiments.iter().enumerate() {
+        let n = experiments.len() as f32;
+        let bar = Bar::new();
+        let part = Part { whole: &bar, start: i as f32 / n, length: 1.0 / n };
+        let report = experiment.run(&scenes, &setup, &part).map_err(explained)?;
+        drop(bar);
+        for format in &formats {
+            write(&report, *format, &args.out, &recipe(args, experiment))?;
+        }
+    }
+    Ok(())
+}
+
+fn explained(error: PaperError) -> CliError {
+    match error {
+        PaperError::Setting(error) => error.into(),
+        PaperError::Cancelled => CliError::Interrupted,
+    }
+}
+
+/// The call that makes the same again.
+fn recipe(args: &Args, experiment: &Experiment) -> String {
+    let mut text = format!("cullscope paper {} --frames {}", experiment.name, args.frames);
+    let mut add = |option: &str, words: &[String]| words.iter().for_each(|w| text += &format!(" {option} {w}"));
+    add("--scene", &args.scene);
+    add("--set", &args.set);
+    text
+}
+
+fn write(report: &Report, format: Format, folder: &Path, recipe: &str) -> Result<(), CliError> {
+    let failed = |e: render::RenderError| CliError::work(report.name, e.to_string());
+    let drawing = || chart(report.title, &report.plots, &report.caption());
+    let (extension, bytes) = match format {
+        Format::Text => return output::print((report.text() + "\n").as_bytes()),
+        Format::Csv => ("csv", report.table.csv().into_bytes()),
+        Format::Json => ("json", json_text(&report.json()).into_bytes()),
+        Format::Svg => {
+            let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };
+            ("svg", render::svg(&drawing(), Theme::Print, &options).into_bytes())
+        }
+        Format::Pdf => ("pdf", render::pdf(&drawing(), Theme::Print, Some(recipe)).map_err(failed)?),
+        Format::Png => ("png", render::png(&drawing(), Theme::Print, PngSize::Dpi(DPI), Some(recipe)).map_err(failed)?),
+    };
+    let path = folder.join(format!("{}.{extension}", report.name));
+    output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
+    output::say(&path.display().to_string());
+    Ok(())
+}
+
+fn chosen(args: &Args) -> Result<Vec<&'static Experiment>, CliError> {
+    let known: Vec<&str> = EXPERIMENTS.iter().map(|e| e.name).collect();
+    if args.all {
+        return Ok(EXPERIMENTS.iter().collect());
+    }
+    if args.names.is_empty() {
+        return Err(CliError::words("paper", "no table is named").with_help(format!("give a NAME or --all; tables: {}", known.join(", "))));
+    }
+    let find = |name: &String| {
+        let missing = || CliError::words(name.as_str(), "there is no such table").with_help(suggest::help(name, &known, "tables"));
+        Experiment::named(name).ok_or_else(missing)
+    };
+    args.names.iter().map(find).collect()
+}

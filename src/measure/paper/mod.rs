@@ -1,0 +1,289 @@
+//! The tables of Coorg and Teller, "Real-Time Occlusion Culling for Models with Large Occluders", I3D 1997,
+//! <https://doi.org/10.1145/253284.253312>, Section 4, measured on any scene beside the paper's own figures.
+//!
+//! An [`Experiment`] is a value: a name, and what it runs on each scene. All walk the scene's path `figure 8` (where a
+//! scene has none, one through its middle), at [`WALKING_STEP_M`] a frame where the method remembers. The paper's
+//! models and machines are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the
+//! answers are checked: the triangles that an item buffer shows and the method did not draw are counted (0 expected).
+
+mod nodes;
+mod occluders;
+mod table_1;
+mod table_2;
+mod table_3;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+use std::sync::Arc;
+
+use serde_json::{Map, Value as Json, json};
+
+use super::table::{Cell, Column, Table};
+use crate::culling::{KnobValue, Methods, SettingError, Settings};
+use crate::drawing::Plot;
+use crate::geometry::{Flat, Solid};
+use crate::raster::Drawable;
+use crate::scene::{AnyScene, Part, Progress, Scene};
+
+/// Key of the method that the paper is about, and of the one that it compares with.
+const METHOD: &str = "large-occluders";
+const BASELINE: &str = "frustum";
+
+/// A space in which experiments work.
+trait World: Methods + Drawable {}
+impl<S: Methods + Drawable> World for S {}
+
+/// What an experiment may be told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// Frames that are measured on each scene (at each speed, at each value of a parameter); at least 1.
+    pub frames: usize,
+    /// Parameters of the method; those that view-frustum culling has too are given to it as well.
+    pub settings: Settings,
+    /// Every how many of the measured frames the answer is compared with the truth; 0: never.
+    pub check_every: usize,
+    /// Size of the image, if not that of the path.
+    pub size_px: Option<[u32; 2]>,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self { frames: 240, settings: Settings::default(), check_every: 8, size_px: None }
+    }
+}
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+pub enum PaperError {
+    /// A parameter that the method does not have, or whose value does not fit.
+    #[error(transparent)]
+    Setting(#[from] SettingError),
+    /// Somebody stopped it.
+    #[error("stopped as asked")]
+    Cancelled,
+}
+
+/// A scene that was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Short name.
+    pub name: String,
+    /// As it may be given again.
+    pub source: String,
+    /// Primitives.
+    pub prims: usize,
+    /// What they are called.
+    pub prim: &'static str,
+    /// The path that was walked.
+    pub path: String,
+}
+
+/// What came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Name of the experiment.
+    pub name: &'static str,
+    /// Its title.
+    pub title: &'static str,
+    /// The rows: ours first, then the paper's.
+    pub table: Table,
+    /// The charts.
+    pub plots: Vec<Plot>,
+    /// The scenes.
+    pub scenes: Vec<Measured>,
+    /// Parameters of the method that the experiment does not vary.
+    pub params: Vec<(&'static str, String)>,
+    /// Frames a scene, at most.
+    pub frames: usize,
+    /// What is to be known for reading the table.
+    pub notes: Vec<&'static str>,
+}
+
+impl Report {
+    /// Scenes and parameters in a few sentences, for under a chart.
+    pub fn caption(&self) -> String {
+        let scene = |m: &Measured| format!("{} ({} {}s, path {})", m.name, m.prims, m.prim, m.path);
+        let scenes = self.scenes.iter().map(scene).collect::<Vec<_>>().join(", ");
+        let params = self.params.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
+        format!("{scenes}; {params}; {} frames. {}", self.frames, self.notes.join(" "))
+    }
+    /// Title, table, and what is to be known, for people.
+    pub fn text(&self) -> String {
+        format!("{}\n\n{}\n{}\n", self.title, self.table.text(), self.caption())
+    }
+    /// Everything, with every digit.
+    pub fn json(&self) -> Json {
+        let columns = self.table.columns.iter().map(|c| json!({"key": c.key, "title": c.title, "unit": c.unit})).collect::<Vec<_>>();
+        let scenes = self.scenes.iter().map(|m| json!({"name": m.name, "source": m.source, "primitives": m.prims, "path": m.path}));
+        let params = self.params.iter().map(|(k, v)| ((*k).to_owned(), json!(v))).collect::<Map<_, _>>();
+        json!({
+            "cullscope": env!("CARGO_PKG_VERSION"),
+            "experiment": self.name,
+            "title": self.title,
+            "paper_doi": "10.1145/253284.253312",
+            "scenes": scenes.collect::<Vec<_>>(),
+            "params": params,
+            "frames": self.frames,
+            "columns": columns,
+            "rows": self.table.json(),
+            "notes": self.notes,
+        })
+    }
+}
+
+/// One of the paper's tables, or a question that it leaves open.
+pub struct Experiment {
+    /// Kebab-case name.
+    pub name: &'static str,
+    /// Title of the result.
+    pub title: &'static str,
+    /// One line for lists.
+    pub summary: &'static str,
+    /// What else is to be known for reading the table.
+    notes: &'static [&'static str],
+    /// Parameters that it varies itself.
+    varies: &'static [&'static str],
+    sweep: &'static Sweep,
+}
+
+/// All of them, in the order of lists.
+pub static EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "coorg-teller-table-1",
+        title: "Coorg and Teller 1997, Table 1: polygons drawn",
+        summary: "Percent of the polygons drawn after view-frustum culling and after occlusion culling",
+        notes: &["Averages over views evenly spaced along the whole path."],
+        varies: &[],
+        sweep: &table_1::SWEEP,
+    },
+    Experiment {
+        name: "coorg-teller-table-2",
+        title: "Coorg and Teller 1997, Table 2: time to cull and to draw",
+        summary: "Milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion culling",
+        notes: &[TIMES, "We draw with a software rasterizer, the paper with graphics hardware of its time."],
+        varies: &[],
+        sweep: &table_2::SWEEP,
+    },
+    Experiment {
+        name: "coorg-teller-table-3",
+        title: "Coorg and Teller 1997, Table 3: time in visibility against speed",
+        summary: "Time to cull a frame against the speed of the walker, with and without planes kept from frame to frame",
+        notes: &[TIMES, "Ours is all of culling, view-frustum tests and gathering included; the paper leaves out the view-frustum tests."],
+        varies: &["cache"],
+        sweep: &table_3::SWEEP,
+    },
+    Experiment {
+        name: "coorg-teller-nodes",
+        title: "Coorg and Teller 1997, Section 4.1: nodes tested for occlusion",
+        summary: "kD-tree nodes tested for occlusion a frame, and their share of those in the view frustum",
+        notes: &["Low and high are the quartiles over the frames; for the paper, the ends of the range that it states for both models."],
+        varies: &[],
+        sweep: &nodes::SWEEP,
+    },
+    Experiment {
+        name: "coorg-teller-occluders",
+        title: "Coorg and Teller 1997, Section 5: how many occluders",
+        summary: "Polygons drawn and time to cull against the number of occluders, fixed or by their marginal gain",
+        notes: &[TIMES, "The paper has 32 occluders and states no figures for others; by marginal gain at most 64 are taken."],
+        varies: &["occluders", "marginal-gain"],
+        sweep: &occluders::SWEEP,
+    },
+];
+
+/// How times were taken.
+const TIMES: &str = "Wall-clock times on one thread; of each frame the median of three rounds, then the mean over the frames of a walk at walking \
+                     speed, interleaved.";
+
+impl Experiment {
+    /// The experiment with this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        EXPERIMENTS.iter().find(|e| e.name == name)
+    }
+
+    /// Whether the parameters are fine.
+    ///
+    /// # Errors
+    /// As [`Experiment::run`].
+    pub fn check(&self, settings: &Settings) -> Result<(), PaperError> {
+        Ok(method::<Solid>(METHOD).knobs(settings).map(drop)?)
+    }
+
+    /// Runs it on scenes, one after the other.
+    ///
+    /// # Errors
+    /// A parameter that does not fit; or it was cancelled.
+    pub fn run(&self, scenes: &[AnyScene], setup: &Setup, progress: &dyn Progress) -> Result<Report, PaperError> {
+        self.check(&setup.settings)?;
+        let setup = Setup { frames: setup.frames.max(1), ..setup.clone() };
+        let mut table = Table::new(self.sweep.columns);
+        let mut measured = Vec::new();
+        for (i, scene) in scenes.iter().enumerate() {
+            let n = scenes.len() as f32;
+            let part = Part { whole: progress, start: i as f32 / n, length: 1.0 / n };
+            let (rows, about) = match scene {
+                AnyScene::Flat(scene) => (self.sweep.flat)(scene, &setup, &part)?,
+                AnyScene::Solid(scene) => (self.sweep.solid)(scene, &setup, &part)?,
+            };
+            table.rows.extend(rows);
+            measured.push(about);
+        }
+        let plots = (self.sweep.plots)(&table);
+        table.rows.extend((self.sweep.paper)());
+        let knobs = method::<Solid>(METHOD).knobs(&setup.settings)?;
+        let fixed = knobs.iter().filter(|(k, _)| !self.varies.contains(&k.name));
+        let params = fixed.map(|(k, v): &(_, KnobValue)| (k.name, v.to_string())).collect();
+        let (name, title, notes) = (self.name, self.title, self.notes.to_vec());
+        Ok(Report { name, title, table, plots, scenes: measured, params, frames: setup.frames, notes })
+    }
+}
+
+/// A method that every build has.
+fn method<S: Methods>(key: &str) -> &'static dyn crate::culling::Entry<S> {
+    S::methods().iter().copied().find(|m| m.card().key == key).unwrap_or(S::methods()[0])
+}
+
+/// What an experiment does.
+struct Sweep {
+    columns: &'static [Column],
+    /// The rows of a scene of flatland.
+    flat: On<Flat>,
+    /// The rows of a scene of space.
+    solid: On<Solid>,
+    /// The paper's rows.
+    paper: fn() -> Vec<Vec<Cell>>,
+    /// Charts of the measured rows; they know the paper's figures.
+    plots: fn(&Table) -> Vec<Plot>,
+}
+
+/// Measures a scene.
+type On<S> = fn(&Arc<Scene<S>>, &Setup, &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError>;
+
+/// Columns that several tables have.
+const SOURCE: Column = Column { key: "source", title: "source", unit: "", decimals: 0 };
+const SCENE: Column = Column { key: "scene", title: "scene", unit: "", decimals: 0 };
+const MISSED: Column = Column { key: "missed_triangles", title: "missed", unit: "triangles", decimals: 0 };
+const CHECKED: Column = Column { key: "checked_views", title: "checked", unit: "views", decimals: 0 };
+
+const fn column(key: &'static str, title: &'static str, unit: &'static str, decimals: usize) -> Column {
+    Column { key, title, unit, decimals }
+}
+
+/// The rows of each scene, in order, with its name.
+fn by_scene(table: &Table) -> Vec<(String, Vec<usize>)> {
+    let mut scenes: Vec<(String, Vec<usize>)> = Vec::new();
+    let Some(at) = table.columns.iter().position(|c| c.key == SCENE.key) else { return scenes };
+    for (r, row) in table.rows.iter().enumerate() {
+        let Cell::Text(name) = &row[at] else { continue };
+        match scenes.last_mut().filter(|(last, _)| last == name) {
+            Some((_, rows)) => rows.push(r),
+            None => scenes.push((name.clone(), vec![r])),
+        }
+    }
+    scenes
+}
+
+/// A part of a work.
+fn part(whole: &dyn Progress, start: f32, end: f32) -> Part<'_> {
+    Part { whole, start, length: end - start }
+}

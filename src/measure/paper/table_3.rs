@@ -1,0 +1,108 @@
+//! Table 3: time in visibility processing against the speed of the walker: what temporal coherence saves.
+//!
+//! The paper's caption calls the speeds multiples of the slowest one, which is walking speed; but its slowest is 0.25.
+//! Here 1 is walking speed, as in Tables 1 and 2.
+
+use std::sync::Arc;
+
+use super::walk::{Checked, Moment, Site, times};
+use super::{CHECKED, MISSED, Measured, PaperError, SCENE, Setup, Sweep, World, by_scene, column, part};
+use crate::culling::Run;
+use crate::drawing::{Plot, Role, Series, Shape};
+use crate::geometry::WALKING_STEP_M;
+use crate::measure::table::{Cell, Table};
+use crate::measure::timed;
+use crate::scene::{Progress, Scene};
+
+pub const SWEEP: Sweep = Sweep {
+    columns: &[
+        SCENE,
+        column("speed_ratio", "speed", "× walking", 2),
+        column("cull_ms", "cull", "ms", 3),
+        column("no_cache_cull_ms", "no cache", "ms", 3),
+        column("frustum_cull_ms", "frustum", "ms", 3),
+        column("cull_ratio", "cull", "of 1×", 2),
+        column("no_cache_ratio", "no cache", "of 1×", 2),
+        column("paper_soda_ms", "Soda", "ms", 0),
+        column("paper_soda_ratio", "Soda", "of 1×", 2),
+        column("paper_city_ms", "City", "ms", 0),
+        column("paper_city_ratio", "City", "of 1×", 2),
+        MISSED,
+        CHECKED,
+    ],
+    flat: rows,
+    solid: rows,
+    paper: Vec::new,
+    plots,
+};
+
+/// Speed as a multiple of walking, then Soda and City, ms.
+const PAPER: [(f64, [f64; 2]); 7] = [
+    (0.25, [17.0, 19.0]),
+    (0.5, [18.0, 21.0]),
+    (1.0, [21.0, 24.0]),
+    (2.0, [25.0, 29.0]),
+    (4.0, [32.0, 35.0]),
+    (8.0, [45.0, 45.0]),
+    (16.0, [56.0, 55.0]),
+];
+/// Where in [`PAPER`] walking speed stands.
+const WALKING: usize = 2;
+
+fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+    let mut site = Site::new(scene, setup);
+    let mut frustum = site.frustum(&part(progress, 0.0, 0.04))?;
+    let mut kept = site.occlusion(&[("cache", "true")], &part(progress, 0.04, 0.1))?;
+    let mut fresh = site.occlusion(&[("cache", "false")], &part(progress, 0.1, 0.16))?;
+    let mut measured = Vec::new();
+    for (i, (speed, _)) in PAPER.iter().enumerate() {
+        let (from, to) = (0.16 + 0.12 * i as f32, 0.16 + 0.12 * (i + 1) as f32);
+        let stretches = site.stretches(WALKING_STEP_M * *speed as f32);
+        let all = times(&stretches, &part(progress, from, to - 0.02), |moment| {
+            let Moment::Frame(view) = moment else {
+                kept.forget();
+                fresh.forget();
+                return [0.0; 3];
+            };
+            let cull = |run: &mut dyn Run<S>| timed(|| run.cull(view)).1;
+            [cull(&mut *kept), cull(&mut *fresh), cull(&mut *frustum)]
+        })?;
+        kept.forget();
+        let mut checked = Checked::default();
+        let last = part(progress, to - 0.02, to);
+        for stretch in &stretches {
+            checked.join(site.check(&mut *kept, &stretch.frames, &last)?);
+        }
+        measured.push((all, checked));
+    }
+    let about = site.about();
+    let walking = measured[WALKING].0[0];
+    let row = |(([kept, fresh, frustum], checked), (speed, theirs)): (&([f64; 3], Checked), &(f64, [f64; 2]))| {
+        let ratio = |scene: usize| theirs[scene] / PAPER[WALKING].1[scene];
+        let numbers = [*speed, *kept, *fresh, *frustum, kept / walking, fresh / walking, theirs[0], ratio(0), theirs[1], ratio(1)].map(Cell::from);
+        let name = [Cell::from(about.name.as_str())];
+        name.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect()
+    };
+    let rows = measured.iter().zip(&PAPER).map(row).collect();
+    Ok((rows, about))
+}
+
+fn plots(table: &Table) -> Vec<Plot> {
+    let panel = |(name, rows): (String, Vec<usize>)| {
+        let ours = |key: &str| rows.iter().filter_map(|&r| Some((table.number(r, "speed_ratio")?, table.number(r, key)?))).collect();
+        let theirs = |scene: usize| PAPER.iter().map(|(speed, t)| (*speed, t[scene] / PAPER[WALKING].1[scene])).collect();
+        Plot {
+            title: name,
+            x_label: "speed, multiples of walking".into(),
+            y_label: "time to cull, multiples of that at walking speed".into(),
+            shape: Shape::Lines { logarithmic: true, ticks: PAPER.iter().map(|p| p.0).collect() },
+            series: vec![
+                Series::new("planes kept", Role::Visible, ours("cull_ratio")),
+                Series::new("planes made anew every frame", Role::Occluder, ours("no_cache_ratio")),
+                Series::new("planes kept, paper, Soda", Role::Hidden, theirs(0)),
+                Series::new("planes kept, paper, City", Role::Approximated, theirs(1)),
+            ],
+        }
+    };
+    by_scene(table).into_iter().map(panel).collect()
+}
