@@ -80,11 +80,12 @@ fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn every_command_explains_itself_with_an_example() {
     let here = folder("help");
-    let commands: [&[&str]; 9] = [
+    let commands: [&[&str]; 10] = [
         &["explore"],
         &["cull"],
         &["step"],
         &["figure"],
+        &["paper"],
         &["methods"],
         &["scene", "info"],
         &["scene", "generators"],
@@ -430,4 +431,33 @@ fn the_explorer_says_what_it_lacks_before_it_opens_a_window() {
         let (code, said) = explore(words);
         assert_eq!((code, said.starts_with(start)), (Some(status), true), "{words:?}: {said}");
     }
+}
+
+#[test]
+fn tables_of_the_paper_are_measured_and_written() {
+    let here = folder("paper");
+    let listed = done(&here, &["paper", "--list"]);
+    assert_eq!(listed.lines().count(), 5);
+    let scene = ["--scene", "generate:building?polygons=3000", "--frames", "6", "--size", "96x64", "--check-every", "3"];
+    let formats = ["--format", "csv,text,json,svg,pdf,png", "--out", "tables"];
+    let text = done(&here, &with(&["paper", "coorg-teller-table-1"], &with(&scene, &formats)));
+    assert!(text.contains("Soda") && text.contains("134,832") && text.contains("building"), "{text}");
+    let read = |name: &str| fs::read(here.join("tables").join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let csv = String::from_utf8(read("coorg-teller-table-1.csv")).expect("UTF-8");
+    let head = "source,scene,polygons,frustum_percent,occlusion_percent,reduction_ratio,missed_triangles,checked_views";
+    assert_eq!(csv.lines().next(), Some(head));
+    assert_eq!(csv.lines().nth(2), Some("paper,Soda,134832,19.7,2.6,7.576923076923077,,"));
+    let report: Json = json(&String::from_utf8(read("coorg-teller-table-1.json")).expect("UTF-8"));
+    assert_eq!(report["rows"][0]["missed_triangles"], 0);
+    assert_eq!(report["rows"][0]["checked_views"], 2);
+    assert!(report["rows"][0]["frustum_percent"].as_f64() >= report["rows"][0]["occlusion_percent"].as_f64());
+    assert_eq!(report["params"]["occluders"], "32");
+    assert!(read("coorg-teller-table-1.svg").starts_with(b"<svg") && read("coorg-teller-table-1.pdf").starts_with(b"%PDF"));
+    assert!(read("coorg-teller-table-1.png").starts_with(b"\x89PNG"));
+    assert_eq!(fs::read_dir(here.join("tables")).expect("a folder").count(), 5, "and no unfinished file");
+    assert!(refused(&here, &["paper"], 2).contains("coorg-teller-table-1"));
+    assert!(refused(&here, &["paper", "coorg-teller-tabel-1"], 2).contains("did you mean `coorg-teller-table-1`"));
+    assert!(refused(&here, &["paper", "coorg-teller-nodes", "--set", "occluder=3"], 2).contains("occluders"));
+    refused(&here, &["paper", "coorg-teller-nodes", "--scene", "missing.obj"], 1);
+    refused(&here, &["paper", "coorg-teller-nodes", "--size", "0x3"], 2);
 }

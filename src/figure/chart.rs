@@ -4,7 +4,7 @@
 
 use glam::{Vec2, vec2};
 
-use super::axis::{Axis, axes_with, tick_label};
+use super::axis::{Axis, axes_with};
 use super::page::{Entry, Page, Paper, Swatch};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Plot, Role, Series, Shape, Subject, metrics};
 
@@ -121,7 +121,7 @@ fn lines(to: &mut Drawing, plot: &Plot, logarithmic: bool, ticks: &[f64], place:
     let marks: Vec<(f32, String)> = if ticks.is_empty() {
         x.marks(6).into_iter().map(|(value, text)| (x.place(value), text)).collect()
     } else {
-        ticks.iter().map(|t| (x.place(*t), tick_label(*t, t.fract()))).collect()
+        ticks.iter().map(|t| (x.place(*t), t.to_string())).collect()
     };
     let [low, high] = axes_with(to, &marks, &plot.x_label, true, &y, place);
     let at = |p: &(f64, f64)| vec2(low.x + x.place(p.0) * (high.x - low.x), high.y - y.place(p.1) * (high.y - low.y));
@@ -147,10 +147,7 @@ mod tests {
             x_label: String::new(),
             y_label: "time, ms".into(),
             shape: Shape::Bars { groups: vec!["one\nscene".into(), "two".into()], stacked },
-            series: vec![
-                Series::new("a", Role::Visible, vec![(0.0, 30.0), (1.0, 20.0)]),
-                Series::new("b", Role::Hidden, vec![(0.0, 10.0)]),
-            ],
+            series: vec![Series::new("a", Role::Visible, vec![(0.0, 30.0), (1.0, 20.0)]), Series::new("b", Role::Hidden, vec![(0.0, 10.0)])],
         }
     }
 

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::table::{Cell, Column, Table};
+use super::table::{Cell, Column, Table, grouped};
 use crate::culling::{KnobValue, Methods, SettingError, Settings};
 use crate::drawing::Plot;
 use crate::geometry::{Flat, Solid};
@@ -103,7 +103,7 @@ pub struct Report {
 impl Report {
     /// Scenes and parameters in a few sentences, for under a chart.
     pub fn caption(&self) -> String {
-        let scene = |m: &Measured| format!("{} ({} {}s, path {})", m.name, m.prims, m.prim, m.path);
+        let scene = |m: &Measured| format!("{} ({} {}s, path {})", m.name, grouped(m.prims as f64, 0), m.prim, m.path);
         let scenes = self.scenes.iter().map(scene).collect::<Vec<_>>().join(", ");
         let params = self.params.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
         format!("{scenes}; {params}; {} frames. {}", self.frames, self.notes.join(" "))

@@ -35,6 +35,17 @@ pub const SWEEP: Sweep = Sweep {
 const FIXED: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
 /// Least marginal gains, percent, out of at most 64 occluders.
 const GAINS: [u32; 7] = [1, 2, 4, 8, 16, 32, 64];
+/// How many values are tried in all, and what they are values of.
+const ALL: usize = FIXED.len() + GAINS.len();
+const NUMBER: &str = "occluders";
+const GAIN: &str = "marginal-gain";
+/// The greatest number, which gains are tried with.
+const MOST: &str = "64";
+
+fn values() -> impl Iterator<Item = (&'static str, u32)> {
+    FIXED.into_iter().map(|v| (NUMBER, v)).chain(GAINS.into_iter().map(|v| (GAIN, v)))
+}
+
 /// The paper's number of occluders, and percent drawn for Soda and City (Table 1).
 const PAPER: (f64, [(&str, f64); 2]) = (32.0, [("Soda", 2.6), ("City", 5.6)]);
 
@@ -42,6 +53,7 @@ const PAPER: (f64, [(&str, f64); 2]) = (32.0, [("Soda", 2.6), ("City", 5.6)]);
 struct Tried<S: World> {
     run: Box<dyn Run<S>>,
     build_ms: f64,
+    parameter: &'static str,
     value: u32,
 }
 
@@ -53,44 +65,41 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let all = (views.len() * scene.live().len()) as f64;
     let before = 100.0 * views.iter().map(|v| frustum.cull(v).prims.len()).sum::<usize>() as f64 / all;
     let about = site.about();
+    let mut tried = Vec::with_capacity(ALL);
+    for (i, (parameter, value)) in values().enumerate() {
+        let text = value.to_string();
+        let settings = if parameter == NUMBER { [(NUMBER, &*text), (GAIN, "0")] } else { [(NUMBER, MOST), (GAIN, &*text)] };
+        let step = part(progress, 0.02 + i as f32 * 0.02, 0.04 + i as f32 * 0.02);
+        let (run, build_ms) = timed(|| site.occlusion(&settings, &step));
+        tried.push(Tried { run: run?, build_ms, parameter, value });
+    }
+    let cull_ms = time(&mut tried, stretches, &part(progress, 0.3, 0.65))?;
     let mut rows = Vec::new();
-    for (half, (parameter, values)) in [("occluders", FIXED), ("marginal-gain", GAINS)].into_iter().enumerate() {
-        let whole = part(progress, 0.02 + 0.49 * half as f32, 0.02 + 0.49 * (half + 1) as f32);
-        let mut tried = Vec::new();
-        for (i, value) in values.into_iter().enumerate() {
-            let text = value.to_string();
-            let settings = if half == 0 { [("occluders", &*text), ("marginal-gain", "0")] } else { [("occluders", "64"), ("marginal-gain", &*text)] };
-            let step = part(&whole, i as f32 * 0.05, (i + 1) as f32 * 0.05);
-            let (run, build_ms) = timed(|| site.occlusion(&settings, &step));
-            tried.push(Tried { run: run?, build_ms, value });
-        }
-        let cull_ms = time(&mut tried, &stretches, &part(&whole, 0.35, 0.7))?;
-        for (i, (one, cull_ms)) in tried.iter_mut().zip(cull_ms).enumerate() {
-            let step = part(&whole, 0.7 + i as f32 * 0.04, 0.7 + (i + 1) as f32 * 0.04);
-            one.run.forget();
-            let (mut drawn, mut active, mut checked) = (0, 0, Checked::default());
-            for (k, view) in views.iter().enumerate() {
-                stop_or_go(&step, k as f32 / views.len() as f32, "culling")?;
-                let (list, tally) = one.run.count(view);
-                drawn += list.prims.len();
-                active += tally.named().get("occluders_active").copied().unwrap_or(0);
-                if site.is_checked(k) {
-                    checked.add(site.missed(view, &list.prims));
-                }
+    for (i, (one, cull_ms)) in tried.iter_mut().zip(cull_ms).enumerate() {
+        let step = part(progress, 0.65 + i as f32 * 0.025, 0.675 + i as f32 * 0.025);
+        one.run.forget();
+        let (mut drawn, mut active, mut checked) = (0, 0, Checked::default());
+        for (k, view) in views.iter().enumerate() {
+            stop_or_go(&step, k as f32 / views.len() as f32, "culling")?;
+            let (list, tally) = one.run.count(view);
+            drawn += list.prims.len();
+            active += tally.named().get("occluders_active").copied().unwrap_or(0);
+            if site.is_checked(k) {
+                checked.add(site.missed(view, &list.prims));
             }
-            let percent = 100.0 * drawn as f64 / all;
-            let numbers = [f64::from(one.value), active as f64 / views.len() as f64, before, percent, cull_ms, one.build_ms].map(Cell::from);
-            let names = [about.name.as_str().into(), parameter.into()];
-            rows.push(names.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect());
         }
+        let percent = 100.0 * drawn as f64 / all;
+        let numbers = [f64::from(one.value), active as f64 / views.len() as f64, before, percent, cull_ms, one.build_ms].map(Cell::from);
+        let names = [about.name.as_str().into(), one.parameter.into()];
+        rows.push(names.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect());
     }
     Ok((rows, about))
 }
 
 /// All of them, frame by frame in turn.
-fn time<S: World>(tried: &mut [Tried<S>], stretches: &[Stretch<S>], progress: &dyn Progress) -> Result<[f64; FIXED.len()], PaperError> {
+fn time<S: World>(tried: &mut [Tried<S>], stretches: Vec<Stretch<S>>, progress: &dyn Progress) -> Result<[f64; ALL], PaperError> {
     times(stretches, progress, |moment| {
-        let mut all = [0.0; FIXED.len()];
+        let mut all = [0.0; ALL];
         for (time, one) in all.iter_mut().zip(tried.iter_mut()) {
             match moment {
                 Moment::Begin => one.run.forget(),
@@ -104,7 +113,7 @@ fn time<S: World>(tried: &mut [Tried<S>], stretches: &[Stretch<S>], progress: &d
 fn paper() -> Vec<Vec<Cell>> {
     let row = |(scene, percent): (&str, f64)| {
         let name = format!("{scene} (paper)");
-        let mut row = vec![Cell::Text(name), "occluders".into(), PAPER.0.into()];
+        let mut row = vec![Cell::Text(name), NUMBER.into(), PAPER.0.into()];
         row.resize(SWEEP.columns.len(), Cell::Missing);
         row[5] = percent.into();
         row
@@ -124,9 +133,9 @@ fn plots(table: &Table) -> Vec<Plot> {
     let mut by_time = Vec::new();
     for (i, (name, rows)) in scenes.iter().enumerate() {
         let (fixed, gain) = roles[i % roles.len()];
-        by_number.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, "occluders", "value", "occlusion_percent")));
-        by_time.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, "occluders", "cull_ms", "occlusion_percent")));
-        by_time.push(Series::new(format!("{name}, by marginal gain"), gain, line(rows, "marginal-gain", "cull_ms", "occlusion_percent")));
+        by_number.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, NUMBER, "value", "occlusion_percent")));
+        by_time.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, NUMBER, "cull_ms", "occlusion_percent")));
+        by_time.push(Series::new(format!("{name}, by marginal gain"), gain, line(rows, GAIN, "cull_ms", "occlusion_percent")));
     }
     let quoted = [Role::Hidden, Role::Approximated];
     by_number.extend(PAPER.1.iter().zip(quoted).map(|(p, role)| Series::new(format!("paper, {}", p.0), role, vec![(PAPER.0, p.1)])));

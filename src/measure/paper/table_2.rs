@@ -51,13 +51,14 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let mut frustum = site.frustum(&part(progress, 0.0, 0.05))?;
     let mut occlusion = site.occlusion(&[], &part(progress, 0.05, 0.2))?;
     let stretches = site.stretches(WALKING_STEP_M);
+    let walked: Vec<View<S>> = stretches.iter().flat_map(|s| s.frames.iter().copied()).collect();
     let mut target = Target::default();
     let mut frame = |run: &mut dyn Run<S>, view: &View<S>| {
         let (list, cull) = timed(|| run.cull(view));
         [cull, timed(|| site.draw(&mut target, view, &list.prims)).1]
     };
     let mut swap = false;
-    let all = times(&stretches, &part(progress, 0.2, 0.9), |moment| {
+    let all = times(stretches, &part(progress, 0.2, 0.9), |moment| {
         let Moment::Frame(view) = moment else {
             frustum.forget();
             occlusion.forget();
@@ -71,7 +72,6 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         [frustum_cull, frustum_draw, cull, draw]
     })?;
     occlusion.forget();
-    let walked: Vec<View<S>> = stretches.into_iter().flat_map(|s| s.frames).collect();
     let checked = site.check(&mut *occlusion, &walked, &part(progress, 0.9, 1.0))?;
     let about = site.about();
     let mut row = row("measured", &about.name, all);

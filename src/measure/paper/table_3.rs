@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::walk::{Checked, Moment, Site, times};
+use super::walk::{Checked, Moment, Site, Stretch, times_of};
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, Setup, Sweep, World, by_scene, column, part};
 use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
@@ -21,6 +21,7 @@ pub const SWEEP: Sweep = Sweep {
         column("cull_ms", "cull", "ms", 3),
         column("no_cache_cull_ms", "no cache", "ms", 3),
         column("frustum_cull_ms", "frustum", "ms", 3),
+        column("kept_ratio", "cull", "of no cache", 2),
         column("cull_ratio", "cull", "of 1×", 2),
         column("no_cache_ratio", "no cache", "of 1×", 2),
         column("paper_soda_ms", "Soda", "ms", 0),
@@ -54,36 +55,36 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let mut frustum = site.frustum(&part(progress, 0.0, 0.04))?;
     let mut kept = site.occlusion(&[("cache", "true")], &part(progress, 0.04, 0.1))?;
     let mut fresh = site.occlusion(&[("cache", "false")], &part(progress, 0.1, 0.16))?;
+    let walks: Vec<Vec<Stretch<S>>> = PAPER.iter().map(|(speed, _)| site.stretches(WALKING_STEP_M * *speed as f32)).collect();
+    let all = times_of(&walks, &part(progress, 0.16, 0.86), |moment| {
+        let Moment::Frame(view) = moment else {
+            kept.forget();
+            fresh.forget();
+            return [0.0; 3];
+        };
+        let cull = |run: &mut dyn Run<S>| timed(|| run.cull(view)).1;
+        [cull(&mut *kept), cull(&mut *fresh), cull(&mut *frustum)]
+    })?;
     let mut measured = Vec::new();
-    for (i, (speed, _)) in PAPER.iter().enumerate() {
-        let (from, to) = (0.16 + 0.12 * i as f32, 0.16 + 0.12 * (i + 1) as f32);
-        let stretches = site.stretches(WALKING_STEP_M * *speed as f32);
-        let all = times(&stretches, &part(progress, from, to - 0.02), |moment| {
-            let Moment::Frame(view) = moment else {
-                kept.forget();
-                fresh.forget();
-                return [0.0; 3];
-            };
-            let cull = |run: &mut dyn Run<S>| timed(|| run.cull(view)).1;
-            [cull(&mut *kept), cull(&mut *fresh), cull(&mut *frustum)]
-        })?;
+    for (i, (times, stretches)) in all.into_iter().zip(&walks).enumerate() {
         kept.forget();
         let mut checked = Checked::default();
-        let last = part(progress, to - 0.02, to);
-        for stretch in &stretches {
-            checked.join(site.check(&mut *kept, &stretch.frames, &last)?);
+        let step = part(progress, 0.86 + 0.02 * i as f32, 0.88 + 0.02 * i as f32);
+        for stretch in stretches {
+            checked.join(site.check(&mut *kept, &stretch.frames, &step)?);
         }
-        measured.push((all, checked));
+        measured.push((times, checked));
     }
     let about = site.about();
     let walking = measured[WALKING].0[0];
-    let row = |(([kept, fresh, frustum], checked), (speed, theirs)): (&([f64; 3], Checked), &(f64, [f64; 2]))| {
+    let mut rows = Vec::new();
+    for (([kept, fresh, frustum], checked), (speed, theirs)) in measured.into_iter().zip(&PAPER) {
         let ratio = |scene: usize| theirs[scene] / PAPER[WALKING].1[scene];
-        let numbers = [*speed, *kept, *fresh, *frustum, kept / walking, fresh / walking, theirs[0], ratio(0), theirs[1], ratio(1)].map(Cell::from);
+        let ours = [*speed, kept, fresh, frustum, kept / fresh, kept / walking, fresh / walking];
+        let numbers = ours.into_iter().chain([theirs[0], ratio(0), theirs[1], ratio(1)]).map(Cell::from);
         let name = [Cell::from(about.name.as_str())];
-        name.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect()
-    };
-    let rows = measured.iter().zip(&PAPER).map(row).collect();
+        rows.push(name.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect());
+    }
     Ok((rows, about))
 }
 

@@ -35,7 +35,8 @@ fn table_1_is_what_the_draw_lists_say() {
     let n = path.views.len();
     let at = |k: usize| path.views[k % n].eye.position;
     let length: f32 = (0..n).map(|k| at(k).distance(at(k + 1))).sum();
-    let views = path.walked(length / 12.0, 12).views;
+    let mut views = path.walked(length / 12.0, 12).views;
+    views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
     let mut percent = Vec::new();
     for key in ["frustum", "large-occluders"] {
         let entry = Solid::method(key).expect("a method");
@@ -96,7 +97,7 @@ fn every_experiment_fills_its_table() {
 
 #[test]
 fn flatland_has_tables_too() {
-    let scene = small("scenes2d/freedoom_e1m1.json");
+    let scene = AnyScene::Flat(crate::scene::example("freedoom_e1m1").expect("a built-in scene"));
     let report = run("coorg-teller-table-1", &scene, &setup(6));
     let [frustum, occlusion] = ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
     assert!(frustum >= occlusion && occlusion > 0.0);

@@ -151,17 +151,28 @@ pub fn stop_or_go(progress: &dyn Progress, fraction: f32, what: &'static str) ->
     if progress.cancelled() { Err(PaperError::Cancelled) } else { Ok(()) }
 }
 
-/// Times `N` things a frame over stretches, in rounds: `begin` before each stretch, then `frame` for all of its frames.
-/// For each thing the mean over the frames of the median of its rounds, ms.
+/// Times `N` things a frame over the stretches of a walk; see [`times_of`].
 pub fn times<S: World, const N: usize>(
-    stretches: &[Stretch<S>],
+    stretches: Vec<Stretch<S>>,
+    progress: &dyn Progress,
+    frame: impl FnMut(Moment<'_, S>) -> [f64; N],
+) -> Result<[f64; N], PaperError> {
+    times_of(&[stretches], progress, frame).map(|all| all[0])
+}
+
+/// Times `N` things a frame over the stretches of several walks, stretch by stretch in turn, in rounds: `frame` is told
+/// when a stretch begins, then asked for each of its frames. For each walk and thing the mean over the frames of the
+/// median of its rounds, ms.
+pub fn times_of<S: World, const N: usize>(
+    walks: &[Vec<Stretch<S>>],
     progress: &dyn Progress,
     mut frame: impl FnMut(Moment<'_, S>) -> [f64; N],
-) -> Result<[f64; N], PaperError> {
-    let mut sums = [0.0; N];
-    let mut count = 0;
-    for (i, stretch) in stretches.iter().enumerate() {
-        let part = Part { whole: progress, start: i as f32 / stretches.len() as f32, length: 1.0 / stretches.len() as f32 };
+) -> Result<Vec<[f64; N]>, PaperError> {
+    let mut sums = vec![([0.0; N], 0); walks.len()];
+    let (most, all) = (walks.iter().map(Vec::len).max().unwrap_or(0), walks.iter().map(Vec::len).sum::<usize>().max(1) as f32);
+    let turns = (0..most).flat_map(|i| walks.iter().enumerate().filter_map(move |(w, stretches)| Some((w, stretches.get(i)?))));
+    for (turn, (w, stretch)) in turns.enumerate() {
+        let part = Part { whole: progress, start: turn as f32 / all, length: 1.0 / all };
         let mut rounds = vec![Vec::with_capacity(ROUNDS); stretch.frames.len()];
         for round in 0..ROUNDS {
             frame(Moment::Begin);
@@ -174,14 +185,15 @@ pub fn times<S: World, const N: usize>(
                 rounds[k].push(frame(Moment::Frame(view)));
             }
         }
+        let (sum, count) = &mut sums[w];
         for times in &rounds {
-            for (n, sum) in sums.iter_mut().enumerate() {
+            for (n, sum) in sum.iter_mut().enumerate() {
                 *sum += median(times.iter().map(|t| t[n]).collect());
             }
         }
-        count += rounds.len();
+        *count += rounds.len();
     }
-    Ok(sums.map(|s| s / count.max(1) as f64))
+    Ok(sums.into_iter().map(|(sum, count)| sum.map(|s| s / count.max(1) as f64)).collect())
 }
 
 /// What is to be done now.
