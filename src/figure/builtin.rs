@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
+use super::coorg_teller;
 use super::page::{Entry, Page, Paper, Swatch, legend};
 use super::{Look, Panel, Picture, observer_above, panels, world};
 use crate::culling::{Film, Methods, Settings, Value, Verdict};
@@ -28,6 +29,11 @@ pub struct Builtin {
 }
 
 impl Builtin {
+    /// Figure `i` of a paper.
+    const fn of_paper(figures: &[coorg_teller::Row], i: usize) -> Self {
+        let (name, summary, make) = figures[i];
+        Self { name, summary, make }
+    }
     /// Makes the figure.
     ///
     /// # Errors
@@ -45,6 +51,9 @@ pub static BUILTIN: &[Builtin] = &[
     Builtin { name: "baselines-flatland", summary: "The three baselines on the same game level", make: baselines_flatland },
     Builtin { name: "frustum-space", summary: "View-frustum culling of an office floor, seen from outside", make: frustum_space },
     Builtin { name: "item-buffer", summary: "What the Eye sees: shaded image, item buffer and depth", make: item_buffer },
+    Builtin::of_paper(coorg_teller::FIGURES, 0),
+    Builtin::of_paper(coorg_teller::FIGURES, 1),
+    Builtin::of_paper(coorg_teller::FIGURES, 2),
 ];
 
 /// Width of a figure over two columns, inside its margins.

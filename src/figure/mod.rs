@@ -8,6 +8,7 @@ pub mod axis;
 mod builtin;
 mod chart;
 mod clip;
+mod coorg_teller;
 mod look;
 pub mod page;
 mod panels;

@@ -9,6 +9,11 @@ use crate::geometry::Flat;
 const EXAMPLES: &[(&str, &str, &[u8])] = &[
     ("street", "scenes2d/street.json", include_bytes!("../../scenes2d/street.json")),
     ("freedoom_e1m1", "scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json", include_bytes!("../../scenes2d/freedoom_e1m1/freedoom_e1m1.flat.json")),
+    ("occluder_and_box", "scenes2d/occluder_and_box.json", include_bytes!("../../scenes2d/occluder_and_box.json")),
+    ("connected_occluders", "scenes2d/connected_occluders.json", include_bytes!("../../scenes2d/connected_occluders.json")),
+    ("silhouette_edge", "scenes2d/silhouette_edge.json", include_bytes!("../../scenes2d/silhouette_edge.json")),
+    ("two_viewpoints", "scenes2d/two_viewpoints.json", include_bytes!("../../scenes2d/two_viewpoints.json")),
+    ("detail_objects", "scenes2d/detail_objects.json", include_bytes!("../../scenes2d/detail_objects.json")),
 ];
 
 /// A flatland scene by name.
