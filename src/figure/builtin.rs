@@ -54,6 +54,14 @@ pub static BUILTIN: &[Builtin] = &[
     Builtin::of_paper(coorg_teller::FIGURES, 0),
     Builtin::of_paper(coorg_teller::FIGURES, 1),
     Builtin::of_paper(coorg_teller::FIGURES, 2),
+    Builtin::of_paper(coorg_teller::FIGURES, 3),
+    Builtin::of_paper(coorg_teller::FIGURES, 4),
+    Builtin::of_paper(coorg_teller::FIGURES, 5),
+    Builtin::of_paper(coorg_teller::FIGURES, 6),
+    Builtin::of_paper(coorg_teller::FIGURES, 7),
+    Builtin::of_paper(coorg_teller::FIGURES, 8),
+    Builtin::of_paper(coorg_teller::FIGURES, 9),
+    Builtin::of_paper(coorg_teller::FIGURES, 10),
 ];
 
 /// Width of a figure over two columns, inside its margins.

@@ -50,6 +50,8 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
         let mut middles: Vec<Vec2> = all.iter().filter(|(o, _)| *o == occlusion).filter_map(|(_, c)| largest(std::iter::once(c))).collect();
         middles.sort_by(|a, b| a.x.total_cmp(&b.x));
         for at in middles {
+            // Region 2 is a wedge: wider below.
+            let at = if occlusion == Occlusion::Partial { at - Vec2::Y * 12.0 * plan.unit } else { at };
             plan.plate(at + Vec2::Y * 6.0 * plan.unit, NAME_PT, Font::Bold, number);
             plan.plate(at - Vec2::Y * 6.0 * plan.unit, LABEL_PT, Font::Regular, words);
         }

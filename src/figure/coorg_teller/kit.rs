@@ -69,7 +69,8 @@ impl Plan {
     /// A viewpoint with its name.
     pub(super) fn viewpoint(&mut self, at: Vec2, name: &str) {
         self.dot(Role::Eye, at, 3.5);
-        self.plate(at + Vec2::new(10.0, -2.0) * self.unit, NAME_PT, Font::Bold, name);
+        let half = metrics::width_pt(name, Font::Bold, NAME_PT) * 0.5;
+        self.plate(at + Vec2::new(half + 6.5, -2.0) * self.unit, NAME_PT, Font::Bold, name);
     }
     pub(super) fn panel(self, label: impl Into<String>) -> Panel {
         Panel { label: label.into(), picture: Picture::Flat(self.world, self.frame) }

@@ -134,7 +134,6 @@ pub(super) fn area(cell: &[DVec2]) -> f64 {
 }
 
 /// Whether a cell holds a point.
-#[cfg(test)]
 pub(super) fn holds(cell: &[DVec2], p: DVec2) -> bool {
     (0..cell.len()).all(|i| (cell[(i + 1) % cell.len()] - cell[i]).perp_dot(p - cell[i]) >= 0.0)
 }
