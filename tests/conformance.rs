@@ -249,13 +249,14 @@ fn films_replay_in_space() {
     films_replay(&solid_scenes());
 }
 
-/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise.
+/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise
+/// while the scenes stay the same. (`frustum` in flatland had 0.65 before the five scenes of the paper's figures came in.)
 const FLOORS: [(&str, &str, f64); 8] = [
     ("large-occluders", "flatland", 0.81),
     ("large-occluders", "space", 0.68),
     ("z-buffer", "flatland", 0.0),
     ("z-buffer", "space", 0.0),
-    ("frustum", "flatland", 0.65),
+    ("frustum", "flatland", 0.648),
     ("frustum", "space", 0.63),
     ("centroid", "flatland", 0.95),
     ("centroid", "space", 0.95),
