@@ -279,3 +279,29 @@ fn both_pictures_of_space_are_drawn() {
         assert!(colors > 3, "{view} is empty: {colors} colors");
     }
 }
+
+#[test]
+fn a_table_of_the_paper_is_measured_shown_and_stopped() {
+    let mut h = window(FLAT);
+    h.state_mut().state.apply(Action::Tables);
+    settle(&mut h);
+    assert_eq!(h.state().state.dialog, Dialog::Tables);
+    click(&mut h, "Table 1: polygons drawn");
+    let measured = h.state().state.measured.clone().expect("a table");
+    assert_eq!((measured.report.name, measured.report.scenes[0].name.as_str()), ("coorg-teller-table-1", FLAT));
+    assert_eq!(measured.report.table.number(0, "missed_triangles"), Some(0.0));
+    h.get_by_label("Chart: Coorg and Teller 1997, Table 1: polygons drawn");
+    h.get_by_label("134,832");
+    assert!(h.query_by_label("SVG").is_some() && h.query_by_label("Stop").is_none());
+
+    // Stopping leaves what was there, and the film.
+    h.get_by_label("Table 3: time in visibility against speed").click();
+    h.run_steps(2);
+    h.get_by_label("Stop").click();
+    settle(&mut h);
+    let state = &h.state().state;
+    assert!(state.busy().is_none() && state.staged().is_some_and(|s| s.has_film()));
+    assert_eq!(state.measured.as_ref().map(|m| m.report.name), Some("coorg-teller-table-1"));
+    click(&mut h, "Close");
+    assert_eq!(h.state().state.dialog, Dialog::None);
+}

@@ -64,6 +64,7 @@ impl State {
             Command::Layout(layout) => self.set_layout(layout),
             Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
             Command::SaveTo(path) => self.save(&path),
+            Command::Tables(asked) => self.tables(asked),
             Command::Dismiss(i) if i < self.notices.len() => {
                 self.notices.remove(i);
             }
@@ -251,6 +252,7 @@ impl State {
             Action::Keys => self.dialog = Dialog::Keys,
             Action::Report => self.dialog = Dialog::Report,
             Action::About => self.dialog = Dialog::About,
+            Action::Tables => self.dialog = Dialog::Tables,
             _ => return false,
         }
         true
@@ -378,6 +380,7 @@ impl State {
                 self.fail(text);
             }
             Done::Recorded(recorded) => self.take_film(recorded),
+            Done::Measured(measured) => self.take_table(*measured),
             Done::RecordFailed(text) => self.fail(text),
             Done::Cancelled => {}
         }

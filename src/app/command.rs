@@ -158,6 +158,7 @@ actions! {
     View LayoutLecture "layout-lecture" "Layout: lecture" ["Alt+2"] "Big type, few panels, the step in a caption.";
     View LayoutFigure "layout-figure" "Layout: figure" ["Alt+3"] "The picture alone, as it is exported.";
     View ResetLayout "reset-layout" "Reset layout" ["Alt+0"] "Puts every panel back.";
+    View Tables "paper-table" "Paper tables…" [] "Measures the tables of the method's paper, beside the paper's own figures.";
     View ScaleUp "scale-up" "Larger" ["Ctrl+Plus", "Ctrl+Equals"] "Everything larger.";
     View ScaleDown "scale-down" "Smaller" ["Ctrl+Minus"] "Everything smaller.";
     View ScaleReset "scale-reset" "Normal size" [] "Everything in its normal size.";
@@ -232,6 +233,8 @@ pub enum Command {
     Scale(f32),
     /// Saves the session to a file.
     SaveTo(String),
+    /// Measures a paper's table, or writes it to a file.
+    Tables(super::tables::Tables),
     /// Removes a message.
     Dismiss(usize),
 }

@@ -19,6 +19,7 @@ mod stage;
 mod start;
 mod state;
 mod steps;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod undo;
@@ -39,5 +40,6 @@ pub use session::{Bookmark, Session, SessionError, write_file};
 pub use stage::{Recorded, Stage, Staged, short};
 pub use start::{Shot, Start};
 pub use state::{Breakpoint, Dialog, Effect, Layout, Notice, Shown, State, Surface, Theme};
+pub use tables::{Measured, Tables, tables};
 pub use why::{Because, spoken, why};
 pub use worker::{Busy, FILM_CAP_EVENTS};

@@ -37,6 +37,8 @@ pub enum Dialog {
     Report,
     /// The method and its paper.
     About,
+    /// The papers' tables.
+    Tables,
 }
 
 /// A set of panels.
@@ -199,6 +201,8 @@ pub struct State {
     pub filter: String,
     /// Rows of the event tree.
     pub outline: Outline,
+    /// The table that was measured last.
+    pub measured: Option<std::sync::Arc<super::tables::Measured>>,
     /// Messages, the newest last.
     pub notices: Vec<Notice>,
     /// What the window has to do.
@@ -245,6 +249,7 @@ impl State {
             dialog: Dialog::None,
             filter: String::new(),
             outline: Outline::default(),
+            measured: None,
             notices: vec![],
             effects: vec![],
             is_dirty: false,

@@ -12,6 +12,7 @@ use std::thread;
 use super::any::{Any, AnyRecorded};
 use super::open;
 use super::stage::Recorded;
+use super::tables;
 use crate::culling::{Methods, Run, Settings};
 use crate::geometry::{Flat, Solid, View};
 use crate::scene::{AnyPath, AnyScene, Progress, Scene};
@@ -41,6 +42,7 @@ pub struct Request<S: Methods> {
 pub(super) enum Job {
     Load { source: String, views: Option<String> },
     Record(Any<Request<Flat>, Request<Solid>>),
+    Measure { name: &'static str, scene: Option<AnyScene>, settings: Settings },
 }
 
 pub(super) enum Done {
@@ -48,6 +50,7 @@ pub(super) enum Done {
     LoadFailed(String),
     Recorded(AnyRecorded),
     RecordFailed(String),
+    Measured(Box<tables::Measured>),
     Cancelled,
 }
 
@@ -197,6 +200,11 @@ impl Bench {
                 Ok((scene, path)) => Done::Loaded(scene, path),
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::LoadFailed(error),
+            },
+            Job::Measure { name, scene, settings } => match tables::measure(name, scene, settings, ticket) {
+                Ok(measured) => Done::Measured(Box::new(measured)),
+                Err(_) if ticket.cancelled() => Done::Cancelled,
+                Err(error) => Done::RecordFailed(error),
             },
             Job::Record(Any::Flat(request)) => {
                 self.serial += 1;

@@ -33,9 +33,10 @@ pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut
             Dialog::SaveAs => save(cache, ui, is_new, answers),
             Dialog::Report => report(state, ui),
             Dialog::About => about(state, ui),
+            Dialog::Tables => super::tables::show(state, ui, answers),
             Dialog::None => {}
         }
-        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About) && ui.button("Close").clicked() {
+        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About | Dialog::Tables) && ui.button("Close").clicked() {
             answers.push(Command::Dialog(Dialog::None));
         }
     });

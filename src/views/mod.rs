@@ -20,6 +20,7 @@ mod reach;
 mod space;
 mod status;
 mod strip;
+mod tables;
 mod timeline;
 mod welcome;
 mod why;

@@ -108,6 +108,44 @@ impl<S: Shape> Blockers<S> {
     }
 }
 
+/// The relations of some occluders to some boxes, made once and kept.
+#[derive(Clone, Debug)]
+pub struct Kept<S: Shape> {
+    relations: Vec<Relation<S>>,
+    depths: Vec<f64>,
+}
+
+impl<S: Shape> Blockers<S> {
+    /// The relations of all occluders to boxes, for an eye.
+    pub fn keep(&self, boxes: &[Aabb<S::Vector>], eye: S::Vector) -> Kept<S> {
+        let side = |id: u32| if Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 };
+        let all = boxes.iter().flat_map(|b| (0..self.len() as u32).map(move |id| (b, id)));
+        let relations = all.map(|(b, id)| Relation::new(&self.occluders, id, side(id), b, false)).collect();
+        let depth = |b: &Aabb<S::Vector>| b.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max);
+        Kept { relations, depths: boxes.iter().map(depth).collect() }
+    }
+    /// Checks kept relations from an eye on the same sides of the occluders, each occluder looked at once as in a frame, for
+    /// timing. How many are partial, and how many full.
+    pub fn check(&self, kept: &Kept<S>, eye: S::Vector) -> [usize; 2] {
+        let sights: Vec<Sight<S>> = (0..self.len() as u32).map(|id| Sight::of(&self.occluders, id, S::widened(eye), self.margin)).collect();
+        let mut counts = [0; 2];
+        for (relations, depth) in kept.relations.chunks(self.len().max(1)).zip(&kept.depths) {
+            for (relation, sight) in relations.iter().zip(&sights).filter(|(r, s)| r.side == s.side) {
+                let seen = relation.classify(sight, self.occluders.thickness(relation.occluder), *depth, self.margin);
+                counts[0] += usize::from(seen.occlusion == Occlusion::Partial);
+                counts[1] += usize::from(seen.occlusion == Occlusion::Full);
+            }
+        }
+        counts
+    }
+}
+
+/// One of the two of [`tangent_corners`], for timing: by table, or by looking at every corner.
+pub fn tangent_corners_by<S: Shape>(from: S::Vector, to: S::Vector, bounds: &Aabb<S::Vector>, naive: bool) -> Option<[u8; 2]> {
+    let edge = Edge { from: S::widened(from), along: S::widened(to) - S::widened(from) };
+    if naive { S::tangents_naive(&edge, bounds) } else { S::tangents(&edge, bounds) }
+}
+
 /// The two box corners at which planes through an edge touch it, by table and by looking at every corner (Section 2.1);
 /// `None` where the edge's line meets the box. In flatland `to` is not used.
 pub fn tangent_corners<S: Shape>(from: S::Vector, to: S::Vector, bounds: &Aabb<S::Vector>) -> [Option<[u8; 2]>; 2] {

@@ -110,7 +110,16 @@ impl Report {
     }
     /// Title, table, and what is to be known, for people.
     pub fn text(&self) -> String {
-        format!("{}\n\n{}\n{}\n", self.title, self.table.text(), self.caption())
+        let mut lines = vec![String::new()];
+        for word in self.caption().split(' ') {
+            let line = lines.last_mut().filter(|l| l.chars().count() + word.chars().count() < TEXT_COLUMNS);
+            match line {
+                Some(line) if line.is_empty() => line.push_str(word),
+                Some(line) => *line += &format!(" {word}"),
+                None => lines.push(word.to_owned()),
+            }
+        }
+        format!("{}\n\n{}\n{}\n", self.title, self.table.text(), lines.join("\n"))
     }
     /// Everything, with every digit.
     pub fn json(&self) -> Json {
@@ -191,6 +200,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
 ];
 
+/// Columns of a terminal that running text takes.
+const TEXT_COLUMNS: usize = 100;
 /// How times were taken.
 const TIMES: &str = "Wall-clock times on one thread; of each frame the median of three rounds, then the mean over the frames of a walk at walking \
                      speed, interleaved.";
