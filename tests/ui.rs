@@ -1,6 +1,6 @@
 //! The window, driven by accessibility labels, the pointer and keys, as a person does.
 
-use cullscope::app::{Action, Command, Dialog, Start, Theme};
+use cullscope::app::{Action, Command, Dialog, Start, Tables, Theme};
 use cullscope::drawing::Subject;
 use cullscope::geometry::{Flat, NodeId, View};
 use cullscope::views::window::App;
@@ -295,9 +295,9 @@ fn a_table_of_the_paper_is_measured_shown_and_stopped() {
     assert!(h.query_by_label("SVG").is_some() && h.query_by_label("Stop").is_none());
 
     // Stopping leaves what was there, and the film.
-    h.get_by_label("Table 3: time in visibility against speed").click();
-    h.run_steps(2);
-    h.get_by_label("Stop").click();
+    h.state_mut().state.apply(Command::Tables(Tables::Measure("coorg-teller-table-3")));
+    assert!(h.state().state.busy().is_some());
+    h.state_mut().state.apply(Command::Tables(Tables::Stop));
     settle(&mut h);
     let state = &h.state().state;
     assert!(state.busy().is_none() && state.staged().is_some_and(|s| s.has_film()));

@@ -380,7 +380,10 @@ impl State {
                 self.fail(text);
             }
             Done::Recorded(recorded) => self.take_film(recorded),
-            Done::Measured(measured) => self.take_table(*measured),
+            Done::Measured(measured) => {
+                self.take_table(*measured);
+                self.run_commands();
+            }
             Done::RecordFailed(text) => self.fail(text),
             Done::Cancelled => {}
         }

@@ -5,6 +5,7 @@ use super::command::{Action, Command};
 use super::session::{Picked, Session, Shown as Kept, VERSION};
 use super::start::Start;
 use super::state::{Detail, Layout, Shown, State, Surface, Theme};
+use super::tables::{Tables, tables};
 use crate::culling::Settings;
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
@@ -169,6 +170,7 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
         "frame" => Command::Frame(0, number()? as usize),
         "method" => Command::Method(value.to_owned()),
         "filter" => Command::Filter(value.to_owned()),
+        "paper-table" => Command::Tables(Tables::Measure(tables().map(|t| t.0).find(|name| *name == value)?)),
         "scale" => Command::Scale(value.parse().ok()?),
         "set" => {
             let (name, value) = value.split_once('=')?;
