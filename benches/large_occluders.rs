@@ -21,6 +21,11 @@ const ROUNDS: usize = 31;
 /// Frames of the walk that one round goes on by.
 const FRAMES: usize = 40;
 
+/// Keeps a result from being optimized away.
+fn eat<T>(result: T) {
+    let _ = black_box(result);
+}
+
 fn print(name: &str, p: &Paired, unit: &str, count: f64, scale: f64) {
     let each = |ms: f64| ms * scale / count;
     println!(
@@ -61,17 +66,17 @@ fn relations(scene: &Scene<Solid>, boxes: &[Aabb<Vec3>], eye: Vec3) -> u64 {
         edges.iter().map(of).sum::<u64>()
     };
     let count = (edges.len() * boxes.len()) as f64;
-    let by = paired(ROUNDS, || drop(black_box(corners(true))), || drop(black_box(corners(false))));
+    let by = paired(ROUNDS, || eat(corners(true)), || eat(corners(false)));
     println!("{} edges of {} occluders, {} boxes; table against naive:", edges.len(), faces.len(), boxes.len());
     print("tangent corners of an edge", &by, "ns", count, 1e6);
 
     let blockers = Blockers::<Solid>::new(scene.points(), &faces);
     let count = (blockers.len() * boxes.len()) as f64;
     let make = |naive: bool| boxes.iter().map(|b| blockers.make_relations(b, eye, naive)).sum::<f64>();
-    let by = paired(ROUNDS, || drop(black_box(make(true))), || drop(black_box(make(false))));
+    let by = paired(ROUNDS, || eat(make(true)), || eat(make(false)));
     print("relation made             ", &by, "ns", count, 1e6);
     let kept = blockers.keep(boxes, eye);
-    let by = paired(ROUNDS, || drop(black_box(make(false))), || drop(black_box(blockers.check(&kept, eye))));
+    let by = paired(ROUNDS, || eat(make(false)), || eat(blockers.check(&kept, eye)));
     print("relation checked, not made", &by, "ns", count, 1e6);
     let [partial, full] = blockers.check(&kept, eye);
     corners(false) ^ (partial as u64) << 40 ^ (full as u64) << 20
@@ -96,13 +101,13 @@ fn frames(scene: &std::sync::Arc<Scene<Solid>>) -> u64 {
     let by = paired(
         ROUNDS,
         || hash.set((hash.get() ^ (go.borrow_mut())(&a, &mut *fresh)).wrapping_mul(0x100_0000_01b3)),
-        || drop(black_box((go.borrow_mut())(&b, &mut *kept))),
+        || eat((go.borrow_mut())(&b, &mut *kept)),
     );
     println!("{} triangles, {} frames at walking speed; planes kept against made anew:", scene.live().len(), FRAMES * ROUNDS);
     print("frame culled              ", &by, "µs", FRAMES as f64, 1e3);
     kept.forget();
     b.set(0);
-    let by = paired(ROUNDS, || drop(black_box((go.borrow_mut())(&c, &mut *frustum))), || drop(black_box((go.borrow_mut())(&b, &mut *kept))));
+    let by = paired(ROUNDS, || eat((go.borrow_mut())(&c, &mut *frustum)), || eat((go.borrow_mut())(&b, &mut *kept)));
     print("against frustum culling   ", &by, "µs", FRAMES as f64, 1e3);
     hash.get()
 }
