@@ -135,7 +135,7 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
     }
     shadow(&mut plan, &**film, all[0].occluder, "P2");
     let reused = all.iter().filter(|t| t.reused).count();
-    all_panels.push(plan.panel(format!("at P2: {reused} keep their lines, {} need new ones", all.len() - reused)));
+    all_panels.push(plan.panel(format!("at P2: {reused} nodes reused, {} new", all.len() - reused)));
     let content = panels(TWO_COLUMNS_PT, 3, &all_panels);
     let legend = vec![
         entry(Role::Occluder, Swatch::Line, "occluder O"),

@@ -256,14 +256,20 @@ fn figure_8() -> (Projected, Aabb<DVec2>) {
 const CODE_PT: [f32; 2] = [6.5, 5.5];
 
 /// Where in a cell a code fits, nearest to its middle; `None` where the cell is too small.
-fn room(cell: &[DVec2], text: &str, size_pt: f32, unit: f32) -> Option<Vec2> {
+fn room(cell: &[DVec2], text: &str, size_pt: f32, unit: f32, lines: &[[Vec2; 2]]) -> Option<Vec2> {
     let half = (Vec2::new(metrics::width_pt(text, Font::Mono, size_pt) * 0.5 + 1.0, size_pt * 0.45 + 0.5) * unit).as_dvec2();
     let center = middle(cell);
     let [low, high] = cell.iter().fold([center; 2], |[a, b], p| [a.min(*p), b.max(*p)]);
     let fits = |at: &DVec2| [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].iter().all(|c| holds(cell, *at + DVec2::from(*c) * half));
+    let clear = |at: &DVec2| lines.iter().all(|[a, b]| !crosses(a.as_dvec2(), b.as_dvec2(), *at, half));
     let places = (0..=30).flat_map(|i| (0..=30).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 30.0));
-    let places = places.map(|t| low + (high - low) * t).chain([center]).filter(fits);
+    let places = places.map(|t| low + (high - low) * t).chain([center]).filter(fits).filter(clear);
     places.min_by(|a, b| (*a - center).length().total_cmp(&(*b - center).length())).map(|p| p.as_vec2())
+}
+
+/// Whether a segment meets the box of half size `half` around `at`, to within a 64th of its length.
+fn crosses(a: DVec2, b: DVec2, at: DVec2, half: DVec2) -> bool {
+    (0..=64).any(|i| (a.lerp(b, f64::from(i) / 64.0) - at).abs().cmple(half).all())
 }
 
 /// Figure 8: the regions between the extended outline and their codes.
@@ -274,6 +280,11 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
     let outline = outline_seen_from(projected.from, &target);
     let corner = |i: u8| projected.flat(target.corner(i as usize)).as_vec2();
     let all = coded_cells(&projected, &target, &wide);
+    let e = Vec2::new(0.36, -0.05);
+    let [Some(touched), _] = tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target) else {
+        unreachable!("the edge's projection lies beside the box")
+    };
+    let tangents = touched.map(|v| [e, corner(v) + (corner(v) - e) * 0.2]);
     for (code, cell) in &all {
         plan.area(Role::Faint, cell);
         let inside = *code == 0 || *code == 63;
@@ -281,7 +292,7 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
             plan.area(Role::Scene, cell);
         }
         let text = format!("{code:06b}");
-        if let Some((at, size_pt)) = CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit)?, size))) {
+        if let Some((at, size_pt)) = CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit, &tangents)?, size))) {
             plan.label(at, size_pt, Font::Mono, &text);
         }
     }
@@ -291,14 +302,9 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
         let out = corner(a).normalize() * 7.0 * plan.unit;
         plan.plate(corner(a) + out, LABEL_PT, Font::Bold, &a.to_string());
     }
-    let e = Vec2::new(0.36, -0.05);
-    let [Some(touched), _] = tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target) else {
-        unreachable!("the edge's projection lies beside the box")
-    };
-    for vertex in touched {
-        let v = corner(vertex);
-        plan.line(Role::Evidence, e, v + (v - e) * 0.2);
-        plan.dot(Role::Evidence, v, 2.5);
+    for (vertex, [from, to]) in touched.into_iter().zip(tangents) {
+        plan.line(Role::Evidence, from, to);
+        plan.dot(Role::Evidence, corner(vertex), 2.5);
     }
     plan.dot(Role::Occluder, e, 3.0);
     plan.plate(e + Vec2::new(8.0, 0.0) * plan.unit, NAME_PT, Font::Bold, "e");
