@@ -203,8 +203,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
 /// Columns of a terminal that running text takes.
 const TEXT_COLUMNS: usize = 100;
 /// How times were taken.
-const TIMES: &str = "Wall-clock times on one thread; of each frame the median of three rounds, then the mean over the frames of a walk at walking \
-                     speed, interleaved.";
+const TIMES: &str = "Wall-clock times on one thread, interleaved; of each frame the median of three rounds, then the mean over the frames of a \
+                     walk, at walking speed where no other is named.";
 
 impl Experiment {
     /// The experiment with this name.
