@@ -2,10 +2,11 @@
 //!
 //! [`Stage`] knows its space; [`Staged`] is what panels that do not care about the space read.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::culling::{Card, Event, Field, Film, Knob, KnobValue, Methods, Verdict};
-use crate::drawing::Subject;
+use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::scene::{Report, Scene, framing_view};
 use crate::trace::{Counts, Moves, Stamps, State};
@@ -124,6 +125,8 @@ pub trait Staged {
     fn sentence(&self, at: usize) -> String;
     /// Counts at a step.
     fn counts(&self, step: usize) -> Counts;
+    /// The roles of the marks with which the method explains a step, for the legend.
+    fn evidence_roles(&self, step: usize) -> BTreeSet<Role>;
     /// Number of nodes of the index.
     fn node_count(&self) -> usize;
     /// Parent of a node.
@@ -224,6 +227,13 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn sentence(&self, at: usize) -> String {
         self.recorded.as_ref().filter(|_| at < self.events().len()).map_or(String::new(), |r| r.film.sentence(at))
+    }
+    fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
+        let mut to = Drawing::default();
+        if let Some(recorded) = &self.recorded {
+            recorded.film.explain(step, &mut to);
+        }
+        to.items.iter().map(|i| i.role).collect()
     }
     fn counts(&self, step: usize) -> Counts {
         self.recorded.as_ref().map_or(Counts::default(), |r| r.stamps.counts(step))

@@ -30,13 +30,14 @@ pub fn verdict_mark(state: &State, ui: &mut egui::Ui, verdict: Verdict) {
 }
 
 /// States that the legend names, with their words.
-const STATES: [(Role, &str); 8] = [
+const STATES: [(Role, &str); 9] = [
     (Role::Scene, "not decided"),
     (Role::Partial, "open, partly in view"),
     (Role::Visible, "drawn"),
     (Role::Outside, "outside"),
     (Role::Hidden, "hidden"),
     (Role::Approximated, "left out or replaced"),
+    (Role::Occluder, "active occluder"),
     (Role::Current, "this step"),
     (Role::Selected, "selected"),
 ];
@@ -48,7 +49,11 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
     let here = stage.counts(state.step);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
+        let shown = stage.evidence_roles(state.step);
         for (role, words) in STATES {
+            if role == Role::Occluder && !shown.contains(&role) {
+                continue;
+            }
             let verdicts: Vec<Verdict> =
                 crate::trace::Counts::VERDICTS.into_iter().filter(|&v| v != Verdict::Partial && role_of(Known::Decided(v)) == role).collect();
             let total: usize = verdicts.iter().map(|&v| end.of(v)).sum();

@@ -51,7 +51,7 @@ fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: 
         }
         KnobValue::Integer(v, range) => {
             let mut v = *v;
-            let label = ui.label(format!("{title} ({})", knob.unit)).on_hover_text(&help);
+            let label = ui.label(if knob.unit.is_empty() { title.clone() } else { format!("{title} ({})", knob.unit) }).on_hover_text(&help);
             let response = ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
                 cache.gesture += 1;

@@ -360,7 +360,7 @@ fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Dr
 fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
     let bounds = index.bounds_of(note.owner);
     to.bounds(Layer::Emphasis, Role::Current, owner_subject(note.owner), &bounds);
-    outline(index, note.occluder, Layer::Emphasis, Role::Occluder, to);
+    outline(index, note.occluder, Layer::Emphasis, Role::Current, to);
     // The same function that the run called; it depends on nothing but its arguments.
     let relation = Relation::new(&index.occluders, note.occluder, note.side, &bounds, false);
     for (i, planes) in relation.planes.iter().enumerate() {

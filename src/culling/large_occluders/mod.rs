@@ -158,7 +158,7 @@ impl<S: Shape> Hierarchy<S> for Index<S> {
 }
 
 const CODE: &[CodeLine] = &[
-    CodeLine { label: "Select:1", text: "S := the occluders chosen for P's leaf and direction" },
+    CodeLine { label: "Select:1", text: "S := occluders of P's leaf and direction" },
     CodeLine { label: "Visible:1", text: "Visible(occluders S, node T, viewpoint P)" },
     CodeLine { label: "Visible:2", text: "  if T lies outside the view frustum" },
     CodeLine { label: "Visible:3", text: "    return" },
