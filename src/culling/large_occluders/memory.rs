@@ -22,8 +22,9 @@ pub struct Memory<S: Shape> {
     below: Vec<bool>,
     /// The occluders in use, best first.
     pub active: Vec<u32>,
-    /// The leaf and direction that they were chosen for.
-    pub chosen_for: Option<(NodeId, u32)>,
+    /// For each detail object the occluders near it in the direction that was asked for last.
+    near: Vec<Option<(u32, Box<[u32]>)>>,
+    list: Vec<(u32, f32)>,
     /// How the eye of this frame sees each occluder it was asked about.
     sights: Vec<Option<Box<Sight<S>>>>,
     seen: Vec<u32>,
@@ -41,7 +42,8 @@ impl<S: Shape> Default for Memory<S> {
             objects: Vec::new(),
             below: Vec::new(),
             active: Vec::new(),
-            chosen_for: None,
+            near: Vec::new(),
+            list: Vec::new(),
             sights: Vec::new(),
             seen: Vec::new(),
             joint: super::joint::Scratch::default(),
@@ -64,19 +66,36 @@ impl<S: Shape> Memory<S> {
         self.nodes.resize_with(nodes, Vec::new);
         self.below.resize(nodes, false);
         self.objects.resize_with(objects, Vec::new);
+        self.near.resize(objects, None);
         self.sights.resize_with(occluders, || None);
         self.seen.drain(..).for_each(|id| self.sights[id as usize] = None);
         self.hidden.resize(objects, None);
         // Objects that the last frame did not ask about are out of the calculation.
-        let (hidden, kept) = (&mut self.hidden, &mut self.objects);
+        let (hidden, kept, near) = (&mut self.hidden, &mut self.objects, &mut self.near);
+        self.asked.sort_unstable();
+        self.asked.dedup();
         self.asked.retain(|object| {
             let asked = hidden[object.at()].take().is_some();
             if !asked {
-                kept[object.at()] = Vec::new();
+                (kept[object.at()], near[object.at()]) = (Vec::new(), None);
             }
             asked
         });
         hidden.fill(None);
+    }
+    /// The occluders near a detail object for a direction, chosen by `choose` if another direction was asked for last; how many.
+    pub fn near(&mut self, object: ObjectId, direction: u32, choose: impl FnOnce(&mut Vec<(u32, f32)>)) -> usize {
+        let slot = &mut self.near[object.at()];
+        if slot.as_ref().is_none_or(|n| n.0 != direction) {
+            choose(&mut self.list);
+            *slot = Some((direction, self.list.iter().map(|l| l.0).collect()));
+            self.asked.push(object);
+        }
+        slot.as_ref().map_or(0, |n| n.1.len())
+    }
+    /// One of them.
+    pub fn near_to(&self, object: ObjectId, at: usize) -> u32 {
+        self.near[object.at()].as_ref().map_or(0, |n| n.1[at])
     }
     /// How the eye sees an occluder, computed at the first question of a frame.
     pub fn sight(&mut self, id: u32, make: impl FnOnce() -> Sight<S>) {
@@ -113,12 +132,7 @@ impl<S: Shape> Memory<S> {
                 self.below[n.at()] = true;
                 &mut self.nodes[n.at()]
             }
-            Owner::Object(o) => {
-                if self.objects[o.at()].is_empty() {
-                    self.asked.push(o);
-                }
-                &mut self.objects[o.at()]
-            }
+            Owner::Object(o) => &mut self.objects[o.at()],
         };
         if let Some(at) = kept.iter().position(|r| r.occluder == relation.occluder) {
             kept[at] = relation;

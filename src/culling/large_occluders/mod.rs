@@ -32,7 +32,7 @@ use self::joint::{Candidate, jointly};
 use self::memory::{Memory, Owner};
 use self::occluders::Occluders;
 use self::relation::{Margin, Occlusion, Relation, Sight};
-use self::selection::{Selection, leaf_at};
+use self::selection::{Selection, largest_from, leaf_at};
 use self::space::Shape;
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::knobs::backface_knob;
@@ -322,8 +322,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let index = self.index;
         let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
-        let list = index.selection.list(leaf, direction);
-        let new = self.memory.chosen_for != Some((leaf, direction));
+        let mut list = Vec::new();
+        largest_from(&index.occluders, index.selection.list(leaf, direction), self.eye, self.params.occluders, &mut list);
         for (rank, &(id, area_angle)) in list.iter().enumerate() {
             let memory = &self.memory;
             self.watch
@@ -332,11 +332,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
                 self.sets.push(id);
             }
         }
-        if new {
-            self.memory.active.clear();
-            self.memory.active.extend(list.iter().map(|l| l.0));
-            self.memory.chosen_for = Some((leaf, direction));
-        }
+        self.memory.active.clear();
+        self.memory.active.extend(list.iter().map(|l| l.0));
     }
 
     /// Computes how the eye sees an occluder; whether it can hide anything.
@@ -515,10 +512,15 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         if let Some(bounds) = &index.details[object.at()] {
             self.watch.event(Event::Line(line::DETAIL));
             let center = bounds.center();
-            let leaf = leaf_at::<S>(&index.tree, center);
             let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
+            let most = self.params.occluders;
+            let near = self.memory.near(object, direction, |list| {
+                let leaf = leaf_at::<S>(&index.tree, center);
+                largest_from(&index.occluders, index.selection.list(leaf, direction), S::widened(center), most, list);
+            });
             let start = self.sets.len();
-            for &(id, _) in index.selection.list(leaf, direction) {
+            for at in 0..near {
+                let id = self.memory.near_to(object, at);
                 if self.looks_at(id) {
                     self.sets.push(id);
                 }

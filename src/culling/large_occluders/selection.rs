@@ -6,6 +6,9 @@
 //! the Eye's line of sight, the walls along a corridor, which hide the rooms beside it, would count for nothing.)
 //! In flatland it is A (N·V) / |D|. An occluder counts for a direction if some part of it lies in the cone
 //! that an eye of up to 120° sees which looks within that direction's share of the circle.
+//! One behind which the scene has no depth hides nothing, such as the ground, and is left out.
+//! A leaf can be large, so its list holds [`SPARE`] times as many as are used at once; those that look largest from the
+//! eye itself, or from a detail object itself, are picked from it.
 //! Directions lie in the ground plane (in flatland: in the plane), evenly spaced, the first along x.
 //! Cost: O(leaves · directions · polygons), in parallel over leaves; deterministic.
 
@@ -16,6 +19,11 @@ use super::space::{Point, Shape};
 use crate::geometry::{Aabb, NodeId, Vector};
 use crate::index::KdTree;
 use crate::scene::Progress;
+
+/// How many times as many occluders as are active a leaf's list holds.
+const SPARE: u32 = 4;
+/// The least depth of the scene behind an occluder that is worth having, as a share of the scene's diagonal.
+const DEPTH_SHARE: f64 = 0.02;
 
 /// For each leaf and direction the best occluders, best first.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,6 +70,22 @@ fn direction(i: u32, directions: u32) -> [f64; 2] {
     [cosine(angle), cosine(angle - std::f64::consts::FRAC_PI_2)]
 }
 
+/// The order of ranked occluders: the larger area-angle first, of equals the lower number.
+fn better(a: &(u32, f32), b: &(u32, f32)) -> std::cmp::Ordering {
+    b.1.total_cmp(&a.1).then(a.0.cmp(&b.0))
+}
+
+/// Those of a list that look largest from a point, best first, at most `most`, with their area-angles from there.
+pub fn largest_from<S: Shape>(occluders: &Occluders<S>, list: &[(u32, f32)], from: S::Point, most: u32, into: &mut Vec<(u32, f32)>) {
+    into.clear();
+    into.extend(list.iter().map(|&(id, _)| (id, area_angle(occluders.get(id), from) as f32)));
+    if into.len() > most as usize {
+        into.select_nth_unstable_by(most as usize, better);
+        into.truncate(most as usize);
+    }
+    into.sort_unstable_by(better);
+}
+
 /// The component of a vector along a direction of the ground plane: x and −z in space, x and y in flatland.
 fn along<S: Shape>(v: S::Point, [x, y]: [f64; 2]) -> f64 {
     if S::Vector::AXES == 2 { v.get(0) * x + v.get(1) * y } else { v.get(0) * x - v.get(2) * y }
@@ -87,7 +111,8 @@ impl Selection {
             if progress.cancelled() {
                 return None;
             }
-            let ranked: Vec<_> = some.par_iter().map(|(_, cell)| rank::<S>(occluders, cell, [directions, most], gain)).collect();
+            let ranked: Vec<_> =
+                some.par_iter().map(|(_, cell)| rank::<S>(occluders, &tree.nodes()[0].bounds, cell, [directions, most], gain)).collect();
             lists.extend(ranked.into_iter().flatten());
         }
         let mut starts = vec![0];
@@ -177,19 +202,30 @@ fn cells<S: Shape>(tree: &KdTree<S::Vector>) -> Vec<(NodeId, Aabb<S::Vector>)> {
 }
 
 /// The lists of one leaf, direction by direction.
-fn rank<S: Shape>(occluders: &Occluders<S>, cell: &Aabb<S::Vector>, [directions, most]: [u32; 2], gain: f64) -> Vec<Vec<(u32, f32)>> {
+fn rank<S: Shape>(
+    occluders: &Occluders<S>,
+    whole: &Aabb<S::Vector>,
+    cell: &Aabb<S::Vector>,
+    [directions, most]: [u32; 2],
+    gain: f64,
+) -> Vec<Vec<(u32, f32)>> {
     let from = S::widened(cell.center());
-    let order = |a: &(u32, f32), b: &(u32, f32)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
-    let mut scored: Vec<(u32, f32)> =
-        occluders.all().iter().enumerate().map(|(id, o)| (id as u32, area_angle(o, from) as f32)).filter(|s| s.1 > 0.0).collect();
-    scored.sort_unstable_by(order);
+    let enough = f64::from(whole.diagonal()) * DEPTH_SHARE;
+    let has_depth = |id: u32| {
+        let [low, high] = occluders.heights(id, whole);
+        let occluder = occluders.get(id);
+        (if occluder.normal.dot(from - occluder.anchor) > 0.0 { -low } else { high }) > enough
+    };
+    let mut scored: Vec<(u32, f32)> = occluders.all().iter().enumerate().map(|(id, o)| (id as u32, area_angle(o, from) as f32)).collect();
+    scored.retain(|s| s.1 > 0.0 && has_depth(s.0));
+    scored.sort_unstable_by(better);
     let cosine = cone(directions);
     let list = |i: u32| {
         let toward = direction(i, directions);
         let mut sum = 0.0;
         let mut list = Vec::new();
         for &(id, score) in &scored {
-            if list.len() == most as usize || sum > 0.0 && f64::from(score) < gain * sum {
+            if list.len() == (most * SPARE) as usize || sum > 0.0 && f64::from(score) < gain * sum {
                 break;
             }
             if is_toward(occluders, id, from, toward, cosine) {
