@@ -54,6 +54,7 @@ impl<S: Space> Tested<S> {
     fn name(&self) -> String {
         match self.subject {
             Subject::Node(n) => format!("Node {n}"),
+            Subject::Object(o) => format!("Object {o}"),
             Subject::Prim(p) => format!("The box of {} {p}", S::PRIM),
             _ => "The box".into(),
         }
@@ -68,7 +69,11 @@ impl<S: Space> Tested<S> {
 
     /// What kind of note this is.
     pub(super) fn kind(&self) -> &'static str {
-        if matches!(self.subject, Subject::Node(_)) { "NodeClassified" } else { "PrimClassified" }
+        match self.subject {
+            Subject::Node(_) => "NodeClassified",
+            Subject::Object(_) => "ObjectClassified",
+            _ => "PrimClassified",
+        }
     }
     pub(super) fn tally(&self, tally: &mut Tally) {
         tally.add("boxes_tested", 1);
@@ -78,6 +83,7 @@ impl<S: Space> Tested<S> {
         let id = match self.subject {
             Subject::Prim(p) => integer("prim", p.0),
             Subject::Node(id) => integer("node", id.0),
+            Subject::Object(id) => integer("object", id.0),
             _ => integer("subject", 0),
         };
         let list = |f: fn(&PlaneTest) -> f64| Value::List(self.tests().iter().map(f).collect());

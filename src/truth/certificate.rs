@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 
 use crate::culling::{Event, Field, Film, Value, Verdict};
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, PrimId, Space, Vector, View, orient2d, orient3d};
+use crate::geometry::{NodeId, ObjectId, PrimId, Space, Vector, View, orient2d, orient3d};
 use crate::index::Hierarchy;
 use crate::scene::Scene;
 
@@ -21,7 +21,7 @@ use crate::scene::Scene;
 pub struct Certificate {
     /// The step that showed the evidence.
     pub step: usize,
-    /// A node or a primitive.
+    /// A node, an object or a primitive.
     pub subject: Subject,
     /// What is claimed of it.
     pub claim: Claim,
@@ -71,7 +71,10 @@ fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
     let id = |name: &str| if let Some(Value::Integer(v)) = get(name) { u32::try_from(*v).ok() } else { None };
     let last = |name: &str| if let Some(Value::List(list)) = get(name) { list.last().copied() } else { None };
     let list = |name: &str| if let Some(Value::List(list)) = get(name) { Some(list.clone()) } else { None };
-    let subject = id("node").map(|n| Subject::Node(NodeId(n))).or_else(|| id("prim").map(|p| Subject::Prim(PrimId(p))))?;
+    let subject = id("node")
+        .map(|n| Subject::Node(NodeId(n)))
+        .or_else(|| id("object").map(|o| Subject::Object(ObjectId(o))))
+        .or_else(|| id("prim").map(|p| Subject::Prim(PrimId(p))))?;
     let claim = match (get("result"), get("eye_distance_units")) {
         (Some(Value::Word(result)), _) if result == "outside" => {
             let Some(Value::Word(planes)) = get("planes") else { return None };
@@ -102,18 +105,24 @@ pub fn check_film<S: Space>(film: &dyn Film<S>) -> Result<usize, Rejection> {
     }
     let mut shown = certificates.iter().peekable();
     let mut proven = Vec::new();
+    let mut objects = vec![false; film.scene().objects().len()];
     for (i, event) in film.events().iter().enumerate() {
         let step = i + 1;
         while shown.peek().is_some_and(|c| c.step <= step) {
-            proven.extend(shown.next().map(|c| c.subject));
+            let subject = shown.next().map(|c| c.subject);
+            if let Some(Subject::Object(object)) = subject {
+                objects[object.at()] = true;
+            }
+            proven.extend(subject);
         }
         let subject = match *event {
             Event::DecidedNode(n, Verdict::Outside) => Subject::Node(n),
             Event::DecidedPrim(p, Verdict::Outside) => Subject::Prim(p),
             _ => continue,
         };
-        // Evidence stands right before the decision that rests on it.
-        if proven.iter().rev().take(8).all(|s| *s != subject) {
+        // Evidence stands right before the decision that rests on it; that of an object holds for all its primitives.
+        let of_object = matches!(subject, Subject::Prim(p) if objects[film.scene().object_of(p).at()]);
+        if !of_object && proven.iter().rev().take(8).all(|s| *s != subject) {
             return Err(Rejection { step, why: format!("{subject:?} is called outside without a certificate") });
         }
     }
@@ -197,6 +206,9 @@ impl<'a, S: Space> Checker<'a, S> {
         let prims = match subject {
             Subject::Node(node) if node.at() < self.hierarchy.node_count() => self.hierarchy.prims(node).to_vec(),
             Subject::Prim(prim) if self.is_live(prim) => vec![prim],
+            Subject::Object(object) if object.at() < self.scene.objects().len() => {
+                self.scene.live().iter().copied().filter(|&p| self.scene.object_of(p) == object).collect()
+            }
             other => return Err(format!("{other:?} is not in the scene")),
         };
         Ok(prims.iter().flat_map(|&p| self.scene.prim_points(p)).map(widened).collect())

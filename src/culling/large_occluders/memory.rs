@@ -6,6 +6,7 @@
 
 use super::relation::{Relation, Sight};
 use super::space::Shape;
+use crate::culling::Verdict;
 use crate::geometry::{NodeId, ObjectId};
 use crate::index::KdTree;
 
@@ -32,7 +33,7 @@ pub struct Memory<S: Shape> {
     /// Objects that keep relations, in no order that matters.
     asked: Vec<ObjectId>,
     /// What this frame found out about each detail object.
-    pub hidden: Vec<Option<bool>>,
+    pub fates: Vec<Option<Verdict>>,
 }
 
 impl<S: Shape> Default for Memory<S> {
@@ -48,7 +49,7 @@ impl<S: Shape> Default for Memory<S> {
             seen: Vec::new(),
             joint: super::joint::Scratch::default(),
             asked: Vec::new(),
-            hidden: Vec::new(),
+            fates: Vec::new(),
         }
     }
 }
@@ -69,19 +70,19 @@ impl<S: Shape> Memory<S> {
         self.near.resize(objects, None);
         self.sights.resize_with(occluders, || None);
         self.seen.drain(..).for_each(|id| self.sights[id as usize] = None);
-        self.hidden.resize(objects, None);
+        self.fates.resize(objects, None);
         // Objects that the last frame did not ask about are out of the calculation.
-        let (hidden, kept, near) = (&mut self.hidden, &mut self.objects, &mut self.near);
+        let (fates, kept, near) = (&mut self.fates, &mut self.objects, &mut self.near);
         self.asked.sort_unstable();
         self.asked.dedup();
         self.asked.retain(|object| {
-            let asked = hidden[object.at()].take().is_some();
+            let asked = fates[object.at()].take().is_some();
             if !asked {
                 (kept[object.at()], near[object.at()]) = (Vec::new(), None);
             }
             asked
         });
-        hidden.fill(None);
+        fates.fill(None);
     }
     /// The occluders near a detail object for a direction, chosen by `choose` if another direction was asked for last; how many.
     pub fn near(&mut self, object: ObjectId, direction: u32, choose: impl FnOnce(&mut Vec<(u32, f32)>)) -> usize {

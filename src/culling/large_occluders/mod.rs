@@ -406,7 +406,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             }
             _ => {
                 self.watch.event(Event::Line(if undecided { line::LEAF } else { line::GATHER }));
-                self.gather(index.tree.prims_below(id));
+                self.gather(index.tree.prims_below(id), cutting);
                 self.watch.event(Event::DecidedNode(id, Verdict::Visible));
             }
         }
@@ -482,16 +482,18 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
     }
 
-    /// Draws primitives, but for detail objects that the occluders near them hide.
-    fn gather(&mut self, prims: &[PrimId]) {
+    /// Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out of view or that the
+    /// occluders near them hide.
+    fn gather(&mut self, prims: &[PrimId], cutting: u8) {
         if !(self.params.detail_objects || self.params.backface_culling) {
             self.out.prims.extend_from_slice(prims);
             return;
         }
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
-            if self.params.detail_objects && self.is_hidden(scene.object_of(prim)) {
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+            let fate = if self.params.detail_objects { self.fate(scene.object_of(prim), cutting) } else { Verdict::Visible };
+            if fate != Verdict::Visible {
+                self.watch.event(Event::DecidedPrim(prim, fate));
             } else if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
                 self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
@@ -502,34 +504,48 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     }
 
     /// Section 3.2: whether a detail object is hidden by what looks large from it toward the eye, since visibility between
-    /// two points goes both ways.
-    fn is_hidden(&mut self, object: ObjectId) -> bool {
-        if let Some(known) = self.memory.hidden[object.at()] {
+    /// two points goes both ways. Found out once a frame.
+    fn fate(&mut self, object: ObjectId, cutting: u8) -> Verdict {
+        if let Some(known) = self.memory.fates[object.at()] {
             return known;
         }
         let index = self.index;
-        let mut hidden = false;
-        if let Some(bounds) = &index.details[object.at()] {
-            self.watch.event(Event::Line(line::DETAIL));
-            let center = bounds.center();
-            let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
-            let most = self.params.occluders;
-            let near = self.memory.near(object, direction, |list| {
-                let leaf = leaf_at::<S>(&index.tree, center);
-                largest_from(&index.occluders, index.selection.list(leaf, direction), S::widened(center), most, list);
-            });
-            let start = self.sets.len();
-            for at in 0..near {
-                let id = self.memory.near_to(object, at);
-                if self.looks_at(id) {
-                    self.sets.push(id);
-                }
+        let fate = match &index.details[object.at()] {
+            Some(bounds) if cutting != 0 && self.is_outside(object, bounds, cutting) => Verdict::Outside,
+            Some(bounds) if self.is_hidden(object, bounds) => Verdict::Hidden,
+            _ => Verdict::Visible,
+        };
+        self.memory.fates[object.at()] = Some(fate);
+        fate
+    }
+
+    fn is_outside(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, planes: u8) -> bool {
+        let test = self.frustum.test(bounds, planes);
+        let frustum = &self.frustum;
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Object(object), frustum, bounds, planes, test)));
+        matches!(test, FrustumTest::Outside(_))
+    }
+
+    fn is_hidden(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>) -> bool {
+        let index = self.index;
+        self.watch.event(Event::Line(line::DETAIL));
+        let center = bounds.center();
+        let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
+        let most = self.params.occluders;
+        let near = self.memory.near(object, direction, |list| {
+            let leaf = leaf_at::<S>(&index.tree, center);
+            largest_from(&index.occluders, index.selection.list(leaf, direction), S::widened(center), most, list);
+        });
+        let start = self.sets.len();
+        for at in 0..near {
+            let id = self.memory.near_to(object, at);
+            if self.looks_at(id) {
+                self.sets.push(id);
             }
-            let set = start..self.sets.len();
-            hidden = matches!(self.test_occlusion(Owner::Object(object), bounds, set), Fate::Hidden);
-            self.sets.truncate(start);
         }
-        self.memory.hidden[object.at()] = Some(hidden);
+        let set = start..self.sets.len();
+        let hidden = matches!(self.test_occlusion(Owner::Object(object), bounds, set), Fate::Hidden);
+        self.sets.truncate(start);
         hidden
     }
 }
