@@ -323,7 +323,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
         let mut list = Vec::new();
-        largest_from(&index.occluders, index.selection.list(leaf, direction), self.eye, self.params.occluders, &mut list);
+        largest_from(&index.occluders, index.selection.list(leaf, direction).iter(), self.eye, self.params.occluders, &mut list);
         for (rank, &(id, area_angle)) in list.iter().enumerate() {
             let memory = &self.memory;
             self.watch
@@ -534,7 +534,9 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let most = self.params.occluders;
         let near = self.memory.near(object, direction, |list| {
             let leaf = leaf_at::<S>(&index.tree, center);
-            largest_from(&index.occluders, index.selection.list(leaf, direction), S::widened(center), most, list);
+            // What cuts the object's box, as its own primitives do, cannot hide all of it.
+            let beside = index.selection.list(leaf, direction).iter().filter(|l| !index.occluders.cuts(l.0, bounds));
+            largest_from(&index.occluders, beside, S::widened(center), most, list);
         });
         let start = self.sets.len();
         for at in 0..near {

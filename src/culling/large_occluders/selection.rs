@@ -22,6 +22,8 @@ use crate::scene::Progress;
 
 /// How many times as many occluders as are active a leaf's list holds.
 const SPARE: u32 = 4;
+/// How many it holds at least.
+const LEAST: u32 = 64;
 /// The least depth of the scene behind an occluder that is worth having, as a share of the scene's diagonal.
 const DEPTH_SHARE: f64 = 0.02;
 
@@ -76,9 +78,15 @@ fn better(a: &(u32, f32), b: &(u32, f32)) -> std::cmp::Ordering {
 }
 
 /// Those of a list that look largest from a point, best first, at most `most`, with their area-angles from there.
-pub fn largest_from<S: Shape>(occluders: &Occluders<S>, list: &[(u32, f32)], from: S::Point, most: u32, into: &mut Vec<(u32, f32)>) {
+pub fn largest_from<'a, S: Shape>(
+    occluders: &Occluders<S>,
+    list: impl Iterator<Item = &'a (u32, f32)>,
+    from: S::Point,
+    most: u32,
+    into: &mut Vec<(u32, f32)>,
+) {
     into.clear();
-    into.extend(list.iter().map(|&(id, _)| (id, area_angle(occluders.get(id), from) as f32)));
+    into.extend(list.map(|&(id, _)| (id, area_angle(occluders.get(id), from) as f32)));
     if into.len() > most as usize {
         into.select_nth_unstable_by(most as usize, better);
         into.truncate(most as usize);
@@ -225,7 +233,7 @@ fn rank<S: Shape>(
         let mut sum = 0.0;
         let mut list = Vec::new();
         for &(id, score) in &scored {
-            if list.len() == (most * SPARE) as usize || sum > 0.0 && f64::from(score) < gain * sum {
+            if list.len() == (most * SPARE).max(LEAST) as usize || sum > 0.0 && f64::from(score) < gain * sum {
                 break;
             }
             if is_toward(occluders, id, from, toward, cosine) {
