@@ -534,7 +534,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let most = self.params.occluders;
         let near = self.memory.near(object, direction, |list| {
             let leaf = leaf_at::<S>(&index.tree, center);
-            // What cuts the object's box, as its own primitives do, cannot hide all of it.
+            // What cuts or touches the object's box, as its own primitives do, cannot hide all of it.
             let beside = index.selection.list(leaf, direction).iter().filter(|l| !index.occluders.cuts(l.0, bounds));
             largest_from(&index.occluders, beside, S::widened(center), most, list);
         });

@@ -133,10 +133,10 @@ impl<S: Shape> Occluders<S> {
         self.prims(id).first().copied().unwrap_or_default()
     }
 
-    /// Whether an occluder's slab has points of a box on both sides, or in it.
+    /// Whether an occluder's slab cuts or touches a box.
     pub fn cuts(&self, id: u32, bounds: &Aabb<S::Vector>) -> bool {
         let ([low, high], slab) = (self.heights(id, bounds), self.all[id as usize].slab);
-        low < slab[1] && slab[0] < high
+        low <= slab[1] && slab[0] <= high
     }
     /// Signed distances of a box from the plane through an occluder's first corner: of its lowest and its highest corner.
     #[inline]
