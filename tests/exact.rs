@@ -1,5 +1,5 @@
-//! `frustum` on real models: no visible primitive is missed, and the image of what was kept is the image of
-//! everything, byte for byte.
+//! The conservative methods on real models: no visible primitive is missed, and the image of what was kept is the
+//! image of everything, byte for byte.
 //!
 //! The committed scenes always, from a few views. Where `CULLSCOPE_SCENES` names a folder, every model below
 //! it as well, along its whole paths and from 100 random views:
@@ -43,8 +43,8 @@ struct Sum {
     all_ms: f64,
 }
 
-fn look<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
-    let entry = S::method("frustum").expect("a method");
+fn look<S: Methods + Drawable>(method: &str, scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
+    let entry = S::method(method).expect("a method");
     let mut run = entry.ready(scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
     let mut truth = Truth::new(scene, false, 1, WHITE);
     let mut target = Target::default();
@@ -81,11 +81,18 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
     views
 }
 
+/// The methods that draw fewer primitives than all, and promise to miss none.
+const METHODS: [&str; 2] = ["frustum", "large-occluders"];
+
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
-    let sum = look(scene, views);
+    METHODS.iter().map(|method| check_method(method, scene, views)).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+}
+
+fn check_method<S: Methods + Drawable>(method: &str, scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
+    let sum = look(method, scene, views);
     let per = |total: f64| total / sum.views.max(1) as f64;
     println!(
-        "{:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",
+        "{method:<16} {:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",
         scene.name(),
         scene.live().len(),
         S::PRIM,
@@ -101,12 +108,12 @@ fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (us
     (sum.missed, sum.wrong_pixels)
 }
 
-fn check_file(path: &Path, every: usize, random: usize, side_px: u32) {
-    let found = match load(&path.to_string_lossy(), &LoadOptions::default(), &Quiet).unwrap_or_else(|e| panic!("{e}")) {
+fn check_file(path: &str, every: usize, random: usize, side_px: u32) {
+    let found = match load(path, &LoadOptions::default(), &Quiet).unwrap_or_else(|e| panic!("{e}")) {
         AnyScene::Flat(scene) => check(&scene, &views(&scene, every, random, side_px)),
         AnyScene::Solid(scene) => check(&scene, &views(&scene, every, random, side_px)),
     };
-    assert_eq!(found, (0, 0), "{}: missed triangles and wrong pixels", path.display());
+    assert_eq!(found, (0, 0), "{path}: missed triangles and wrong pixels");
 }
 
 #[test]
@@ -116,7 +123,7 @@ fn committed_models_lose_nothing() {
         models(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut found);
     }
     assert!(found.len() >= 8, "the real models are there");
-    found.iter().for_each(|path| check_file(path, 40, 4, 200));
+    found.iter().for_each(|path| check_file(&path.to_string_lossy(), 40, 4, 200));
 }
 
 #[test]
@@ -128,5 +135,15 @@ fn models_at_hand_lose_nothing() {
     let mut found = Vec::new();
     models(Path::new(&folder), &mut found);
     assert!(!found.is_empty(), "no model below {}", folder.display());
-    found.iter().for_each(|path| check_file(path, 1, 100, 1024));
+    found.iter().for_each(|path| check_file(&path.to_string_lossy(), 1, 100, 1024));
+}
+
+#[test]
+fn generated_models_lose_nothing() {
+    // Where models are named, at full size, along the whole walk and from 100 random views.
+    let (size, every, random, side_px) =
+        if std::env::var_os("CULLSCOPE_SCENES").is_some() { ("", 1, 100, 1024) } else { ("?polygons=6000", 24, 6, 160) };
+    for name in ["building", "city"] {
+        check_file(&format!("generate:{name}{size}"), every, random, side_px);
+    }
 }
