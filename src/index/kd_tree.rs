@@ -109,8 +109,14 @@ impl<V: Vector> KdTree<V> {
     /// The primitives at and below a node.
     #[inline]
     pub fn prims_below(&self, node: NodeId) -> &[PrimId] {
+        &self.order[self.range(node)]
+    }
+
+    /// Where the primitives at and below a node stand in the order of all.
+    #[inline]
+    pub fn range(&self, node: NodeId) -> Range<usize> {
         let n = &self.nodes[node.at()];
-        &self.order[n.first as usize..(n.first + n.count) as usize]
+        n.first as usize..(n.first + n.count) as usize
     }
 
     /// Panics unless every promise of the tree holds against the boxes it was built from: each

@@ -5,8 +5,8 @@ use super::joint::{Candidate, Scratch, jointly};
 use super::occluders::Occluders;
 use super::relation::{Margin, Planes, Relation, Sight};
 use super::selection;
-use super::space::{Edge, Point, Shape, corner};
-use crate::geometry::{Aabb, View};
+use super::space::{Edge, Point as _, Shape, corner};
+use crate::geometry::{Aabb, Vector, View};
 use crate::scene::Face;
 
 pub use super::relation::Occlusion;
@@ -87,8 +87,8 @@ impl<S: Shape> Blockers<S> {
             let edge = if outline.len() == 2 { vec![outline[i]] } else { vec![outline[i], outline[(i + 1) % outline.len()]] };
             Some((*pair).map(|plane| Tangent {
                 vertex: S::rounded(corner::<S>(bounds, plane.vertex)),
-                normal: S::rounded(plane.normal),
-                eye_distance: plane.normal.dot(S::widened(eye) - S::widened(edge[0])),
+                normal: plane.normal,
+                eye_distance: S::widened(plane.normal).dot(S::widened(eye) - S::widened(edge[0])),
                 edge: edge.clone(),
             }))
         });
@@ -102,7 +102,7 @@ impl<S: Shape> Blockers<S> {
     /// depends on all of them.
     pub fn make_relations(&self, bounds: &Aabb<S::Vector>, eye: S::Vector, naive: bool) -> f64 {
         let side = |id: u32| Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
-        let arm = |planes: &Planes<S::Point>| if let Planes::Tangent([plane, _]) = planes { plane.normal.get(0) } else { 1.0 };
+        let arm = |planes: &Planes<S::Vector>| if let Planes::Tangent([plane, _]) = planes { f64::from(plane.normal.get(0)) } else { 1.0 };
         let relation = |id: u32| Relation::new(&self.occluders, id, if side(id) < 0 { -1 } else { 1 }, bounds, naive);
         (0..self.len() as u32).map(|id| relation(id).planes.iter().map(arm).sum::<f64>()).sum()
     }

@@ -27,7 +27,9 @@ pub struct Memory<S: Shape> {
     near: Vec<Option<(u32, Box<[u32]>)>>,
     list: Vec<(u32, f32)>,
     /// How the eye of this frame sees each occluder it was asked about.
-    sights: Vec<Option<Box<Sight<S>>>>,
+    sights: Vec<Sight<S>>,
+    /// Whether it was asked in this frame, and the list of those that were.
+    fresh: Vec<bool>,
     seen: Vec<u32>,
     pub joint: super::joint::Scratch,
     /// Objects that keep relations, in no order that matters.
@@ -46,6 +48,7 @@ impl<S: Shape> Default for Memory<S> {
             near: Vec::new(),
             list: Vec::new(),
             sights: Vec::new(),
+            fresh: Vec::new(),
             seen: Vec::new(),
             joint: super::joint::Scratch::default(),
             asked: Vec::new(),
@@ -68,8 +71,9 @@ impl<S: Shape> Memory<S> {
         self.below.resize(nodes, false);
         self.objects.resize_with(objects, Vec::new);
         self.near.resize(objects, None);
-        self.sights.resize_with(occluders, || None);
-        self.seen.drain(..).for_each(|id| self.sights[id as usize] = None);
+        self.sights.resize_with(occluders, Sight::default);
+        self.fresh.resize(occluders, false);
+        self.seen.drain(..).for_each(|id| self.fresh[id as usize] = false);
         self.fates.resize(objects, None);
         // Objects that the last frame did not ask about are out of the calculation.
         let (fates, kept, near) = (&mut self.fates, &mut self.objects, &mut self.near);
@@ -98,16 +102,20 @@ impl<S: Shape> Memory<S> {
     pub fn near_to(&self, object: ObjectId, at: usize) -> u32 {
         self.near[object.at()].as_ref().map_or(0, |n| n.1[at])
     }
-    /// How the eye sees an occluder, computed at the first question of a frame.
-    pub fn sight(&mut self, id: u32, make: impl FnOnce() -> Sight<S>) {
-        if self.sights[id as usize].is_none() {
-            self.sights[id as usize] = Some(Box::new(make()));
+    /// How the eye sees an occluder, found out by `look` at the first question of a frame.
+    #[inline]
+    pub fn sight(&mut self, id: u32, look: impl FnOnce(&mut Sight<S>)) -> &Sight<S> {
+        let sight = &mut self.sights[id as usize];
+        if !std::mem::replace(&mut self.fresh[id as usize], true) {
+            look(sight);
             self.seen.push(id);
         }
+        sight
     }
-    /// What [`Memory::sight`] computed.
-    pub fn sight_of(&self, id: u32) -> Option<&Sight<S>> {
-        self.sights[id as usize].as_deref()
+    /// What [`Memory::sight`] found out.
+    #[inline]
+    pub fn sight_of(&self, id: u32) -> &Sight<S> {
+        &self.sights[id as usize]
     }
     /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look first.
     pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {

@@ -31,7 +31,7 @@ use self::explain::{Chosen, Evidence, Joined, Related};
 use self::joint::{Candidate, jointly};
 use self::memory::{Memory, Owner};
 use self::occluders::Occluders;
-use self::relation::{Margin, Occlusion, Relation, Sight};
+use self::relation::{Margin, Occlusion, Relation};
 use self::selection::{Selection, largest_from, leaf_at};
 use self::space::Shape;
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
@@ -72,6 +72,9 @@ pub struct Index<S: Shape> {
     selection: Selection,
     /// Bounds of each object that is small enough to be tested as a whole.
     details: Vec<Option<Aabb<S::Vector>>>,
+    /// The tree's primitives, those of a leaf sorted by object; and where each run of one object begins.
+    by_object: Vec<PrimId>,
+    runs: Vec<(u32, ObjectId)>,
     /// The selection with the numbers that all polygons of the scene have, to be saved.
     saved: Arc<[u8]>,
 }
@@ -107,7 +110,17 @@ impl<S: Shape> Index<S> {
         let kept = selection.named();
         let faces: Vec<_> = kept.iter().map(|&id| faces[all.get(id).source as usize].clone()).collect();
         let occluders = Occluders::<S>::new(scene.points(), &faces);
-        Ok(Some(Self { tree, occluders, selection: selection.renumbered(&kept), details: details(scene), saved: saved.into() }))
+        let (by_object, runs) = runs(scene, &tree);
+        let selection = selection.renumbered(&kept);
+        Ok(Some(Self { tree, occluders, selection, details: details(scene), by_object, runs, saved: saved.into() }))
+    }
+    /// The primitives at and below a node, object by object within each leaf.
+    fn objects_of(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
+        let range = self.tree.range(node);
+        let start = |i: usize| self.runs.get(i).map_or(self.by_object.len(), |r| r.0 as usize);
+        let first = self.runs.partition_point(|r| (r.0 as usize) < range.start);
+        let last = self.runs.partition_point(|r| (r.0 as usize) < range.end);
+        (first..last).map(move |i| (self.runs[i].1, &self.by_object[start(i)..start(i + 1)]))
     }
     /// The box that a test was about.
     fn bounds_of(&self, owner: Owner) -> Aabb<S::Vector> {
@@ -116,6 +129,25 @@ impl<S: Shape> Index<S> {
             Owner::Object(o) => self.details[o.at()].unwrap_or(Aabb::empty()),
         }
     }
+}
+
+/// The tree's primitives with those of each leaf sorted by object, and the beginnings of the runs.
+fn runs<S: Space>(scene: &Scene<S>, tree: &KdTree<S::Vector>) -> (Vec<PrimId>, Vec<(u32, ObjectId)>) {
+    let mut order = tree.prims_below(NodeId(0)).to_vec();
+    let mut leaves: Vec<Range<usize>> =
+        (0..tree.nodes().len()).filter(|&n| tree.nodes()[n].is_leaf()).map(|n| tree.range(NodeId(n as u32))).collect();
+    leaves.sort_unstable_by_key(|r| r.start);
+    let mut runs = Vec::new();
+    for leaf in leaves {
+        order[leaf.clone()].sort_unstable_by_key(|&p| (scene.object_of(p), p));
+        for at in leaf.clone() {
+            let object = scene.object_of(order[at]);
+            if at == leaf.start || scene.object_of(order[at - 1]) != object {
+                runs.push((at as u32, object));
+            }
+        }
+    }
+    (order, runs)
 }
 
 /// Bounds of the objects that count as details (Section 3.2).
@@ -154,6 +186,8 @@ impl<S: Shape> Hierarchy<S> for Index<S> {
             + self.occluders.bytes()
             + self.selection.bytes()
             + self.details.len() * size_of::<Option<Aabb<S::Vector>>>()
+            + self.by_object.len() * size_of::<PrimId>()
+            + self.runs.len() * size_of::<(u32, ObjectId)>()
     }
 }
 
@@ -340,15 +374,14 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     fn looks_at(&mut self, id: u32) -> bool {
         let (occluders, eye, margin) = (&self.index.occluders, self.eye, self.margin);
         let (scene, position, one_sided) = (self.scene, self.view.eye.position, self.params.backface_culling);
-        self.memory.sight(id, || {
-            let mut sight = Sight::of(occluders, id, eye, margin);
+        let sight = self.memory.sight(id, |sight| {
+            sight.look(occluders, id, eye, margin);
             // What is not drawn hides nothing.
             if sight.side != 0 && one_sided && occluders.prims(id).iter().any(|&p| prim_faces_away(scene, position, p)) {
                 sight.side = 0;
             }
-            sight
         });
-        self.memory.sight_of(id).is_some_and(|s| s.side != 0)
+        sight.side != 0
     }
 
     /// Figure 9, with view-frustum culling in front.
@@ -406,7 +439,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             }
             _ => {
                 self.watch.event(Event::Line(if undecided { line::LEAF } else { line::GATHER }));
-                self.gather(index.tree.prims_below(id), cutting);
+                self.gather(id, cutting);
                 self.watch.event(Event::DecidedNode(id, Verdict::Visible));
             }
         }
@@ -448,7 +481,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     /// One occluder and one box.
     fn test_one(&mut self, owner: Owner, bounds: &Aabb<S::Vector>, id: u32, depth: f64, near: usize) -> (Occlusion, Option<Candidate>) {
         let (index, margin) = (self.index, self.margin);
-        let Some(side) = self.memory.sight_of(id).map(|s| s.side) else { return (Occlusion::None, None) };
+        let side = self.memory.sight_of(id).side;
         let kept = if self.params.cache { self.memory.find(owner, id, side, near) } else { None };
         let made;
         let relation = match kept {
@@ -464,7 +497,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
                 }
             }
         };
-        let Some(sight) = self.memory.sight_of(id) else { return (Occlusion::None, None) };
+        let sight = self.memory.sight_of(id);
         let thickness = index.occluders.thickness(id);
         let seen = relation.classify(sight, thickness, depth, margin);
         self.watch.note(|| Evidence::Related(Related::of(&index.occluders, owner, relation, sight, seen, depth, margin, kept.is_some())));
@@ -484,17 +517,29 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
 
     /// Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out of view or that the
     /// occluders near them hide.
-    fn gather(&mut self, prims: &[PrimId], cutting: u8) {
-        if !(self.params.detail_objects || self.params.backface_culling) {
+    fn gather(&mut self, id: NodeId, cutting: u8) {
+        let index = self.index;
+        if !self.params.detail_objects {
+            self.draw(index.tree.prims_below(id));
+            return;
+        }
+        for (object, prims) in index.objects_of(id) {
+            match self.fate(object, cutting) {
+                Verdict::Visible => self.draw(prims),
+                fate => prims.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, fate))),
+            }
+        }
+    }
+
+    /// Draws primitives, but for back faces if so asked.
+    fn draw(&mut self, prims: &[PrimId]) {
+        if !self.params.backface_culling {
             self.out.prims.extend_from_slice(prims);
             return;
         }
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
-            let fate = if self.params.detail_objects { self.fate(scene.object_of(prim), cutting) } else { Verdict::Visible };
-            if fate != Verdict::Visible {
-                self.watch.event(Event::DecidedPrim(prim, fate));
-            } else if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+            if prim_faces_away(scene, view.eye.position, prim) {
                 self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {

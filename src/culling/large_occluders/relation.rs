@@ -32,23 +32,58 @@ const DEPTH_ROUNDING: f64 = 1.0 / (1u32 << 17) as f64;
 /// products, is within 20 roundings of 2⁻⁵³; a tangent corner that lost a tie is off by as much.
 const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// A plane through an edge of the occluder and a corner of the box.
+/// Relative error of a distance by a unit normal that is kept in 32 bits.
+const NORMAL_ROUNDING: f64 = 1.0 / (1u32 << 22) as f64;
+
+/// A plane through an edge of the occluder and a corner of the box. Kept in 32 bits: what is kept from frame to frame is
+/// read from main memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Plane<P> {
+pub struct Plane<V> {
     /// Unit length, toward the occluder.
-    pub normal: P,
+    pub normal: V,
     /// The corner of the box.
     pub vertex: u8,
 }
 
 /// The two planes through an edge that touch the box.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Planes<P> {
+pub enum Planes<V> {
     /// The edge's line meets the box.
     Crossing,
     /// Occluder and box on one side of the first; on opposite sides of the second. Where the occluder's plane
     /// cuts the box there is no such order.
-    Tangent([Plane<P>; 2]),
+    Tangent([Plane<V>; 2]),
+}
+
+/// The planes by edge; those of up to four edges lie where the relation lies.
+#[derive(Clone, Debug)]
+pub struct PlaneList<V> {
+    few: [Planes<V>; 4],
+    count: u8,
+    many: Vec<Planes<V>>,
+}
+
+impl<V: Copy> PlaneList<V> {
+    const EMPTY: Self = Self { few: [Planes::Crossing; 4], count: 0, many: Vec::new() };
+    fn push(&mut self, planes: Planes<V>) {
+        if let (Some(to), true) = (self.few.get_mut(self.count as usize), self.many.is_empty()) {
+            *to = planes;
+            self.count += 1;
+        } else {
+            if self.many.is_empty() {
+                self.many.extend_from_slice(&self.few);
+            }
+            self.many.push(planes);
+        }
+    }
+}
+
+impl<V> std::ops::Deref for PlaneList<V> {
+    type Target = [Planes<V>];
+    #[inline]
+    fn deref(&self) -> &[Planes<V>] {
+        if self.many.is_empty() { &self.few[..self.count as usize] } else { &self.many }
+    }
 }
 
 /// What does not change about an occluder and a box while the eye stays on one side of the occluder.
@@ -64,7 +99,7 @@ pub struct Relation<S: Shape> {
     /// Diagonal of the box.
     diagonal: f64,
     /// By edge; empty where the box lies wholly on the eye's side.
-    pub planes: Vec<Planes<S::Point>>,
+    pub planes: PlaneList<S::Vector>,
 }
 
 /// The kinds of occlusion.
@@ -102,7 +137,7 @@ pub struct Decisive {
 }
 
 /// An occluder as the eye sees it in one frame.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Sight<S: Shape> {
     /// 1: the eye is in front; −1: behind; 0: it cannot hide anything from here.
     pub side: i8,
@@ -140,22 +175,28 @@ impl Margin {
 impl<S: Shape> Sight<S> {
     /// How `eye` sees an occluder.
     pub fn of(occluders: &Occluders<S>, id: u32, eye: S::Point, margin: Margin) -> Self {
+        let mut sight = Self::default();
+        sight.look(occluders, id, eye, margin);
+        sight
+    }
+    /// Looks again, at an occluder of any kind.
+    pub fn look(&mut self, occluders: &Occluders<S>, id: u32, eye: S::Point, margin: Margin) {
         let occluder = occluders.get(id);
         let at = occluder.normal.dot(eye - occluder.anchor);
         let [low, high] = occluder.slab;
         let (side, height) = if at > high { (1, at - high) } else { (-1, low - at) };
-        let mut sight = Self { side, height, edges: Vec::new(), reach: 0.0 };
+        (self.side, self.height, self.reach) = (side, height, 0.0);
+        self.edges.clear();
         if height.is_nan() || height < margin.height {
-            sight.side = 0;
-            return sight;
+            self.side = 0;
+            return;
         }
         for edge in occluders.edges(id) {
             let r = eye - edge.from;
             let distance = S::distance(edge, r);
-            sight.reach = sight.reach.max(distance);
-            sight.edges.push((r, r.length(), distance));
+            self.reach = self.reach.max(distance);
+            self.edges.push((r, r.length(), distance));
         }
-        sight
     }
 }
 
@@ -166,10 +207,9 @@ impl<S: Shape> Relation<S> {
         let [low, high] = occluders.heights(id, bounds);
         let behind = if side > 0 { [occluder.slab[0] - high, occluder.slab[0] - low] } else { [low - occluder.slab[1], high - occluder.slab[1]] };
         let diagonal = (corner::<S>(bounds, (1 << Self::AXES) - 1) - corner::<S>(bounds, 0)).length();
-        let mut relation = Self { occluder: id, side, behind, arm: 0.0, diagonal, planes: Vec::new() };
+        let mut relation = Self { occluder: id, side, behind, arm: 0.0, diagonal, planes: PlaneList::EMPTY };
         if behind[1] > 0.0 {
             let edges = occluders.edges(id);
-            relation.planes.reserve_exact(edges.len());
             for edge in edges {
                 let touched = if naive { S::tangents_naive(edge, bounds) } else { S::tangents(edge, bounds) };
                 let planes = touched.map_or(Planes::Crossing, |touched| relation.tangent(edge, touched, bounds));
@@ -181,17 +221,18 @@ impl<S: Shape> Relation<S> {
 
     const AXES: usize = <S::Vector as crate::geometry::Vector>::AXES;
 
-    fn tangent(&mut self, edge: &super::space::Edge<S::Point>, touched: [u8; 2], bounds: &Aabb<S::Vector>) -> Planes<S::Point> {
+    fn tangent(&mut self, edge: &super::space::Edge<S::Point>, touched: [u8; 2], bounds: &Aabb<S::Vector>) -> Planes<S::Vector> {
         let side = f64::from(self.side);
         let arms = touched.map(|vertex| corner::<S>(bounds, vertex) - edge.from);
-        let plane = |i: usize| {
-            let normal = S::through(edge, arms[i]) * side;
-            Plane { normal: normal * (1.0 / normal.length()), vertex: touched[i] }
+        let unit = |arm: S::Point| {
+            let normal = S::through(edge, arm) * side;
+            normal * (1.0 / normal.length())
         };
-        let planes = [plane(0), plane(1)];
+        let normals = arms.map(unit);
+        let plane = |i: usize| Plane { normal: S::rounded(normals[i]), vertex: touched[i] };
         self.arm = self.arm.max(arms[0].length()).max(arms[1].length());
         // The other corner lies on the positive side of the supporting plane.
-        Planes::Tangent(if planes[0].normal.dot(arms[1]) >= 0.0 { planes } else { [planes[1], planes[0]] })
+        Planes::Tangent(if normals[0].dot(arms[1]) >= 0.0 { [plane(0), plane(1)] } else { [plane(1), plane(0)] })
     }
 
     /// The classification from an eye. `thickness`: of the occluder's slab; `depth`: the greatest view depth of the box.
@@ -206,11 +247,11 @@ impl<S: Shape> Relation<S> {
         found.behind = s > 0.0 && s >= lateral + DEPTH_ROUNDING * (sight.height + thickness + s) && s * sight.height >= sight.reach * lateral;
         // What a lost tie between two tangent corners may turn a plane by, and what rounding may move it.
         let lateral = lateral + ROUNDING * self.arm * self.diagonal / s;
-        let blur = ROUNDING * (self.arm + s);
+        let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
         let mut inside = 0;
         for (i, (planes, &(r, length, distance))) in self.planes.iter().zip(&sight.edges).enumerate() {
             let Planes::Tangent([supporting, separating]) = planes else { continue };
-            let (reached, touched) = (supporting.normal.dot(r), separating.normal.dot(r));
+            let (reached, touched) = (S::widened(supporting.normal).dot(r), S::widened(separating.normal).dot(r));
             // Where the occluder's plane cuts the box, either corner will do.
             let partial = if s > 0.0 { touched > 0.0 } else { touched > 0.0 || reached > 0.0 };
             if !partial {
@@ -229,12 +270,12 @@ impl<S: Shape> Relation<S> {
     pub fn decisive(&self, sight: &Sight<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
         let s = self.behind[0];
         let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
-        let blur = ROUNDING * (self.arm + s);
+        let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
         let tests = self.planes.iter().zip(&sight.edges).enumerate().filter_map(|(i, (planes, &(r, length, distance)))| {
             let Planes::Tangent([supporting, separating]) = planes else { return None };
             let (plane, needed) =
                 if seen.occlusion == Occlusion::None { (separating, 0.0) } else { (supporting, (distance * lateral + blur * length) / s) };
-            Some(Decisive { edge: i as u8, vertex: plane.vertex, distance: plane.normal.dot(r), needed })
+            Some(Decisive { edge: i as u8, vertex: plane.vertex, distance: S::widened(plane.normal).dot(r), needed })
         });
         tests.min_by(|a, b| (a.distance - a.needed).total_cmp(&(b.distance - b.needed))).unwrap_or_default()
     }

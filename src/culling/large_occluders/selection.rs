@@ -30,8 +30,8 @@ const DEPTH_SHARE: f64 = 0.02;
 /// For each leaf and direction the best occluders, best first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection {
-    /// Directions a circle is divided into.
-    directions: u32,
+    /// The directions, in the ground plane.
+    directions: Vec<[f64; 2]>,
     /// Number of the leaf at each node; meaningless elsewhere.
     leaf_of: Vec<u32>,
     /// Where the list of each leaf and direction begins in `lists`, and one past the last.
@@ -94,6 +94,11 @@ pub fn largest_from<'a, S: Shape>(
     into.sort_unstable_by(better);
 }
 
+/// All directions.
+fn ways(directions: u32) -> Vec<[f64; 2]> {
+    (0..directions).map(|i| direction(i, directions)).collect()
+}
+
 /// The component of a vector along a direction of the ground plane: x and −z in space, x and y in flatland.
 fn along<S: Shape>(v: S::Point, [x, y]: [f64; 2]) -> f64 {
     if S::Vector::AXES == 2 { v.get(0) * x + v.get(1) * y } else { v.get(0) * x - v.get(2) * y }
@@ -128,17 +133,24 @@ impl Selection {
             *sum += list.len() as u32;
             Some(*sum)
         }));
-        Some(Self { directions, leaf_of, starts, lists: lists.concat() })
+        Some(Self { directions: ways(directions), leaf_of, starts, lists: lists.concat() })
     }
 
     /// The number of the direction nearest to a line of sight.
     pub fn direction_of<S: Shape>(&self, sight: S::Point) -> u32 {
-        let alike = |i: &u32| along::<S>(sight, direction(*i, self.directions));
-        (0..self.directions).max_by(|a, b| alike(a).total_cmp(&alike(b)).then(b.cmp(a))).unwrap_or(0)
+        let alike = |way: &[f64; 2]| along::<S>(sight, *way);
+        let mut best = 0;
+        for (i, way) in self.directions.iter().enumerate().skip(1) {
+            // The first of equals.
+            if alike(way) > alike(&self.directions[best]) {
+                best = i;
+            }
+        }
+        best as u32
     }
     /// The best occluders of a leaf and direction with their area-angles from the middle of the leaf, best first.
     pub fn list(&self, leaf: NodeId, direction: u32) -> &[(u32, f32)] {
-        let at = (self.leaf_of[leaf.at()] * self.directions + direction) as usize;
+        let at = self.leaf_of[leaf.at()] as usize * self.directions.len() + direction as usize;
         &self.lists[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
     /// The tables, to be saved: leaf numbers by node, starts of lists, lists.
@@ -157,7 +169,7 @@ impl Selection {
         let leaves = leaf_of.iter().max().map_or(0, |&most| most as usize + 1);
         let fits = leaf_of.len() == nodes && starts.len() == leaves * directions as usize + 1;
         let known = lists.iter().all(|l| (l.0 as usize) < occluders);
-        (ascending && whole && fits && known).then_some(Self { directions, leaf_of, starts, lists })
+        (ascending && whole && fits && known).then(|| Self { directions: ways(directions), leaf_of, starts, lists })
     }
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
