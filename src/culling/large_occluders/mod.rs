@@ -213,7 +213,7 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "TestOcclusion:5", text: "      T is occluded by A" },
     CodeLine { label: "TestOcclusion:6", text: "    else if P satisfies all separating planes" },
     CodeLine { label: "TestOcclusion:7", text: "      A partially occludes T" },
-    CodeLine { label: "TestOcclusion:8", text: "  if connected partial occluders jointly occlude T" },
+    CodeLine { label: "TestOcclusion:8", text: "  if connected ones jointly occlude T" },
     CodeLine { label: "TestOcclusion:9", text: "    T is occluded by them" },
     CodeLine { label: "Gather:1", text: "Gather(T)" },
     CodeLine { label: "Gather:2", text: "  for each detail object D of T" },
