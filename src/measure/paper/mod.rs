@@ -2,7 +2,7 @@
 //! <https://doi.org/10.1145/253284.253312>, Section 4, measured on any scene beside the paper's own figures.
 //!
 //! An [`Experiment`] is a value: a name, and what it runs on each scene. All walk the scene's path `figure 8` (where a
-//! scene has none, one through its middle), at [`WALKING_STEP_M`] a frame where the method remembers. The paper's
+//! scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
 //! models and machines are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the
 //! answers are checked: the triangles that an item buffer shows and the method did not draw are counted (0 expected).
 
