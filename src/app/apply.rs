@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::any::{Any, AnyStage};
+use super::any::{Any, AnyStage, each};
 use super::command::{Action, Command};
 use super::session::Session;
 use super::stage::Stage;
@@ -211,6 +211,7 @@ impl State {
                 });
             }
             Action::LockEye => self.is_eye_locked = !self.is_eye_locked,
+            Action::Flight => self.fly(),
             Action::ResetSettings => self.change(0, |s| s.settings.0.clear()),
             _ => return false,
         }
@@ -287,8 +288,26 @@ impl State {
         if before != self.wanted()
             && let Some(before) = before
         {
+            if let Some(stage) = &mut self.stage {
+                each!(stage, s => s.keep_flying());
+            }
             self.history.push(before, gesture);
             self.record();
+        }
+    }
+
+    /// Begins a flight, or ends it: a path of the stage, and a view file in the working folder.
+    fn fly(&mut self) {
+        let Some(stage) = &mut self.stage else { return };
+        let flown = each!(stage, s => s.fly());
+        let Some((frames, text)) = flown else {
+            return self.tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
+        };
+        let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
+        let path = format!("{}-flight.views.json", self.staged().map_or("scene", |s| s.scene_name()).replace(['/', '\\', ' '], "-"));
+        match super::session::write_file(&path, text.as_bytes()) {
+            Ok(()) => self.tell(format!("The flight of {frames} views is a path now, and was written to {path}.")),
+            Err(error) => self.fail(error.to_string()),
         }
     }
 

@@ -94,6 +94,7 @@ actions! {
     Edit EyeHome "eye-home" "Put the Eye back on its path" [] "Takes back every change of the Eye.";
     Edit EyeHere "eye-here" "Put the Eye where the Observer is" [] "Culling sees from where you look.";
     Edit LockEye "lock-eye" "Lock the Eye" ["L"] "A locked Eye cannot be moved by accident.";
+    Edit Flight "flight" "Record a flight" [] "Keeps every place of the Eye from now on; chosen again, they become a path of their own and a view file.";
     Edit ResetSettings "reset-parameters" "Reset the parameters" [] "Gives every parameter its default.";
 
     Step PlayPause "play" "Play or pause" ["Space"] "Plays the film from here, or stops.";

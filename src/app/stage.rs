@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::culling::{Card, Event, Field, Film, Knob, KnobValue, Methods, Verdict};
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
-use crate::scene::{Report, Scene, framing_view};
+use crate::scene::{Report, Scene, framing_view, write_views};
 use crate::trace::{Counts, Moves, Stamps, State};
 
 /// Image size of the Eye when the scene brings no view of its own, pixels.
@@ -44,6 +44,8 @@ pub struct Stage<S: Space> {
     pub view: View<S>,
     /// The recorded film; `None` until the first recording is done.
     pub recorded: Option<Recorded<S>>,
+    /// The views of a flight that is being recorded.
+    flight: Option<Vec<View<S>>>,
 }
 
 impl<S: Space> Stage<S> {
@@ -55,7 +57,7 @@ impl<S: Space> Stage<S> {
             paths.push(ViewPath { name: "overview".into(), views: vec![view] });
         }
         let view = paths[0].views[0];
-        Self { scene, serial, paths, path: 0, frame: 0, view, recorded: None }
+        Self { scene, serial, paths, path: 0, frame: 0, view, recorded: None, flight: None }
     }
     /// The path that is followed.
     pub fn views(&self) -> &[View<S>] {
@@ -66,6 +68,31 @@ impl<S: Space> Stage<S> {
         self.path = path.min(self.paths.len() - 1);
         self.frame = frame.min(self.views().len() - 1);
         self.view = self.views()[self.frame];
+    }
+    /// Begins a flight at the present view (`None`), or ends it: the number of its views, and the view file's text if the Eye was
+    /// moved at all. It is then the last path, and followed from its first view.
+    pub fn fly(&mut self) -> Option<(usize, Option<String>)> {
+        let Some(views) = self.flight.take() else {
+            self.flight = Some(vec![self.view]);
+            return None;
+        };
+        let frames = views.len();
+        if frames < 2 {
+            return Some((frames, None));
+        }
+        let path = ViewPath { name: "flight".into(), views };
+        let text = write_views(&path, self.scene.origin());
+        self.paths.push(path);
+        self.go(self.paths.len() - 1, 0);
+        Some((frames, Some(text)))
+    }
+    /// Adds the present view to a flight that is being recorded, if it is a new one.
+    pub fn keep_flying(&mut self) {
+        if let Some(flight) = &mut self.flight
+            && flight.last() != Some(&self.view)
+        {
+            flight.push(self.view);
+        }
     }
     /// Moves the Eye by a world vector, target and all.
     pub fn shift_eye(&mut self, by: S::Vector) {

@@ -25,6 +25,38 @@ fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
 }
 
 #[test]
+fn a_flight_becomes_a_path_that_can_be_followed() {
+    let mut state = opened(FLAT);
+    let place = |state: &State| state.staged().map(|s| s.place());
+    let Some(Any::Flat(start)) = state.stage.as_ref().map(|s| s.view()) else { panic!("a flat stage") };
+    let paths = |state: &State| if let Some(Any::Flat(s)) = &state.stage { s.paths.len() } else { 0 };
+    let before = paths(&state);
+    state.apply(Action::Flight);
+    state.apply(Action::Flight);
+    assert_eq!(paths(&state), before, "the Eye was not moved, so there is no path");
+    state.apply(Action::Flight);
+    let mut flown = vec![start];
+    for k in 1..5 {
+        let mut view = start;
+        view.eye.position.x += k as f32;
+        view.eye.target.x += k as f32;
+        state.apply(Command::Eye(Any::Flat(view), 7));
+        flown.push(view);
+    }
+    state.apply(Action::Flight);
+    let name = format!("{FLAT}-flight.views.json");
+    let text = std::fs::read_to_string(&name).expect("a view file");
+    std::fs::remove_file(&name).expect("a file of our own");
+    let Some(Any::Flat(stage)) = &state.stage else { panic!("a flat stage") };
+    assert_eq!(stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())), Some(("flight", flown.as_slice())));
+    assert_eq!(place(&state), Some((before, 0)));
+    assert!(text.contains("\"views\"") && text.matches("\"eye\"").count() == 5, "{text}");
+    state.block_until_idle();
+    state.apply(Command::Frame(before, 4));
+    assert!(matches!(state.stage.as_ref().map(|s| s.view()), Some(Any::Flat(v)) if v == flown[4]));
+}
+
+#[test]
 fn forward_and_back_is_the_same_state() {
     let mut state = opened(FLAT);
     for there_and_back in [(Action::Forward, Action::Back), (Action::Into, Action::BackInto)] {
