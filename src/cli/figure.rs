@@ -39,7 +39,7 @@ pub(super) struct Args {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
-enum Format {
+pub(super) enum Format {
     Svg,
     Pdf,
     Png,
@@ -107,7 +107,8 @@ fn chosen(args: &Args) -> Result<Vec<&'static Builtin>, CliError> {
     args.names.iter().map(find).collect()
 }
 
-fn bytes(drawing: &Drawing, theme: Theme, format: Format, recipe: &str) -> Result<(Vec<u8>, &'static str), RenderError> {
+/// A drawing as the bytes of a file, and the file's extension.
+pub(super) fn bytes(drawing: &Drawing, theme: Theme, format: Format, recipe: &str) -> Result<(Vec<u8>, &'static str), RenderError> {
     Ok(match format {
         Format::Svg => {
             let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };

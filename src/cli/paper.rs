@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use super::error::reason;
 use super::methods::{json_text, settings};
 use super::progress::Bar;
-use super::{CliError, output, scene, suggest};
+use super::{CliError, figure, output, scene, suggest};
 use crate::figure::chart;
 use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::raster::Target;
-use crate::render::{self, PngSize, SvgOptions, Theme};
+use crate::render::{RenderError, Theme};
 use crate::scene::{LoadOptions, Part};
 
 #[derive(clap::Args)]
@@ -69,8 +69,6 @@ enum Format {
     Png,
 }
 
-/// Dots an inch of PNG charts: what journals ask for.
-const DPI: f32 = 300.0;
 /// What the paper's models are likened to.
 const SCENES: [&str; 2] = ["generate:building", "generate:city"];
 
@@ -130,18 +128,18 @@ fn recipe(args: &Args, experiment: &Experiment) -> String {
 }
 
 fn write(report: &Report, format: Format, folder: &Path, recipe: &str) -> Result<(), CliError> {
-    let failed = |e: render::RenderError| CliError::work(report.name, e.to_string());
-    let drawing = || chart(report.title, &report.plots, &report.caption());
+    let failed = |e: RenderError| CliError::work(report.name, e.to_string());
+    let painted = |format| {
+        let drawing = chart(report.title, &report.plots, &report.caption());
+        figure::bytes(&drawing, Theme::Print, format, recipe).map(|(bytes, extension)| (extension, bytes)).map_err(failed)
+    };
     let (extension, bytes) = match format {
         Format::Text => return output::print((report.text() + "\n").as_bytes()),
         Format::Csv => ("csv", report.table.csv().into_bytes()),
         Format::Json => ("json", json_text(&report.json()).into_bytes()),
-        Format::Svg => {
-            let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };
-            ("svg", render::svg(&drawing(), Theme::Print, &options).into_bytes())
-        }
-        Format::Pdf => ("pdf", render::pdf(&drawing(), Theme::Print, Some(recipe)).map_err(failed)?),
-        Format::Png => ("png", render::png(&drawing(), Theme::Print, PngSize::Dpi(DPI), Some(recipe)).map_err(failed)?),
+        Format::Svg => painted(figure::Format::Svg)?,
+        Format::Pdf => painted(figure::Format::Pdf)?,
+        Format::Png => painted(figure::Format::Png)?,
     };
     let path = folder.join(format!("{}.{extension}", report.name));
     output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
