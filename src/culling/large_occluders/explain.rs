@@ -28,7 +28,7 @@ pub enum Evidence<S: Shape> {
     Facing(Facing),
 }
 
-/// An occluder was chosen for the eye's leaf and direction.
+/// An occluder was picked, by its area-angle from the eye, from the list of the eye's leaf and direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Chosen {
     occluder: u32,
@@ -285,7 +285,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
     fn sentence(&self, _: &Scene<S>) -> String {
         match self {
             Self::Chosen(n) => format!(
-                "The occluder of {} {} is active, number {} by area-angle ({}) seen from leaf {} in direction {}{}.",
+                "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf {} and direction {}{}.",
                 S::PRIM,
                 n.name,
                 n.rank + 1,
