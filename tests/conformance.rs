@@ -94,6 +94,12 @@ fn settings<S: World>(entry: &dyn Entry<S>) -> Vec<Settings> {
             KnobValue::Switch(on) => (!on).to_string(),
             KnobValue::Integer(_, range) => range.start().to_string(),
             KnobValue::Budget(_) => "0".to_owned(),
+            // Every other word in turn.
+            KnobValue::Choice(chosen, options) => {
+                let others = options.iter().enumerate().filter(|(i, _)| *i != chosen).map(|(_, word)| (*word).to_owned());
+                all.extend(others.map(|word| Settings([(knob.name.to_owned(), word)].into())));
+                continue;
+            }
         };
         all.push(Settings([(knob.name.to_owned(), text)].into()));
     }

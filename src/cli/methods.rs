@@ -102,6 +102,7 @@ fn param(knob: &Knob, value: &KnobValue) -> Param {
         KnobValue::Integer(_, range) => ("integer", json!([range.start(), range.end()])),
         KnobValue::Switch(_) => ("switch", json!([false, true])),
         KnobValue::Budget(_) => ("budget", json!(["0", "4294967295", "0%", "100%"])),
+        KnobValue::Choice(_, options) => ("choice", json!(options)),
     };
     Param { name: knob.name, r#type, unit: knob.unit, range, default: knob_json(value), meaning: knob.meaning, source: knob.source }
 }

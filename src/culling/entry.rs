@@ -102,6 +102,10 @@ pub trait Film<S: Space>: Send + Sync {
     fn sentence(&self, at: usize) -> String;
     /// Draws the method's private state and evidence at a step, in world coordinates.
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
+    /// Names of the method's pictures that are not of the world.
+    fn pictures(&self) -> &'static [&'static str];
+    /// Picture `which < pictures().len()` at a step, in paper coordinates.
+    fn picture(&self, step: usize, which: usize) -> Drawing;
 }
 
 pub(super) struct Of<M>(PhantomData<fn() -> M>);
@@ -211,10 +215,6 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
     }
 }
 
-/// Notes between kept copies of large state. Denser keyframes made seeking slower: copying a state
-/// costs as much as replaying about this many notes.
-const KEYFRAME_NOTES: usize = 64;
-
 struct Reel<S: Space, M: Method<S>> {
     scene: Arc<Scene<S>>,
     index: Arc<M::Index>,
@@ -226,6 +226,12 @@ struct Reel<S: Space, M: Method<S>> {
 }
 
 impl<S: Space, M: Method<S>> Reel<S, M> {
+    /// The notes among the first `step` events.
+    fn notes_before(&self, step: usize) -> &[M::Note] {
+        let events = &self.recorder.events[..step.min(self.recorder.events.len())];
+        let last = events.iter().rev().find_map(|e| if let Event::Noted(i) = e { Some(*i as usize + 1) } else { None });
+        &self.recorder.notes[..last.unwrap_or(0)]
+    }
     /// Large state after the first `seen` notes.
     fn dense_after(&self, seen: usize) -> M::Dense {
         let mut keys = self.keys.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -234,7 +240,7 @@ impl<S: Space, M: Method<S>> Reel<S, M> {
         while at < seen && size_of::<M::Dense>() > 0 {
             M::apply(&mut dense, &self.scene, &self.recorder.notes[at]);
             at += 1;
-            if at.is_multiple_of(KEYFRAME_NOTES) && keys.last().is_some_and(|(last, _)| *last < at) {
+            if at.is_multiple_of(M::KEYFRAME_NOTES) && keys.last().is_some_and(|(last, _)| *last < at) {
                 keys.push((at, dense.clone()));
             }
         }
@@ -290,15 +296,17 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     }
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>) {
         let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let seen = if size_of::<M::Dense>() == 0 {
-            0
-        } else {
-            events.iter().rev().find_map(|e| if let Event::Noted(i) = e { Some(*i as usize + 1) } else { None }).unwrap_or(0)
-        };
-        let dense = self.dense_after(seen);
+        let dense = self.dense_after(if size_of::<M::Dense>() == 0 { 0 } else { self.notes_before(step).len() });
         // A decision is shown together with the evidence right before it.
         let note = events.iter().rev().take(3).find_map(|e| if let Event::Noted(i) = e { Some(&self.recorder.notes[*i as usize]) } else { None });
         M::explain(&dense, &self.scene, &self.index, &self.view, note, to);
+    }
+    fn pictures(&self) -> &'static [&'static str] {
+        M::PICTURES
+    }
+    fn picture(&self, step: usize, which: usize) -> Drawing {
+        let notes = self.notes_before(step);
+        M::picture(&self.dense_after(notes.len()), &self.scene, &self.index, &self.view, notes, which)
     }
 }
 

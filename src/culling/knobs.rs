@@ -26,6 +26,8 @@ pub trait Knobs {
     fn switch(&mut self, knob: Knob, value: &mut bool);
     /// How much may be drawn.
     fn budget(&mut self, knob: Knob, value: &mut Budget);
+    /// One of several words; `value` is an index into `options`.
+    fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize);
 }
 
 /// How much may be drawn.
@@ -124,6 +126,8 @@ pub enum KnobValue {
     Switch(bool),
     /// How much may be drawn.
     Budget(Budget),
+    /// One of several words, by index.
+    Choice(usize, &'static [&'static str]),
 }
 
 impl fmt::Display for KnobValue {
@@ -132,6 +136,7 @@ impl fmt::Display for KnobValue {
             Self::Integer(v, _) => v.fmt(f),
             Self::Switch(v) => v.fmt(f),
             Self::Budget(v) => v.fmt(f),
+            Self::Choice(v, options) => options[*v].fmt(f),
         }
     }
 }
@@ -149,6 +154,9 @@ impl Knobs for Collect {
     }
     fn budget(&mut self, knob: Knob, value: &mut Budget) {
         self.0.push((knob, KnobValue::Budget(*value)));
+    }
+    fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
+        self.0.push((knob, KnobValue::Choice(*value, options)));
     }
 }
 
@@ -181,6 +189,11 @@ impl Knobs for Apply<'_> {
     }
     fn budget(&mut self, knob: Knob, value: &mut Budget) {
         self.set(knob, || "a number of primitives such as 2000, or a share such as 10%".into(), |_| true, value);
+    }
+    fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
+        let mut word = options[*value].to_owned();
+        self.set(knob, || format!("one of {}", options.join(", ")), |w: &String| options.contains(&w.as_str()), &mut word);
+        *value = options.iter().position(|o| *o == word).unwrap_or(*value);
     }
 }
 

@@ -132,6 +132,16 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     /// The only way large state changes: `cull` calls it as it works and a film calls it again, so
     /// replay cannot drift from the run.
     fn apply(dense: &mut Self::Dense, scene: &Scene<S>, note: &Self::Note);
+    /// Notes between kept copies of large state in a film. Denser keyframes made seeking slower: copying a
+    /// state costs as much as replaying about this many notes.
+    const KEYFRAME_NOTES: usize = 64;
+    /// Names of the method's pictures that are not of the world, such as of its image-space structures.
+    const PICTURES: &'static [&'static str] = &[];
+    /// Draws picture `which < PICTURES.len()` at one step, in paper coordinates with its size: from the large
+    /// state and all notes up to that step, the current one last.
+    fn picture(_dense: &Self::Dense, _scene: &Scene<S>, _index: &Self::Index, _view: &View<S>, _notes: &[Self::Note], _which: usize) -> Drawing {
+        Drawing::default()
+    }
     /// Draws, in world coordinates, what is private to the method at one step: its large state, and
     /// the evidence of the current note.
     fn explain(dense: &Self::Dense, scene: &Scene<S>, index: &Self::Index, view: &View<S>, note: Option<&Self::Note>, to: &mut Drawing<S::Vector>);

@@ -111,6 +111,7 @@ pub fn knob_json(value: &KnobValue) -> Json {
         KnobValue::Switch(v) => Json::from(*v),
         KnobValue::Budget(crate::culling::Budget::Count(n)) => Json::from(*n),
         KnobValue::Budget(share) => Json::from(share.to_string()),
+        KnobValue::Choice(..) => Json::from(value.to_string()),
     }
 }
 

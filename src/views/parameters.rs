@@ -60,6 +60,14 @@ fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: 
                 answers.push(set(v.to_string(), cache.gesture));
             }
         }
+        KnobValue::Choice(chosen, options) => {
+            let mut chosen = *chosen;
+            let label = ui.label(&title).on_hover_text(&help);
+            let combo = egui::ComboBox::from_id_salt(knob.name).show_index(ui, &mut chosen, options.len(), |i| options[i]);
+            if combo.labelled_by(label.id).on_hover_text(&help).changed() {
+                answers.push(set(options[chosen].to_owned(), 0));
+            }
+        }
         KnobValue::Budget(budget) => self::budget(state, cache, ui, &title, &help, *budget, &set, answers),
     }
 }
