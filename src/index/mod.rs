@@ -1,8 +1,10 @@
 //! Spatial indexes: built once, then frozen.
 
+mod delaunay;
 mod kd_tree;
 mod whole;
 
+pub use delaunay::{Delaunay, Tetrahedron};
 pub use kd_tree::{KdNode, KdTree};
 pub use whole::Whole;
 

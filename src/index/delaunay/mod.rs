@@ -1,0 +1,126 @@
+//! Delaunay triangulation of points in space, with adjacency.
+//!
+//! Klosowski and Silva 2000, Section 4.3, tessellate space by it. Points are inserted one by one ([`build`]) in an order
+//! that makes the walk to each short ([`order`]); every decision is exact ([`sign`]). Degenerate input is no special case:
+//! points on one sphere are told apart by a symbolic perturbation, a point that is there already is left out and named, and
+//! points in one plane have no tetrahedra. In the plane the crate `spade` does the same.
+//! Cost: expected O(n log n) for points as scenes have them, 32 bytes a tetrahedron, about 6.7 tetrahedra a point.
+
+mod build;
+mod order;
+mod sign;
+#[cfg(test)]
+mod tests;
+
+use glam::{DVec3, Vec3};
+
+use self::build::{Builder, Cell};
+use self::sign::Signs;
+use crate::geometry::orient3d;
+
+/// No tetrahedron: what lies beyond a face of the convex hull.
+const NONE: u32 = u32::MAX;
+
+/// The vertices of the face opposite each vertex, counter-clockwise seen from that vertex.
+const FACES: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// A tetrahedron. It is positive: the last vertex lies where the first three are seen counter-clockwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tetrahedron {
+    /// Numbers of its vertices among the points.
+    pub vertices: [u32; 4],
+    neighbors: [u32; 4],
+}
+
+impl Tetrahedron {
+    /// The tetrahedron beyond the face opposite vertex `face < 4`; `None` on the convex hull.
+    #[inline]
+    pub fn neighbor(&self, face: usize) -> Option<u32> {
+        Some(self.neighbors[face]).filter(|n| *n != NONE)
+    }
+    /// The vertices of the face opposite vertex `face < 4`, counter-clockwise seen from within.
+    #[inline]
+    pub fn face(&self, face: usize) -> [u32; 3] {
+        FACES[face].map(|k| self.vertices[k])
+    }
+}
+
+/// Where a point lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In this tetrahedron, its boundary included.
+    Inside(u32),
+    /// Outside the convex hull, beyond a face of this tetrahedron.
+    Beyond(u32),
+}
+
+/// A frozen Delaunay triangulation.
+#[derive(Clone, Debug)]
+pub struct Delaunay {
+    points: Vec<Vec3>,
+    tetrahedra: Vec<Tetrahedron>,
+    duplicates: Vec<[u32; 2]>,
+}
+
+impl Delaunay {
+    /// Triangulates finite points; none of them need be distinct. `None` when cancelled.
+    pub fn new(points: Vec<Vec3>, cancelled: impl Fn() -> bool) -> Option<Self> {
+        let wide: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+        let order = order::insertion_order(&wide);
+        let sorted = order.iter().map(|&i| wide[i as usize]).collect();
+        let built = Builder::triangulate(Signs::new(sorted), cancelled)?;
+        let duplicates = built.duplicates.iter().map(|pair| pair.map(|v| order[v as usize])).collect();
+        Some(Self { points, tetrahedra: finite(&built.cells, &order), duplicates })
+    }
+
+    /// The points as given.
+    pub fn points(&self) -> &[Vec3] {
+        &self.points
+    }
+    /// The tetrahedra; none if all points lie in one plane.
+    pub fn tetrahedra(&self) -> &[Tetrahedron] {
+        &self.tetrahedra
+    }
+    /// Points that were left out, each with the point at the same place that stands for it.
+    pub fn duplicates(&self) -> &[[u32; 2]] {
+        &self.duplicates
+    }
+    /// A corner of a tetrahedron.
+    #[inline]
+    pub fn corner(&self, tetrahedron: u32, vertex: usize) -> Vec3 {
+        self.points[self.tetrahedra[tetrahedron as usize].vertices[vertex] as usize]
+    }
+
+    /// Walks from tetrahedron `start` to where a point lies; `None` if there are no tetrahedra. Exact.
+    /// Cost: O(∛n) steps for points as scenes have them.
+    pub fn locate(&self, point: Vec3, start: u32) -> Option<Place> {
+        let mut at = start;
+        self.tetrahedra.get(at as usize)?;
+        loop {
+            let tetrahedron = &self.tetrahedra[at as usize];
+            let beyond = |face: &usize| {
+                let [a, b, c] = tetrahedron.face(*face).map(|v| self.points[v as usize].as_dvec3());
+                orient3d(a, b, c, point.as_dvec3()) < 0.0
+            };
+            let Some(face) = (0..4).find(beyond) else { return Some(Place::Inside(at)) };
+            let Some(next) = tetrahedron.neighbor(face) else { return Some(Place::Beyond(at)) };
+            at = next;
+        }
+    }
+}
+
+/// The cells without those at infinity, with the points' own numbers.
+fn finite(cells: &[Cell], order: &[u32]) -> Vec<Tetrahedron> {
+    let mut numbers = vec![NONE; cells.len()];
+    let mut count = 0;
+    for (number, _) in numbers.iter_mut().zip(cells).filter(|(_, c)| !c.is_dead() && c.infinite().is_none()) {
+        *number = count;
+        count += 1;
+    }
+    let alive = cells.iter().zip(&numbers).filter(|(_, n)| **n != NONE);
+    let made = |cell: &Cell| Tetrahedron {
+        vertices: cell.vertices.map(|v| order[v as usize]),
+        neighbors: cell.across.map(|side| numbers[side.cell() as usize]),
+    };
+    alive.map(|(cell, _)| made(cell)).collect()
+}
