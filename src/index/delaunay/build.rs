@@ -93,7 +93,7 @@ impl Builder {
         };
         let Some(first) = builder.first_cells() else { return Some(builder) };
         for vertex in (0..count).filter(|v| !first.contains(v)) {
-            if vertex % PATIENCE == 0 && cancelled() {
+            if vertex.is_multiple_of(PATIENCE) && cancelled() {
                 return None;
             }
             builder.insert(vertex);

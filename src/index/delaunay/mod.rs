@@ -112,11 +112,8 @@ impl Delaunay {
 /// The cells without those at infinity, with the points' own numbers.
 fn finite(cells: &[Cell], order: &[u32]) -> Vec<Tetrahedron> {
     let mut numbers = vec![NONE; cells.len()];
-    let mut count = 0;
-    for (number, _) in numbers.iter_mut().zip(cells).filter(|(_, c)| !c.is_dead() && c.infinite().is_none()) {
-        *number = count;
-        count += 1;
-    }
+    let kept = numbers.iter_mut().zip(cells).filter(|(_, c)| !c.is_dead() && c.infinite().is_none());
+    kept.enumerate().for_each(|(count, (number, _))| *number = count as u32);
     let alive = cells.iter().zip(&numbers).filter(|(_, n)| **n != NONE);
     let made = |cell: &Cell| Tetrahedron {
         vertices: cell.vertices.map(|v| order[v as usize]),

@@ -87,7 +87,7 @@ impl Signs {
         let term = |i: usize| {
             let [q, r, s] = [1, 2, 3].map(|k| arms[if k <= i { k - 1 } else { k }]);
             let rest: i128 = (0..3).map(|a| i128::from(q[a]) * i128::from(r.cross(s)[a])).sum();
-            i128::from(arms[i].dot(arms[i])) * if i % 2 == 0 { rest } else { -rest }
+            i128::from(arms[i].dot(arms[i])) * if i.is_multiple_of(2) { rest } else { -rest }
         };
         (0..4).map(term).sum::<i128>().signum() as f64
     }

@@ -92,7 +92,7 @@ impl Random {
         Self(Pcg32::new(seed, 17))
     }
     fn below(&mut self, n: u32) -> u32 {
-        (u64::from(self.0.next_u32()) * u64::from(n) >> 32) as u32
+        ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
     }
     fn unit(&mut self) -> f32 {
         (self.0.next_u32() >> 8) as f32 / (1u32 << 24) as f32
@@ -282,8 +282,8 @@ fn flip(d: &mut Delaunay) {
 fn relink(d: &mut Delaunay) {
     let mut faces = BTreeMap::<[u32; 3], Vec<(usize, usize)>>::new();
     for (t, cell) in d.tetrahedra.iter().enumerate() {
-        for face in 0..4 {
-            let mut key = FACES[face].map(|k| cell.vertices[k]);
+        for (face, corners) in FACES.iter().enumerate() {
+            let mut key = corners.map(|k| cell.vertices[k]);
             key.sort_unstable();
             faces.entry(key).or_default().push((t, face));
         }
