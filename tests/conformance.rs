@@ -257,7 +257,9 @@ fn films_replay_in_space() {
 
 /// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise
 /// while the scenes stay the same. (`frustum` in flatland had 0.65 before the five scenes of the paper's figures came in.)
-const FLOORS: [(&str, &str, f64); 8] = [
+const FLOORS: [(&str, &str, f64); 10] = [
+    ("hierarchical-z", "flatland", 0.35),
+    ("hierarchical-z", "space", 0.5),
     ("large-occluders", "flatland", 0.81),
     ("large-occluders", "space", 0.68),
     ("z-buffer", "flatland", 0.0),

@@ -82,7 +82,7 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
 }
 
 /// The methods that draw fewer primitives than all, and promise to miss none.
-const METHODS: [&str; 2] = ["frustum", "large-occluders"];
+const METHODS: [&str; 3] = ["frustum", "large-occluders", "hierarchical-z"];
 
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
     METHODS.iter().map(|method| check_method(method, scene, views)).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))

@@ -10,6 +10,7 @@ mod entry;
 mod entry_tests;
 mod event;
 mod evidence;
+mod hierarchical_z;
 mod knobs;
 mod large_occluders;
 mod method;
@@ -28,6 +29,7 @@ pub static FLAT: &[&dyn Entry<Flat>] = &[
     &entry::Of::<baseline::Frustum>::NEW,
     &entry::Of::<baseline::Centroid>::NEW,
     &entry::Of::<large_occluders::LargeOccluders>::NEW,
+    &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
 ];
 /// Every method that runs in space, in the order of menus.
 pub static SOLID: &[&dyn Entry<Solid>] = &[
@@ -35,6 +37,7 @@ pub static SOLID: &[&dyn Entry<Solid>] = &[
     &entry::Of::<baseline::Frustum>::NEW,
     &entry::Of::<baseline::Centroid>::NEW,
     &entry::Of::<large_occluders::LargeOccluders>::NEW,
+    &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
 ];
 
 /// The methods of a space, for code that is generic over it.

@@ -20,6 +20,6 @@ pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{MaterialId, NodeId, ObjectId, PrimId};
 pub use predicate::{insphere, orient2d, orient3d};
-pub use project::{Footprint, ScreenRect, project_box};
+pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, nearest_depth, project_box};
 pub use space::{Flat, Solid, Space, Vector, faces_away};
 pub use walk::WALKING_STEP_M;

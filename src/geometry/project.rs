@@ -1,6 +1,47 @@
-//! A box on the screen: a conservative rectangle and its nearest depth.
+//! A box on the screen: where its corners fall, which pixels it can cover, and how near it comes.
+//!
+//! All arithmetic is f64 on the f32 rows of the [`Projection`], relative to the eye, exactly as the rasterizer does it,
+//! so what separates a box from what is drawn of its contents is the rasterizer's grid alone.
 
 use super::{Aabb, Projection, Vector};
+
+/// A rectangle of pixels, half-open: columns `x0..x1`, rows `y0..y1`, row 0 at the top. Holds those whose centers it holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PixelRect {
+    /// First column.
+    pub x0: u32,
+    /// Past the last column.
+    pub x1: u32,
+    /// First row; 0 in flatland.
+    pub y0: u32,
+    /// Past the last row; 1 in flatland.
+    pub y1: u32,
+}
+
+impl PixelRect {
+    /// Whether it holds no pixel.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.x0 >= self.x1 || self.y0 >= self.y1
+    }
+    /// Number of pixels.
+    #[inline]
+    pub fn area(&self) -> u64 {
+        u64::from(self.x1.saturating_sub(self.x0)) * u64::from(self.y1.saturating_sub(self.y0))
+    }
+    /// What both hold.
+    #[inline]
+    pub fn intersection(self, other: Self) -> Self {
+        Self { x0: self.x0.max(other.x0), x1: self.x1.min(other.x1), y0: self.y0.max(other.y0), y1: self.y1.min(other.y1) }
+    }
+    /// The pixels whose centers lie within [`MARGIN_PX`] of the span `low..high` (x, then y), of an image of this size.
+    #[inline]
+    pub fn around(low: [f64; 2], high: [f64; 2], width: u32, height: u32) -> Self {
+        let first = |v: f64, size: u32| (v - (0.5 + MARGIN_PX)).ceil().clamp(0.0, f64::from(size)) as u32;
+        let past = |v: f64, size: u32| ((v + (MARGIN_PX - 0.5)).floor() + 1.0).clamp(0.0, f64::from(size)) as u32;
+        Self { x0: first(low[0], width), x1: past(high[0], width), y0: first(low[1], height), y1: past(high[1], height) }
+    }
+}
 
 /// Where a box falls in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,66 +51,99 @@ pub enum Footprint {
     CrossesNear,
     /// Wholly before the near plane, beyond the far plane or beside the image.
     Outside,
-    /// Everything of the box that is in view lies in this rectangle and no nearer than this depth.
-    Rect(ScreenRect),
+    /// All that is drawn of what the box holds lies in these pixels, and no nearer than that.
+    Seen(BoxImage),
 }
 
-/// Half-open pixel rectangle `x0..x1` by `y0..y1`, row 0 at the top, with the nearest view depth.
+/// A box's image.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenRect {
-    /// First column.
-    pub x0: u32,
-    /// Past the last column.
-    pub x1: u32,
-    /// First row; 0 in flatland.
-    pub y0: u32,
-    /// Past the last row; 1 in flatland.
-    pub y1: u32,
-    /// A view depth that no point of the box is nearer than, world units.
-    pub nearest_depth: f32,
+pub struct BoxImage {
+    /// Its corners in pixels, in the order of [`Aabb::corner`]; the first four in flatland, in the middle of the row.
+    pub corners_px: [[f64; 2]; 8],
+    /// The pixels whose centers it can cover; empty where it falls between them.
+    pub pixels: PixelRect,
+    /// Depth (`1/w`) that nothing in the box is nearer than.
+    pub nearest: f32,
 }
 
-/// Pixels added on each side: projected coordinates of points in view carry a relative error of a few
-/// ulp of 1 (all arithmetic is relative to the eye), times half the image; 1/64 pixel covers that and
-/// the rasterizer's 1/256-pixel grid up to 16384 pixels.
-const MARGIN_PX: f32 = 1.0 / 64.0;
-/// Relative allowance on depths: 16 half-ulps, as for the frustum's planes.
-const DEPTH_SLACK: f32 = 16.0 * (f32::EPSILON * 0.5);
+/// How far from a box's image a pixel's center may be covered by what the box holds: the rasterizer moves vertices to
+/// its grid of 1/256 pixel, by 1/362 pixel at most, and a point of a moved triangle moves no farther. The rest is for the
+/// rounding of f64 on both sides.
+pub const MARGIN_PX: f64 = 1.0 / 256.0;
+/// Bound on the rounding of a view depth in f64, relative to the distance from the eye: three products and sums, twice.
+const DEPTH_SLACK: f64 = 16.0 * f64::EPSILON;
 
 /// Projects a box conservatively into an image of `width` by `height` pixels (`height` 1 in flatland).
+#[inline]
 pub fn project_box<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near: f32, far: f32, width: u32, height: u32) -> Footprint {
     let image_axes = V::AXES - 1;
-    let (mut low, mut high) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-    let (mut nearest, mut farthest, mut size) = (f32::INFINITY, f32::NEG_INFINITY, 0f32);
-    for corner in bounds.corners() {
-        let clip = projection.clip(corner);
-        let w = clip.get(image_axes);
-        nearest = nearest.min(w);
-        farthest = farthest.max(w);
-        size = size.max((corner - projection.eye).length());
-        for a in 0..image_axes {
-            low[a] = low[a].min(clip.get(a) / w);
-            high[a] = high[a].max(clip.get(a) / w);
-        }
-    }
-    let slack = size * DEPTH_SLACK;
-    if farthest < near - slack || nearest > far + slack {
+    let half = [f64::from(width) * 0.5, f64::from(height) * 0.5];
+    let clips = corner_clips(projection, bounds);
+    let w = |clip: &[f64; 3]| clip[image_axes];
+    let corners = &clips[..Aabb::<V>::CORNERS];
+    let (nearest, farthest) = corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), c| (n.min(w(c)), f.max(w(c))));
+    let slack = reach(projection, bounds) * DEPTH_SLACK;
+    if farthest < f64::from(near) - slack || nearest > f64::from(far) + slack {
         return Footprint::Outside;
     }
-    if nearest <= near + slack {
+    if nearest <= f64::from(near) + slack {
         return Footprint::CrossesNear;
     }
-    // A centre c + ½ is covered at most where the closed interval reaches it.
-    let span = |from: f32, to: f32, pixels: u32| {
-        let at = |v: f32| (v * 0.5 + 0.5) * pixels as f32;
-        let first = (at(from) - MARGIN_PX).floor().clamp(0.0, pixels as f32);
-        let last = (at(to) + MARGIN_PX).ceil().clamp(0.0, pixels as f32);
-        (first as u32, last as u32)
-    };
-    let (x0, x1) = span(low[0], high[0], width);
-    let (y0, y1) = if image_axes == 2 { span(-high[1], -low[1], height) } else { (0, 1) };
-    if x0 >= x1 || y0 >= y1 {
+    let mut corners_px = [[half[0], half[1]]; 8];
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for (to, clip) in corners_px.iter_mut().zip(corners) {
+        let inverse = 1.0 / w(clip);
+        to[0] = half[0] + clip[0] * inverse * half[0];
+        if image_axes == 2 {
+            to[1] = half[1] - clip[1] * inverse * half[1];
+        }
+        for a in 0..2 {
+            (low[a], high[a]) = (low[a].min(to[a]), high[a].max(to[a]));
+        }
+    }
+    let beside = (0..2).any(|a| high[a] < -MARGIN_PX || low[a] > 2.0 * half[a] + MARGIN_PX);
+    if beside {
         return Footprint::Outside;
     }
-    Footprint::Rect(ScreenRect { x0, x1, y0, y1, nearest_depth: (nearest - slack).max(near) })
+    let pixels = PixelRect::around(low, high, width, height);
+    Footprint::Seen(BoxImage { corners_px, pixels, nearest: depth_of(nearest - slack, near) })
+}
+
+/// The depth (`1/w`) that nothing in a box is nearer than; that of the near plane if the box reaches it.
+#[inline]
+pub fn nearest_depth<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near: f32) -> f32 {
+    let clips = corner_clips(projection, bounds);
+    let nearest = clips[..Aabb::<V>::CORNERS].iter().fold(f64::INFINITY, |n, c| n.min(c[V::AXES - 1]));
+    depth_of(nearest - reach(projection, bounds) * DEPTH_SLACK, near)
+}
+
+/// `1/w` rounded to f32 as the rasterizer rounds it: rounding keeps the order, and what lies nearer than `near` is cut off.
+#[inline]
+fn depth_of(w: f64, near: f32) -> f32 {
+    (1.0 / w.max(f64::from(near))) as f32
+}
+
+/// A bound on the distance from the eye to any corner, each axis taken alone, world units.
+#[inline]
+fn reach<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> f64 {
+    let axis = |a: usize| f64::from((bounds.min.get(a) - projection.eye.get(a)).abs().max((bounds.max.get(a) - projection.eye.get(a)).abs()));
+    (0..V::AXES).map(axis).sum::<f64>() * f64::from(1.0 + f32::EPSILON)
+}
+
+/// Clip coordinates of the corners, in the order of [`Aabb::corner`]: sums of what each axis adds.
+#[inline]
+fn corner_clips<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> [[f64; 3]; 8] {
+    let mut clips = [[0.0; 3]; 8];
+    for a in 0..V::AXES {
+        let eye = f64::from(projection.eye.get(a));
+        let ends = [f64::from(bounds.min.get(a)) - eye, f64::from(bounds.max.get(a)) - eye];
+        for row in 0..V::AXES {
+            let r = f64::from(projection.rows[row].get(a));
+            let parts = ends.map(|e| r * e);
+            for (i, clip) in clips.iter_mut().enumerate() {
+                clip[row] += parts[i >> a & 1];
+            }
+        }
+    }
+    clips
 }

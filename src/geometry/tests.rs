@@ -124,22 +124,30 @@ fn footprint_check<S: Space>(seed: u64) {
             let clip = exact_clip(&view, sample_in(&mut rng, &bounds));
             match footprint {
                 Footprint::Outside => assert!(!in_view(&view, clip, 0.0), "a box with a point in view has no footprint"),
-                Footprint::Rect(r) if in_view(&view, clip, 0.0) => {
-                    let (x, y) = pixel(clip);
-                    let holds = |from: u32, v: f64, to: u32| f64::from(from) <= v && v <= f64::from(to);
+                Footprint::Seen(image) if in_view(&view, clip, 0.0) => {
+                    let (r, (x, y)) = (image.pixels, pixel(clip));
+                    // Half a pixel: the rectangle holds centers.
+                    let holds = |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
                     assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
-                    assert!(f64::from(r.nearest_depth) <= clip[2], "a point is nearer than the nearest depth");
+                    assert!((1.0 / clip[2]) as f32 <= image.nearest, "a point is nearer than the nearest depth");
+                    assert_eq!(image.nearest, nearest_depth(&view.projection(), &bounds, near));
                 }
                 _ => {}
             }
         }
-        if let Footprint::Rect(r) = footprint {
+        if let Footprint::Seen(BoxImage { pixels: r, corners_px, .. }) = footprint {
             rects += 1;
+            // Apart by the rounding of the rows to f32.
+            for (at, corner) in corners_px.iter().zip(bounds.corners()) {
+                let want = pixel(exact_clip(&view, corner)).0;
+                let width = f64::from(view.width);
+                assert!(want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width, "a corner is at {want}, not at {at:?}");
+            }
             // Tight: the rectangle is that of the exact corners, a pixel and the margin at most larger.
             let corners: Vec<_> = bounds.corners().map(|c| pixel(exact_clip(&view, c)).0).collect();
             let low = corners.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, f64::from(view.width));
             let high = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, f64::from(view.width));
-            assert!(f64::from(r.x1 - r.x0) <= high - low + 3.0, "{r:?} is much wider than {low}..{high}");
+            assert!(f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX, "{r:?} is much wider than {low}..{high}");
         }
     }
     assert!(rects > 500, "only {rects} rectangles");

@@ -2,10 +2,12 @@
 
 mod delaunay;
 mod kd_tree;
+mod octree;
 mod whole;
 
 pub use delaunay::{Delaunay, Tetrahedron};
 pub use kd_tree::{KdNode, KdTree};
+pub use octree::{Octree, OctreeNode, Redistribution, Shape};
 pub use whole::Whole;
 
 use std::ops::Range;

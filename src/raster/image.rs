@@ -9,11 +9,12 @@
 
 use rayon::prelude::*;
 
+use super::pyramid::Pyramid;
 use super::setup::{Setup, center};
 use super::simd::{self, Lanes, Work};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
-use super::{Options, Target, check_size};
-use crate::geometry::{PrimId, Solid, View, orient3d};
+use super::{Extent, Options, Sieve, Target, check_size};
+use crate::geometry::{PixelRect, PrimId, Solid, View, orient3d};
 use crate::scene::Scene;
 
 /// Buffers kept from draw to draw, so that drawing again takes no memory.
@@ -29,6 +30,8 @@ pub(super) struct Scratch {
 struct Chunk {
     setups: Vec<Setup>,
     bands: Vec<Vec<u32>>,
+    /// What the pyramid hides.
+    hidden: Vec<PrimId>,
 }
 
 /// Primitives in a chunk: enough that a chunk's cost hides its hand-over.
@@ -40,8 +43,8 @@ const PREFETCH_ROWS: usize = 2;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;
 
-/// Draws triangles; see [`super::Drawable::draw`].
-pub(super) fn draw(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>, prims: &[PrimId], options: &Options) {
+/// Draws triangles, all or those that a pyramid does not hide; see [`super::Drawable`].
+pub(super) fn draw(target: &mut Target, sieve: Option<Sieve>, scene: &Scene<Solid>, view: &View<Solid>, prims: &[PrimId], options: &Options) {
     check_size(target, view);
     let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
     let mut scratch = std::mem::take(&mut target.scratch);
@@ -56,27 +59,36 @@ pub(super) fn draw(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>
         let parts = points.par_chunks(part).zip(scratch.vertices.par_chunks_mut(part));
         parts.for_each(|(points, vertices)| simd::run(options.isa, Project { camera: &camera, points, vertices }));
     }
-    let frame = Frame { scene, view, camera, vertices: &scratch.vertices, backface_culling: options.backface_culling };
+    let window = options.window_of(view);
+    let frame = Frame { scene, view, camera, vertices: &scratch.vertices, backface_culling: options.backface_culling, window };
     if threads <= 1 {
         let band = Band { depth: &mut target.depth, item: &mut target.item, first_row: 0, width: view.width as usize };
-        simd::run(options.isa, DrawAll { frame: &frame, prims, setups: &mut scratch.setups, band });
+        simd::run(options.isa, DrawAll { frame: &frame, sieve, prims, setups: &mut scratch.setups, band });
     } else {
-        draw_in_bands(&mut scratch.chunks, &frame, prims, target, options);
+        draw_in_bands(&mut scratch.chunks, &frame, sieve, prims, target, options);
     }
     target.scratch = scratch;
 }
 
 /// Set-up by chunks of primitives, then filling by bands of rows.
-fn draw_in_bands(chunks: &mut Vec<Chunk>, frame: &Frame, prims: &[PrimId], target: &mut Target, options: &Options) {
+fn draw_in_bands(chunks: &mut Vec<Chunk>, frame: &Frame, mut sieve: Option<Sieve>, prims: &[PrimId], target: &mut Target, options: &Options) {
     let width = target.width as usize;
     let bands = (target.height as usize).div_ceil(BAND_ROWS);
+    let held = sieve.as_ref().map(|s| (&*s.pyramid, &target.depth[..]));
     chunks.resize_with(prims.len().div_ceil(CHUNK_PRIMS), Chunk::default);
     chunks.par_iter_mut().zip(prims.par_chunks(CHUNK_PRIMS)).for_each(|(chunk, prims)| {
         chunk.setups.clear();
+        chunk.hidden.clear();
         chunk.bands.resize_with(bands, Vec::new);
         chunk.bands.iter_mut().for_each(Vec::clear);
-        simd::run(options.isa, SetUp { frame, prims, chunk });
+        simd::run(options.isa, SetUp { frame, held, prims, chunk });
     });
+    if let Some(sieve) = &mut sieve {
+        for chunk in chunks.iter() {
+            sieve.hidden.extend_from_slice(&chunk.hidden);
+            chunk.setups.iter().for_each(|s| sieve.pyramid.touch(s.rect()));
+        }
+    }
     let rows = target.depth.par_chunks_mut(width * BAND_ROWS).zip(target.item.par_chunks_mut(width * BAND_ROWS));
     rows.enumerate().for_each(|(number, (depth, item))| {
         let band = Band { depth, item, first_row: (number * BAND_ROWS) as i32, width };
@@ -92,13 +104,14 @@ struct Frame<'a> {
     /// All points projected, or none: then each triangle projects its own.
     vertices: &'a [Vertex],
     backface_culling: bool,
+    /// Nothing is drawn outside.
+    window: PixelRect,
 }
 
 impl Frame<'_> {
     /// Appends the primitives that may cover a pixel, several times where clipping cuts one up.
     #[inline(always)]
     fn set_up(&self, prims: &[PrimId], setups: &mut Vec<Setup>) {
-        let (width, height) = (self.view.width as i32, self.view.height as i32);
         for &prim in prims {
             let Some(corners) = self.scene.corners(prim) else { continue };
             let own;
@@ -112,7 +125,7 @@ impl Frame<'_> {
                 continue;
             }
             if (a.outside | b.outside | c.outside) & NEEDS_CLIP == 0 {
-                setups.extend(Setup::new([a, b, c], prim.0, width, height));
+                setups.extend(Setup::new([a, b, c], prim.0, true, &self.window));
             } else {
                 self.set_up_clipped(prim, corners, setups);
             }
@@ -126,9 +139,8 @@ impl Frame<'_> {
 
     #[inline(never)]
     fn set_up_clipped(&self, prim: PrimId, corners: [u32; 3], setups: &mut Vec<Setup>) {
-        let (width, height) = (self.view.width as i32, self.view.height as i32);
         let corners = corners.map(|c| self.camera.clip(self.scene.points()[c as usize]));
-        setups.extend(clip(&self.camera, corners).filter_map(|[a, b, c]| Setup::new([&a, &b, &c], prim.0, width, height)));
+        setups.extend(clip(&self.camera, corners).filter_map(|[a, b, c]| Setup::new([&a, &b, &c], prim.0, false, &self.window)));
     }
 
     /// Whether the eye lies strictly on the side from which the corners run counter-clockwise.
@@ -137,6 +149,16 @@ impl Frame<'_> {
         let [a, b, c] = corners.map(|c| self.scene.points()[c as usize].as_dvec3());
         orient3d(a, b, c, self.view.eye.position.as_dvec3()) > 0.0
     }
+}
+
+/// The pixels that a triangle can cover and its nearest depth; see [`super::Drawable::extent`].
+pub(super) fn extent(scene: &Scene<Solid>, view: &View<Solid>, prim: PrimId, options: &Options) -> Option<Extent> {
+    let camera = Camera::new(view);
+    let frame = Frame { scene, view, camera, vertices: &[], backface_culling: options.backface_culling, window: options.window_of(view) };
+    let mut setups = Vec::new();
+    frame.set_up(&[prim], &mut setups);
+    let [setup] = setups[..] else { return None };
+    setup.whole.then(|| Extent { pixels: setup.rect(), nearest: setup.plane.high })
 }
 
 /// The triangles of what clipping leaves of a triangle, as a fan.
@@ -255,6 +277,7 @@ impl Work for Project<'_> {
 
 struct DrawAll<'a> {
     frame: &'a Frame<'a>,
+    sieve: Option<Sieve<'a>>,
     prims: &'a [PrimId],
     setups: &'a mut Vec<Setup>,
     band: Band<'a>,
@@ -267,14 +290,29 @@ impl Work for DrawAll<'_> {
             self.setups.clear();
             self.frame.set_up(prims, self.setups);
             for setup in self.setups.iter() {
+                if let Some(sieve) = &mut self.sieve {
+                    if hides(sieve.pyramid, self.band.depth, setup) {
+                        sieve.hidden.push(PrimId(setup.id));
+                        continue;
+                    }
+                    sieve.pyramid.touch(setup.rect());
+                }
                 fill(l, setup, &mut self.band);
             }
         }
     }
 }
 
+/// Whether the pyramid proves that a triangle shows nowhere. A part of a primitive is never judged: another part may show.
+#[inline(always)]
+fn hides(pyramid: &Pyramid, depth: &[f32], setup: &Setup) -> bool {
+    setup.whole && setup.plane.high < pyramid.farthest_over(depth, setup.rect())
+}
+
 struct SetUp<'a> {
     frame: &'a Frame<'a>,
+    /// The pyramid and its image as they were before the draw.
+    held: Option<(&'a Pyramid, &'a [f32])>,
     prims: &'a [PrimId],
     chunk: &'a mut Chunk,
 }
@@ -282,8 +320,17 @@ struct SetUp<'a> {
 impl Work for SetUp<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Chunk { setups, bands } = self.chunk;
+        let Chunk { setups, bands, hidden } = self.chunk;
         self.frame.set_up(self.prims, setups);
+        if let Some((pyramid, depth)) = self.held {
+            setups.retain(|setup| {
+                let is_hidden = hides(pyramid, depth, setup);
+                if is_hidden {
+                    hidden.push(PrimId(setup.id));
+                }
+                !is_hidden
+            });
+        }
         for (number, setup) in setups.iter().enumerate() {
             let (first, last) = (setup.y0 as usize / BAND_ROWS, (setup.y1 - 1) as usize / BAND_ROWS);
             bands[first..=last].iter_mut().for_each(|band| band.push(number as u32));

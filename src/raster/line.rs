@@ -5,25 +5,26 @@
 
 use super::setup::{Plane, center, pixels};
 use super::vertex::{Camera, NEEDS_CLIP, REJECTS, Vertex};
-use super::{Options, Target, check_size};
-use crate::geometry::{Flat, PrimId, View, orient2d};
+use super::{Extent, Options, Sieve, Target, check_size};
+use crate::geometry::{Flat, PixelRect, PrimId, View, orient2d};
 use crate::scene::Scene;
 
-/// Draws segments; see [`super::Drawable::draw`]. A line has few pixels and no rows to share out, so it
-/// runs on one thread.
-pub(super) fn draw(target: &mut Target, scene: &Scene<Flat>, view: &View<Flat>, prims: &[PrimId], options: &Options) {
+/// Draws segments, all or those that a pyramid does not hide; see [`super::Drawable`]. A line has few pixels and no
+/// rows to share out, so it runs on one thread.
+pub(super) fn draw(target: &mut Target, mut sieve: Option<Sieve>, scene: &Scene<Flat>, view: &View<Flat>, prims: &[PrimId], options: &Options) {
     check_size(target, view);
     let camera = Camera::new(view);
     for &prim in prims {
-        let Some([a, b]) = segment(&camera, scene, view, prim, options) else { continue };
-        // Left-inclusive: a center exactly under the right end belongs to the next segment.
-        let (first, past) = pixels(a.x.min(b.x), a.x.max(b.x) - 1, view.width as i32);
-        if first >= past {
-            continue;
+        let Some(Seen { pixels, plane, whole }) = set_up(&camera, scene, view, prim, options) else { continue };
+        if let Some(sieve) = &mut sieve {
+            if whole && plane.high < sieve.pyramid.farthest_over(&target.depth, pixels) {
+                sieve.hidden.push(prim);
+                continue;
+            }
+            sieve.pyramid.touch(pixels);
         }
-        let plane = Plane::of_segment(a, b);
-        let covered = first as usize..past as usize;
-        for ((x, depth), item) in (first..past).zip(&mut target.depth[covered.clone()]).zip(&mut target.item[covered]) {
+        let covered = pixels.x0 as usize..pixels.x1 as usize;
+        for ((x, depth), item) in (pixels.x0 as i32..).zip(&mut target.depth[covered.clone()]).zip(&mut target.item[covered]) {
             let z = (plane.z + plane.dx * (center(x) - plane.x) as f32).max(plane.low).min(plane.high);
             if z > *depth || z == *depth && prim.0 < *item {
                 (*depth, *item) = (z, prim.0);
@@ -32,9 +33,38 @@ pub(super) fn draw(target: &mut Target, scene: &Scene<Flat>, view: &View<Flat>, 
     }
 }
 
+/// The pixels that a segment can cover and its nearest depth; see [`super::Drawable::extent`].
+pub(super) fn extent(scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<Extent> {
+    let Seen { pixels, plane, whole } = set_up(&Camera::new(view), scene, view, prim, options)?;
+    whole.then_some(Extent { pixels, nearest: plane.high })
+}
+
+/// A segment ready to be drawn.
+struct Seen {
+    pixels: PixelRect,
+    plane: Plane,
+    /// Whether clipping left it as it is.
+    whole: bool,
+}
+
+/// Makes a segment ready; `None` if it covers no center.
+fn set_up(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<Seen> {
+    let ([a, b], whole) = clipped(camera, scene, view, prim, options)?;
+    let window = options.window_of(view);
+    // Left-inclusive: a center exactly under the right end belongs to the next segment.
+    let (first, past) = pixels(a.x.min(b.x), a.x.max(b.x) - 1, window.x0, window.x1);
+    let pixels = PixelRect { x0: first.max(0) as u32, x1: past.max(0) as u32, y0: 0, y1: 1 };
+    (first < past).then(|| Seen { pixels, plane: Plane::of_segment(a, b), whole })
+}
+
 /// The ends of a segment on the grid, clipped if need be; `None` if it is out of view, dropped, or shows
 /// its back and that is culled.
 pub(super) fn segment(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<[Vertex; 2]> {
+    clipped(camera, scene, view, prim, options).map(|(ends, _)| ends)
+}
+
+/// The same, and whether clipping left the segment whole.
+fn clipped(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<([Vertex; 2], bool)> {
     let points = scene.corners(prim)?.map(|c| scene.points()[c as usize]);
     let clip = points.map(|p| camera.clip(p));
     let [a, b] = clip.map(|c| camera.vertex(c));
@@ -46,10 +76,10 @@ pub(super) fn segment(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, p
         return None;
     }
     if (a.outside | b.outside) & NEEDS_CLIP == 0 {
-        return Some([a, b]);
+        return Some(([a, b], true));
     }
     match *camera.clipped(&clip).corners() {
-        [a, b] => Some([a, b].map(|c| camera.clipped_vertex(c))),
+        [a, b] => Some(([a, b].map(|c| camera.clipped_vertex(c)), false)),
         _ => None,
     }
 }

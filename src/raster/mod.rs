@@ -14,6 +14,7 @@
 
 mod image;
 mod line;
+mod pyramid;
 pub mod reference;
 mod setup;
 mod shade;
@@ -22,10 +23,11 @@ mod simd;
 mod tests;
 mod vertex;
 
+pub use pyramid::{Pyramid, PyramidCell};
 pub use shade::{shade, shade_with};
 pub use simd::Isa;
 
-use crate::geometry::{Flat, PrimId, Solid, Space, View};
+use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::Scene;
 
 /// A depth image and an item image of the same size; height 1 in flatland. Row 0 is the top.
@@ -93,7 +95,7 @@ impl std::fmt::Debug for Target {
     }
 }
 
-/// How to draw. None of it but `backface_culling` changes the image.
+/// How to draw. None of it but `backface_culling` and `window` changes the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Skip primitives whose front (counter-clockwise; the left of a segment) does not face the eye,
@@ -104,11 +106,37 @@ pub struct Options {
     pub threads: usize,
     /// Instruction set; one that the machine lacks falls back to the best it has.
     pub isa: Isa,
+    /// Draw these pixels only; they lie in the image.
+    pub window: Option<PixelRect>,
+}
+
+impl Options {
+    fn window_of<S: Space>(&self, view: &View<S>) -> PixelRect {
+        self.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height })
+    }
+}
+
+/// A z-pyramid that keeps primitives from being drawn. The image is the same with it and without: a primitive is left out
+/// only where every pixel that it can cover holds something nearer.
+pub struct Sieve<'a> {
+    /// The pyramid of the target's depths. Drawing makes it stale where something was drawn; nothing is brought up to date.
+    pub pyramid: &'a mut Pyramid,
+    /// Receives the primitives that were left out, in the order of drawing.
+    pub hidden: &'a mut Vec<PrimId>,
+}
+
+/// What a pyramid is asked about a primitive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extent {
+    /// The pixels that it can cover.
+    pub pixels: PixelRect,
+    /// Its nearest depth, `1/w`.
+    pub nearest: f32,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { backface_culling: false, threads: 1, isa: Isa::detect() }
+        Self { backface_culling: false, threads: 1, isa: Isa::detect(), window: None }
     }
 }
 
@@ -119,7 +147,15 @@ pub trait Drawable: Space {
     /// # Panics
     /// If the target has not the view's size, or a side exceeds [`Target::MAX_SIDE_PX`].
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
-    /// The same in the plainest code; see [`mod@reference`].
+    /// The same but for primitives that the sieve's pyramid proves to be hidden.
+    ///
+    /// # Panics
+    /// As [`Drawable::draw`].
+    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
+    /// What [`Drawable::sift`] asks the pyramid about a primitive; `None` if it does not ask, since the primitive covers no
+    /// pixel or has to be clipped.
+    fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
+    /// The same as [`Drawable::draw`] in the plainest code (and without a window); see [`mod@reference`].
     ///
     /// # Panics
     /// As [`Drawable::draw`].
@@ -128,7 +164,13 @@ pub trait Drawable: Space {
 
 impl Drawable for Flat {
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
-        line::draw(target, scene, view, prims, options);
+        line::draw(target, None, scene, view, prims, options);
+    }
+    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+        line::draw(target, Some(sieve), scene, view, prims, options);
+    }
+    fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
+        line::extent(scene, view, prim, options)
     }
     fn draw_reference(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
         reference::draw_line(target, scene, view, prims, options);
@@ -137,7 +179,13 @@ impl Drawable for Flat {
 
 impl Drawable for Solid {
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
-        image::draw(target, scene, view, prims, options);
+        image::draw(target, None, scene, view, prims, options);
+    }
+    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+        image::draw(target, Some(sieve), scene, view, prims, options);
+    }
+    fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
+        image::extent(scene, view, prim, options)
     }
     fn draw_reference(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
         reference::draw_image(target, scene, view, prims, options);

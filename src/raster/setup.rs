@@ -5,6 +5,7 @@
 //! low 8 bits never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
 
 use super::vertex::{CENTER, SUBPIXEL_BITS, Vertex};
+use crate::geometry::PixelRect;
 
 /// Depth over the image: `1/w` is linear there. Grid steps; larger is nearer.
 #[derive(Clone, Copy, Debug)]
@@ -70,10 +71,10 @@ pub(super) fn center(pixel: i32) -> i32 {
     (pixel << SUBPIXEL_BITS) + CENTER
 }
 
-/// The pixels `0..size` whose centers lie in the closed grid interval, half-open.
+/// The pixels `from..to` whose centers lie in the closed grid interval, half-open.
 #[inline(always)]
-pub(super) fn pixels(low: i32, high: i32, size: i32) -> (i32, i32) {
-    (((low + CENTER - 1) >> SUBPIXEL_BITS).max(0), (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(size))
+pub(super) fn pixels(low: i32, high: i32, from: u32, to: u32) -> (i32, i32) {
+    (((low + CENTER - 1) >> SUBPIXEL_BITS).max(from as i32), (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(to as i32))
 }
 
 /// Twice the signed area; positive if clockwise on the screen (y down).
@@ -124,6 +125,8 @@ pub(super) struct Setup {
     pub edges: [Edge; 3],
     /// Whether the edge functions fit 32 bits all over the triangle's box.
     pub narrow: bool,
+    /// Whether it is the whole primitive, not a part that clipping left.
+    pub whole: bool,
     pub plane: Plane,
     pub id: u32,
 }
@@ -132,13 +135,18 @@ pub(super) struct Setup {
 const NARROW: i32 = 1024 << SUBPIXEL_BITS;
 
 impl Setup {
-    /// Makes a triangle ready for an image of `width` by `height` pixels; `None` if it covers no center.
+    /// The pixels of its box.
     #[inline(always)]
-    pub fn new(v: [&Vertex; 3], id: u32, width: i32, height: i32) -> Option<Self> {
+    pub fn rect(&self) -> PixelRect {
+        PixelRect { x0: self.x0 as u32, x1: self.x1 as u32, y0: self.y0 as u32, y1: self.y1 as u32 }
+    }
+    /// Makes a triangle ready for the pixels of a window; `None` if it covers no center there.
+    #[inline(always)]
+    pub fn new(v: [&Vertex; 3], id: u32, whole: bool, window: &PixelRect) -> Option<Self> {
         let (low_x, high_x) = (v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x));
         let (low_y, high_y) = (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y));
-        let (x0, x1) = pixels(low_x, high_x, width);
-        let (y0, y1) = pixels(low_y, high_y, height);
+        let (x0, x1) = pixels(low_x, high_x, window.x0, window.x1);
+        let (y0, y1) = pixels(low_y, high_y, window.y0, window.y1);
         if x0 >= x1 || y0 >= y1 {
             return None;
         }
@@ -151,6 +159,6 @@ impl Setup {
         let (x, y) = (center(x0), center(y0));
         let edges = [Edge::new(a, b, x, y), Edge::new(b, c, x, y), Edge::new(c, a, x, y)];
         let narrow = high_x - low_x <= NARROW && high_y - low_y <= NARROW;
-        Some(Self { x0, x1, y0, y1, edges, narrow, plane, id })
+        Some(Self { x0, x1, y0, y1, edges, narrow, whole, plane, id })
     }
 }

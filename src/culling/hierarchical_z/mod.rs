@@ -1,0 +1,577 @@
+//! `hierarchical-z`: cubes of an octree that a z-pyramid hides are not drawn.
+//!
+//! Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, <https://doi.org/10.1145/166117.166147>, as
+//! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, describes it (Section 3), and Georges'
+//! parallel form (Sections 4 and 5, [`parallel`]). The cubes that were visible in the last frame are drawn first, which
+//! almost completes the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`query`]); in the end
+//! those that cannot be seen leave the list of visible ones.
+//!
+//! Departures: the test asks for the bounds of what a cube holds, not for the cube; the pyramid is brought up to date where it
+//! is read, not where it is drawn (see [`crate::raster::Pyramid`]); the list is kept as marks on the tree, so cubes are drawn
+//! front to back; a cube on the list whose ancestor left it leaves with it.
+//! Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
+
+mod buffer;
+mod explain;
+mod query;
+mod space;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use self::buffer::Buffer;
+use self::explain::{Answered, Check, Evidence, Rasterized, footprint};
+use self::query::{Answer, Query};
+use self::space::{FaceImage, Faces, project_sphere};
+use crate::culling::evidence::{Facing, Tested, prim_faces_away};
+use crate::culling::knobs::backface_knob;
+use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
+use crate::drawing::{Drawing, Subject};
+use crate::geometry::{Aabb, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Space, Vector, View, nearest_depth};
+use crate::index::{Octree, OctreeNode, Redistribution, Shape};
+use crate::raster::{Options, PyramidCell};
+use crate::scene::{Progress, Scene};
+
+/// The method.
+pub struct HierarchicalZ;
+
+/// Parameters of [`HierarchicalZ`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    coherence: bool,
+    /// Index into [`FORMS`].
+    form: usize,
+    /// Index into [`QUERIES`].
+    query: usize,
+    primitive_test: bool,
+    check_interval: u32,
+    tree_levels: u32,
+    leaf_primitives: u32,
+    /// Index into [`Redistribution::ALL`].
+    redistribution: usize,
+    small_percent: u32,
+    backface_culling: bool,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            coherence: true,
+            form: 0,
+            query: 0,
+            primitive_test: true,
+            check_interval: 0,
+            // Cubes of a dozen primitives: a test costs about as much as drawing three.
+            tree_levels: 12,
+            leaf_primitives: 16,
+            redistribution: 0,
+            small_percent: 12,
+            backface_culling: false,
+        }
+    }
+}
+
+/// Ways through a frame: the paper's, where each cube is drawn as soon as it passes; and that of today's engines, where all
+/// cubes are asked against the pyramid of what was visible before.
+const FORMS: &[&str] = &["incremental", "two-pass"];
+/// Volumes and how they are asked for: each front face as projected (the paper), its screen rectangle, a sphere (Section 5.3).
+const QUERIES: &[&str] = &["faces", "rectangles", "sphere"];
+
+const CODE: &[CodeLine] = &[
+    CodeLine { label: "Frame:1", text: "Frame(visible list L)" },
+    CodeLine { label: "Frame:2", text: "  clear the z-buffer and the z-pyramid" },
+    CodeLine { label: "Frame:3", text: "  for each cube C of L in view, front to back" },
+    CodeLine { label: "Frame:4", text: "    Draw(C)" },
+    CodeLine { label: "Frame:5", text: "  Visit(root)" },
+    CodeLine { label: "Frame:6", text: "  if a check of L is due" },
+    CodeLine { label: "Frame:7", text: "    for each C of L in view: if Obscured(C), remove C" },
+    CodeLine { label: "Visit:1", text: "Visit(cube C)" },
+    CodeLine { label: "Visit:2", text: "  if C is outside the view: return" },
+    CodeLine { label: "Visit:3", text: "  if C is not in L" },
+    CodeLine { label: "Visit:4", text: "    if Obscured(C): return" },
+    CodeLine { label: "Visit:5", text: "    add C to L; Draw(C)" },
+    CodeLine { label: "Visit:6", text: "  for each child D of C, front to back: Visit(D)" },
+    CodeLine { label: "Draw:1", text: "Draw(cube C)" },
+    CodeLine { label: "Draw:2", text: "  for each primitive p of C that is not drawn yet" },
+    CodeLine { label: "Draw:3", text: "    if p is behind its pyramid cells: skip it" },
+    CodeLine { label: "Draw:4", text: "    rasterize p; the pyramid follows" },
+    CodeLine { label: "Obscured:1", text: "Obscured(cube C)" },
+    CodeLine { label: "Obscured:2", text: "  if C crosses the near plane: return false" },
+    CodeLine { label: "Obscured:3", text: "  for each face F of C toward the eye" },
+    CodeLine { label: "Obscured:4", text: "    q := finest cell that covers F on the screen" },
+    CodeLine { label: "Obscured:5", text: "    if not Behind(F, q): return false" },
+    CodeLine { label: "Obscured:6", text: "  return true" },
+    CodeLine { label: "Behind:1", text: "Behind(face F, cell q)" },
+    CodeLine { label: "Behind:2", text: "  if the nearest depth of F is behind q: return true" },
+    CodeLine { label: "Behind:3", text: "  if q is a pixel or F covers q: return false" },
+    CodeLine { label: "Behind:4", text: "  for each cell r of the four below q that F touches" },
+    CodeLine { label: "Behind:5", text: "    if not Behind(F, r): return false" },
+    CodeLine { label: "Behind:6", text: "  return true" },
+];
+
+/// Lines of [`CODE`] that the run names.
+mod line {
+    pub const CLEAR: u8 = 1;
+    pub const DRAW_LISTED: u8 = 3;
+    pub const VISIT_ROOT: u8 = 4;
+    pub const CHECK: u8 = 5;
+    pub const UNLIST: u8 = 6;
+    pub const OUTSIDE: u8 = 8;
+    pub const IN_LIST: u8 = 9;
+    pub const OBSCURED: u8 = 10;
+    pub const ADD: u8 = 11;
+    pub const CHILD: u8 = 12;
+    pub const SKIP: u8 = 15;
+    pub const RASTERIZE: u8 = 16;
+    pub const NEAR: u8 = 18;
+    pub const BEHIND: u8 = 24;
+}
+
+/// What is kept from frame to frame.
+#[derive(Clone)]
+pub struct Memory<S: Faces> {
+    /// The visible list, as a mark for each cube.
+    listed: Vec<bool>,
+    /// Frames since the list was checked.
+    frames: u32,
+    /// The farthest depth of the last image.
+    farthest: f32,
+    scratch: Scratch<S>,
+}
+
+impl<S: Faces> Default for Memory<S> {
+    fn default() -> Self {
+        Self { listed: Vec::new(), frames: 0, farthest: 0.0, scratch: Scratch::default() }
+    }
+}
+
+/// Buffers that frames reuse. A copy of the memory does not hold them.
+struct Scratch<S: Faces> {
+    buffer: Buffer<S>,
+    /// Shared primitives that this frame has drawn, by id.
+    drawn: Vec<bool>,
+    /// Cubes that were drawn from the list.
+    cubes: Vec<bool>,
+    /// Primitives of the cube at hand.
+    prims: Vec<PrimId>,
+}
+
+impl<S: Faces> Default for Scratch<S> {
+    fn default() -> Self {
+        Self { buffer: Buffer::default(), drawn: Vec::new(), cubes: Vec::new(), prims: Vec::new() }
+    }
+}
+impl<S: Faces> Clone for Scratch<S> {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// The share of new cubes on the list from which on it is checked early (Georges 1995, Section 4.2: "a large number").
+const MANY_ADDED: u32 = 4;
+/// The change of the farthest depth, as a factor, from which on the list is checked early ("a rapid shift").
+const RAPID_SHIFT: f32 = 1.5;
+
+fn knob(name: &'static str, unit: &'static str, meaning: &'static str, source: &'static str) -> Knob {
+    Knob { name, unit, meaning, source }
+}
+
+impl<S: Faces> Method<S> for HierarchicalZ {
+    type Params = Params;
+    type Index = Octree<S::Vector>;
+    type Memory = Memory<S>;
+    type Note = Evidence<S>;
+    type Dense = Buffer<S>;
+    const CARD: Card = Card {
+        key: "hierarchical-z",
+        name: "Hierarchical z-buffer: obscuration culling with octree and z-pyramid",
+        summary: "Draws the cubes that were visible before, then those of an octree whose boxes a pyramid of farthest depths does not hide.",
+        paper: "Georges. Obscuration Culling on Parallel Graphics Architectures. UNC TR95-017, 1995; after Greene, Kass and Miller. Hierarchical Z-Buffer Visibility. SIGGRAPH 1993.",
+        doi: "10.1145/166117.166147",
+        conservative: true,
+        code: CODE,
+    };
+
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let source = "Georges 1995, Section 3.3";
+        knobs.switch(knob("coherence", "", "what was visible in the last frame is drawn first, without a test", source), &mut params.coherence);
+        let form = knob(
+            "form",
+            "",
+            "incremental: a cube is drawn as soon as it passes its test, as in the paper; two-pass: all cubes are tested against what was visible before, as engines do today",
+            source,
+        );
+        knobs.choice(form, FORMS, &mut params.form);
+        let query = knob(
+            "query",
+            "",
+            "how a cube is asked for: by its front faces as projected, by their screen rectangles, or by the sphere around it",
+            "Georges 1995, Sections 3.2 and 5.3",
+        );
+        knobs.choice(query, QUERIES, &mut params.query);
+        let test =
+            knob("primitive-test", "", "primitives behind their pyramid cells are not drawn either", "Greene, Kass and Miller 1993, Section 3.2");
+        knobs.switch(test, &mut params.primitive_test);
+        let check = knob(
+            "check-interval",
+            "frames",
+            "how often the visible list is checked against the finished image; 0: every frame, in the parallel form every 30",
+            "Georges 1995, Sections 4.2 and 5.1",
+        );
+        knobs.integer(check, 0..=1000, &mut params.check_interval);
+        let source = "Georges 1995, Section 3.1";
+        knobs.integer(knob("tree-levels", "levels", "levels of the octree at most", source), 1..=Shape::MOST_LEVELS, &mut params.tree_levels);
+        knobs.integer(knob("leaf-primitives", "", "a cube with no more primitives is not divided", source), 1..=100_000, &mut params.leaf_primitives);
+        let crossing = knob(
+            "redistribution",
+            "",
+            "where a primitive goes that crosses a cube's dividing planes: hybrid (stays, or if small to all children it overlaps), parent (stays), grown (to one child, whose bounds grow), split (parts to all children)",
+            source,
+        );
+        knobs.choice(crossing, &Redistribution::WORDS, &mut params.redistribution);
+        knobs.integer(
+            knob("small-percent", "%", "a primitive is small if it is no longer than this part of its cube", source),
+            0..=100,
+            &mut params.small_percent,
+        );
+        backface_knob(knobs, &mut params.backface_culling);
+    }
+    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
+        progress.report(0.0, "building the octree");
+        let shape = Shape {
+            levels: params.tree_levels,
+            leaf_prims: params.leaf_primitives,
+            redistribution: Redistribution::ALL[params.redistribution],
+            small: params.small_percent as f32 / 100.0,
+        };
+        Octree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), &shape, &|| progress.cancelled())
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        index: &Self::Index,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Params,
+        memory: &mut Memory<S>,
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        memory.listed.resize(index.nodes().len(), false);
+        if !params.coherence {
+            memory.listed.fill(false);
+        }
+        let Scratch { buffer, drawn, cubes, prims } = &mut memory.scratch;
+        cubes.clear();
+        cubes.resize(index.nodes().len(), false);
+        drawn.clear();
+        drawn.resize(scene.prim_count(), false);
+        buffer.begin(view);
+        let options = Options { backface_culling: params.backface_culling, threads: threads(), ..Options::default() };
+        let frustum = view.frustum();
+        let mut frame = Frame {
+            index,
+            scene,
+            view,
+            frustum,
+            params,
+            options,
+            buffer,
+            drawn,
+            cubes,
+            prims,
+            listed: &mut memory.listed,
+            waiting: Vec::new(),
+            passing: Vec::new(),
+            added: 0,
+            out,
+            watch,
+        };
+        frame.run();
+        let check = frame.check_due(memory.farthest, memory.frames + 1);
+        if check.is_due {
+            frame.check(NodeId(0), Frustum::<S::Vector>::ALL);
+        }
+        (memory.frames, memory.farthest) = (if check.is_due { 0 } else { check.frames }, check.farthest[0]);
+    }
+    const KEYFRAME_NOTES: usize = 1 << 14;
+    fn dense(_: &Scene<S>, view: &View<S>) -> Buffer<S> {
+        let mut buffer = Buffer::default();
+        buffer.begin(view);
+        buffer
+    }
+    fn apply(buffer: &mut Buffer<S>, scene: &Scene<S>, note: &Evidence<S>) {
+        note.apply(buffer, scene);
+    }
+    fn explain(_: &Buffer<S>, scene: &Scene<S>, _: &Self::Index, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = note {
+            note.draw(scene, view, to);
+        }
+    }
+}
+
+/// Threads that draw: all of the pool that the run was put into, or the calling one alone.
+fn threads() -> usize {
+    rayon::current_thread_index().map_or(1, |_| rayon::current_num_threads())
+}
+
+/// One frame.
+struct Frame<'a, S: Faces, O> {
+    index: &'a Octree<S::Vector>,
+    scene: &'a Scene<S>,
+    view: &'a View<S>,
+    frustum: Frustum<S::Vector>,
+    params: &'a Params,
+    options: Options,
+    buffer: &'a mut Buffer<S>,
+    drawn: &'a mut [bool],
+    cubes: &'a mut [bool],
+    prims: &'a mut Vec<PrimId>,
+    listed: &'a mut [bool],
+    /// Two-pass form: cubes that passed their test and are drawn after all tests.
+    waiting: Vec<NodeId>,
+    /// Visited cubes that passed primitives on to several children.
+    passing: Vec<NodeId>,
+    /// Cubes that came onto the list.
+    added: u32,
+    out: &'a mut DrawList,
+    watch: &'a mut O,
+}
+
+impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
+    fn run(&mut self) {
+        self.watch.event(Event::Line(line::CLEAR));
+        self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
+        self.watch.event(Event::Line(line::VISIT_ROOT));
+        if FORMS[self.params.form] == "two-pass" {
+            self.watch.note(|| Evidence::RefreshedAll);
+            self.buffer.refresh_all();
+        }
+        self.visit(NodeId(0), Frustum::<S::Vector>::ALL);
+        for node in std::mem::take(&mut self.waiting) {
+            self.draw(node);
+        }
+        for node in std::mem::take(&mut self.passing) {
+            self.say_unseen(node);
+        }
+    }
+
+    /// Draws the cubes that are on the list and in view.
+    fn draw_listed(&mut self, id: NodeId, planes: u8) {
+        if !self.listed[id.at()] {
+            return;
+        }
+        let node = &self.index.nodes()[id.at()];
+        let cutting = match self.frustum.test(&node.bounds, planes) {
+            // It keeps its mark: who looks back will mostly see it again.
+            FrustumTest::Outside(_) => return,
+            FrustumTest::Partial(cutting) => cutting,
+            FrustumTest::Inside => 0,
+        };
+        self.watch.event(Event::Line(line::DRAW_LISTED));
+        self.watch.note(|| Evidence::Listed(id, true));
+        self.cubes[id.at()] = true;
+        self.draw(id);
+        for child in front_to_back(self.index, node, self.view) {
+            self.draw_listed(child, cutting);
+        }
+    }
+
+    fn visit(&mut self, id: NodeId, planes: u8) {
+        let index = self.index;
+        let node = &index.nodes()[id.at()];
+        self.watch.event(Event::Entered(id));
+        self.watch.event(Event::Line(line::OUTSIDE));
+        let test = self.frustum.test(&node.bounds, planes);
+        let frustum = &self.frustum;
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+        let cutting = match test {
+            FrustumTest::Outside(_) => return self.leave(id, Verdict::Outside),
+            FrustumTest::Partial(cutting) => cutting,
+            FrustumTest::Inside => 0,
+        };
+        self.watch.event(Event::Line(line::IN_LIST));
+        // A mark below a cube that left the list says nothing: such a cube was not drawn.
+        if self.cubes[id.at()] {
+            self.watch.note(|| Evidence::Listed(id, false));
+            self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+        } else {
+            self.watch.event(Event::Line(line::OBSCURED));
+            if self.is_obscured(id) {
+                return self.leave(id, Verdict::Hidden);
+            }
+            self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+            self.watch.event(Event::Line(line::ADD));
+            self.listed[id.at()] = true;
+            self.added += 1;
+            if FORMS[self.params.form] == "two-pass" { self.waiting.push(id) } else { self.draw(id) }
+        }
+        if !index.passed(id).is_empty() {
+            self.passing.push(id);
+        }
+        for child in front_to_back(index, node, self.view) {
+            self.watch.event(Event::Line(line::CHILD));
+            self.visit(child, cutting);
+        }
+        self.watch.event(Event::Left(id));
+    }
+    fn leave(&mut self, id: NodeId, verdict: Verdict) {
+        self.watch.event(Event::DecidedNode(id, verdict));
+        self.watch.event(Event::Left(id));
+    }
+
+    /// Draws what a cube holds and is not drawn yet.
+    fn draw(&mut self, id: NodeId) {
+        let (index, scene, view) = (self.index, self.scene, self.view);
+        self.prims.clear();
+        self.prims.extend_from_slice(index.own(id));
+        for &prim in index.shared(id) {
+            if !std::mem::replace(&mut self.drawn[prim.at()], true) {
+                self.prims.push(prim);
+            }
+        }
+        if self.params.backface_culling {
+            let watch = &mut *self.watch;
+            self.prims.retain(|&prim| {
+                let away = prim_faces_away(scene, view.eye.position, prim);
+                if away {
+                    watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                    watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+                }
+                !away
+            });
+        }
+        if self.prims.is_empty() {
+            return;
+        }
+        if self.params.primitive_test
+            && let Footprint::Seen(image) = footprint(view, &index.nodes()[id.at()].bounds)
+        {
+            let (pixels, most) = (image.pixels, self.prims.len());
+            self.watch.note(move || Evidence::RefreshedUnder(pixels, most as u32));
+            self.buffer.refresh_under(pixels, most);
+        }
+        self.rasterize();
+    }
+
+    /// Draws the primitives at hand, and says of each what became of it.
+    fn rasterize(&mut self) {
+        let (scene, options) = (self.scene, &self.options);
+        let hidden = if self.params.primitive_test {
+            self.buffer.draw(scene, self.prims, options).to_vec()
+        } else {
+            self.buffer.draw_all(scene, self.prims, options);
+            vec![]
+        };
+        let mut next_hidden = hidden.iter().peekable();
+        for &prim in self.prims.iter() {
+            let is_hidden = next_hidden.next_if(|&&h| h == prim).is_some();
+            let buffer = &*self.buffer;
+            self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
+            self.watch.note(move || {
+                let operands = buffer.operands(scene, prim, options);
+                Evidence::Rasterized(Rasterized { prim, operands, is_hidden, backface_culling: options.backface_culling })
+            });
+            self.watch.event(Event::DecidedPrim(prim, if is_hidden { Verdict::Hidden } else { Verdict::Visible }));
+            if !is_hidden {
+                self.out.prims.push(prim);
+            }
+        }
+    }
+
+    /// Whether the pyramid hides a cube.
+    fn is_obscured(&mut self, id: NodeId) -> bool {
+        let (view, node) = (self.view, &self.index.nodes()[id.at()]);
+        let (bounds, whole) = (&node.bounds, &node.whole);
+        let sphere = QUERIES[self.params.query] == "sphere";
+        let image = match if sphere { project_sphere(view, whole) } else { footprint(view, bounds) } {
+            Footprint::Seen(image) => image,
+            // Its corner is beside the view, but not by enough for the frustum's test.
+            Footprint::Outside => return self.answered(id, bounds, false),
+            Footprint::CrossesNear => {
+                self.watch.event(Event::Line(line::NEAR));
+                return self.answered(id, bounds, true);
+            }
+        };
+        let nearest = if sphere || whole == bounds { image.nearest } else { nearest_depth(&view.projection(), whole, view.eye.near) };
+        let mut query = Query::new(&mut *self.buffer, id, nearest, line::BEHIND, &mut *self.watch);
+        let answer = if self.params.query == 0 {
+            query.faces(bounds, &image, view)
+        } else {
+            query.face(0, &FaceImage::rectangle(image.pixels));
+            query.answer
+        };
+        let bounds = *bounds;
+        self.watch.note(move || Evidence::Answered(Answered { node: id, bounds, pixels: image.pixels, answer, crosses_near: false }));
+        answer.is_hidden
+    }
+    /// Notes the answer for a box that needs no cell.
+    fn answered(&mut self, node: NodeId, bounds: &Aabb<S::Vector>, crosses_near: bool) -> bool {
+        let (bounds, nearest) = (*bounds, 1.0 / self.view.eye.near);
+        let answer = Answer { is_hidden: !crosses_near, nearest, reads: 0, decisive: None };
+        self.watch.note(move || Evidence::Answered(Answered { node, bounds, pixels: PixelRect::default(), answer, crosses_near }));
+        answer.is_hidden
+    }
+
+    /// Says of the primitives that a cube passed on which of them no child could show.
+    fn say_unseen(&mut self, id: NodeId) {
+        for &prim in self.index.passed(id) {
+            if !self.drawn[prim.at()] {
+                self.watch.note(|| Evidence::SharedUnseen(prim, id));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+            }
+        }
+    }
+
+    /// Whether the list is to be checked in this frame (Georges 1995, Section 4.2): at fixed intervals, or early where many cubes
+    /// were added or the farthest depth shifted.
+    fn check_due(&mut self, before: f32, frames: u32) -> Check {
+        let interval = self.params.check_interval.max(1);
+        let farthest = if interval == 1 { before } else { self.farthest() };
+        let (added, listed) = (self.added, self.listed.iter().filter(|l| **l).count() as u32);
+        let shift = if before > 0.0 { (farthest / before).max(before / farthest) } else { 1.0 };
+        let is_due = self.params.coherence && (frames >= interval || added * MANY_ADDED > listed || shift > RAPID_SHIFT);
+        let check = Check { frames, interval, added, listed, farthest: [farthest, before], is_due };
+        self.watch.event(Event::Line(line::CHECK));
+        self.watch.note(move || Evidence::Checked(check));
+        check
+    }
+    /// The farthest depth of the image.
+    fn farthest(&mut self) -> f32 {
+        self.watch.note(|| Evidence::RefreshedAll);
+        self.buffer.refresh_all();
+        self.buffer.farthest(PyramidCell { level: self.buffer.pyramid().root() as u8, x: 0, y: 0 })
+    }
+    /// Takes cubes off the list that the finished image hides.
+    fn check(&mut self, id: NodeId, planes: u8) {
+        let node = &self.index.nodes()[id.at()];
+        let cutting = match self.frustum.test(&node.bounds, planes) {
+            _ if !self.listed[id.at()] => return,
+            FrustumTest::Outside(_) => return,
+            FrustumTest::Partial(cutting) => cutting,
+            FrustumTest::Inside => 0,
+        };
+        self.watch.event(Event::Line(line::UNLIST));
+        if self.is_obscured(id) {
+            self.listed[id.at()] = false;
+            self.watch.note(|| Evidence::Unlisted(id));
+            return;
+        }
+        for child in node.children() {
+            self.check(NodeId(child), cutting);
+        }
+    }
+}
+
+/// The children of a cube, those on the eye's side first.
+fn front_to_back<S: Space>(index: &Octree<S::Vector>, node: &OctreeNode<S::Vector>, view: &View<S>) -> impl Iterator<Item = NodeId> {
+    let center = node.cube.center();
+    let eye: u8 = (0..S::Vector::AXES).map(|a| u8::from(view.eye.position.get(a) > center.get(a)) << a).sum();
+    // A child is nearer the fewer dividing planes lie between it and the eye.
+    let mut order = [(u32::MAX, NodeId(0)); 8];
+    for (to, child) in order.iter_mut().zip(node.children()) {
+        *to = ((index.nodes()[child as usize].octant ^ eye).count_ones(), NodeId(child));
+    }
+    order.sort();
+    order.into_iter().take(node.children().len()).map(|(_, child)| child)
+}

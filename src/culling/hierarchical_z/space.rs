@@ -1,0 +1,158 @@
+//! What differs between flatland and space: the faces of a box, and what of the image one covers.
+
+use crate::geometry::{Aabb, BoxImage, Flat, Footprint, MARGIN_PX, PixelRect, Solid, Space, Vector, View};
+use crate::raster::Drawable;
+
+/// Faces of boxes and their images.
+pub trait Faces: Drawable {
+    /// The faces of a box that face the eye, at most one an axis: corner numbers in order around the face (two ends of a
+    /// side in flatland), `[0; 4]` beyond the count.
+    fn front(bounds: &Aabb<Self::Vector>, eye: Self::Vector) -> ([[u8; 4]; 3], usize) {
+        let (mut faces, mut count) = ([[0; 4]; 3], 0);
+        for axis in 0..Self::Vector::AXES {
+            let upper = eye.get(axis) > bounds.max.get(axis);
+            if upper || eye.get(axis) < bounds.min.get(axis) {
+                faces[count] = Self::around(axis, upper);
+                count += 1;
+            }
+        }
+        (faces, count)
+    }
+    /// The corners of the face at the upper or lower end of an axis.
+    fn around(axis: usize, upper: bool) -> [u8; 4];
+    /// The image of a face.
+    fn image(face: [u8; 4], image: &BoxImage, width: u32, height: u32) -> FaceImage;
+}
+
+/// What of the image a face covers: a rectangle of pixels and, in space, the convex quadrangle in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceImage {
+    /// The pixels whose centers it can cover.
+    pub pixels: PixelRect,
+    /// Its sides as lines `x·a + y·b + c`, in pixels, negative outside; where there are none, the rectangle is all.
+    sides: [[f64; 3]; 4],
+    has_sides: bool,
+}
+
+impl FaceImage {
+    /// A face that covers a rectangle.
+    pub fn rectangle(pixels: PixelRect) -> Self {
+        Self { pixels, sides: [[0.0; 3]; 4], has_sides: false }
+    }
+    /// Whether it may cover the center of a pixel of the rectangle.
+    #[inline]
+    pub fn touches(&self, cell: PixelRect) -> bool {
+        let both = cell.intersection(self.pixels);
+        if both.is_empty() {
+            return false;
+        }
+        let (center, half) = centers(both);
+        !self.has_sides || self.sides.iter().all(|s| distance(s, center) + spread(s, half) >= -MARGIN_PX)
+    }
+    /// Whether it covers the centers of all pixels of the rectangle.
+    #[inline]
+    pub fn covers(&self, cell: PixelRect) -> bool {
+        let r = self.pixels;
+        let inside = cell.x0 >= r.x0 && cell.x1 <= r.x1 && cell.y0 >= r.y0 && cell.y1 <= r.y1;
+        let (center, half) = centers(cell);
+        inside && (!self.has_sides || self.sides.iter().all(|s| distance(s, center) >= spread(s, half)))
+    }
+}
+
+/// Middle and half extent of the centers of a rectangle's pixels.
+#[inline]
+fn centers(r: PixelRect) -> ([f64; 2], [f64; 2]) {
+    let (x, y) = (f64::from(r.x0 + r.x1), f64::from(r.y0 + r.y1));
+    let (w, h) = (f64::from(r.x1 - r.x0) - 1.0, f64::from(r.y1 - r.y0) - 1.0);
+    ([x * 0.5, y * 0.5], [w * 0.5, h * 0.5])
+}
+#[inline]
+fn distance(side: &[f64; 3], at: [f64; 2]) -> f64 {
+    side[0] * at[0] + side[1] * at[1] + side[2]
+}
+#[inline]
+fn spread(side: &[f64; 3], half: [f64; 2]) -> f64 {
+    side[0].abs() * half[0] + side[1].abs() * half[1]
+}
+
+/// The bounds of a face's corners on the screen.
+#[inline]
+fn rect(corners: &[[f64; 2]], width: u32, height: u32) -> PixelRect {
+    let fold = |f: fn(f64, f64) -> f64, start: f64| corners.iter().fold([start; 2], |m, c| [f(m[0], c[0]), f(m[1], c[1])]);
+    PixelRect::around(fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY), width, height)
+}
+
+impl Faces for Flat {
+    fn around(axis: usize, upper: bool) -> [u8; 4] {
+        let first = u8::from(upper) << axis;
+        [first, first | 1 << (1 - axis), 0, 0]
+    }
+    fn image(face: [u8; 4], image: &BoxImage, width: u32, _: u32) -> FaceImage {
+        FaceImage::rectangle(rect(&[image.corners_px[face[0] as usize], image.corners_px[face[1] as usize]], width, 1))
+    }
+}
+
+/// A face whose image is smaller than this, in pixels squared, is taken as its rectangle: its sides have no direction.
+const LEAST_AREA: f64 = 1e-6;
+
+impl Faces for Solid {
+    fn around(axis: usize, upper: bool) -> [u8; 4] {
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        let first = u8::from(upper) << axis;
+        [first, first | 1 << b, first | 1 << b | 1 << c, first | 1 << c]
+    }
+    fn image(face: [u8; 4], image: &BoxImage, width: u32, height: u32) -> FaceImage {
+        let p = face.map(|c| image.corners_px[c as usize]);
+        let mut face = FaceImage::rectangle(rect(&p, width, height));
+        let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+        let area = cross(minus(p[2], p[0]), minus(p[3], p[1]));
+        if area.abs() < LEAST_AREA {
+            return face;
+        }
+        for (i, side) in face.sides.iter_mut().enumerate() {
+            let (from, along) = (p[i], minus(p[(i + 1) % 4], p[i]));
+            let length = along[0].hypot(along[1]);
+            // A side of no length bounds nothing.
+            if length > 1e-9 {
+                let n = [-along[1] / length * area.signum(), along[0] / length * area.signum()];
+                *side = [n[0], n[1], -(n[0] * from[0] + n[1] * from[1])];
+            }
+        }
+        face.has_sides = true;
+        face
+    }
+}
+
+/// The sphere about a box is taken larger by this part, for rounding.
+const SPHERE_SLACK: f64 = 1e-5;
+
+/// The screen rectangle and the nearest depth of the sphere about a box (Georges 1995, Section 5.3). Where the sphere reaches the
+/// near plane, so may the box.
+pub fn project_sphere<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Footprint {
+    let projection = view.projection();
+    let image_axes = S::Vector::AXES - 1;
+    let dot = |row: S::Vector, v: S::Vector| (0..S::Vector::AXES).map(|a| f64::from(row.get(a)) * f64::from(v.get(a))).sum::<f64>();
+    let center = bounds.center() - projection.eye;
+    let radius = f64::from(bounds.diagonal()) * 0.5 * (1.0 + SPHERE_SLACK) + f64::from(center.length()) * SPHERE_SLACK;
+    let w = dot(projection.rows[image_axes], center);
+    if w + radius < f64::from(view.eye.near) || w - radius > f64::from(view.eye.far) {
+        return Footprint::Outside;
+    }
+    if w - radius <= f64::from(view.eye.near) {
+        return Footprint::CrossesNear;
+    }
+    let (mut low, mut high) = ([0.5; 2], [0.5; 2]);
+    for (a, pixels) in [view.width, view.height].into_iter().enumerate().take(image_axes) {
+        let row = projection.rows[a];
+        let scale = dot(row, row).sqrt();
+        let across = dot(row, center) / scale;
+        // The two lines through the eye that touch the sphere, in the plane of the axis and the line of sight.
+        let (middle, half) = (across.atan2(w), (radius / across.hypot(w)).min(1.0).asin());
+        let place = |angle: f64| angle.tan() * scale * if a == 0 { 1.0 } else { -1.0 };
+        let ends = [place(middle - half), place(middle + half)].map(|v| (v * 0.5 + 0.5) * f64::from(pixels));
+        (low[a], high[a]) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    }
+    let pixels = PixelRect::around(low, high, view.width, view.height);
+    Footprint::Seen(BoxImage { corners_px: [[0.0; 2]; 8], pixels, nearest: (1.0 / (w - radius)) as f32 })
+}

@@ -1,0 +1,174 @@
+//! The paper's worked example, and queries against brute force.
+
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+use super::buffer::Buffer;
+use super::explain::{Evidence, Outcome};
+use super::query::Query;
+use super::space::{FaceImage, Faces};
+use super::*;
+use crate::culling::{Recorder, Unobserved};
+use crate::geometry::{Eye, Flat, Solid};
+use crate::raster::{Target, render};
+use crate::scene::Parts;
+
+/// A unit square of pixels each `z` deep, as triangles, and the straight view of it: Figure 1 of the paper.
+fn figure_1() -> (Scene<Solid>, View<Solid>) {
+    let z = [[4, 9, 8, 8], [4, 5, 1, 3], [6, 2, 2, 4], [2, 2, 2, 4]];
+    let (mut points, mut prims) = (Vec::new(), Vec::new());
+    for (row, depths) in z.iter().enumerate() {
+        for (column, &depth) in depths.iter().enumerate() {
+            let (x, y, d) = (column as f32 - 2.0, 2.0 - row as f32, depth as f32);
+            let first = points.len() as u32;
+            // The image is 4 wide at depth 2.
+            points.extend([(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)].map(|(x, y)| glam::Vec3::new(x, y, -2.0) * (d / 2.0)));
+            prims.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+    let scene = Scene::new(Parts::simple("figure 1", points, prims)).expect("a valid scene");
+    let eye =
+        Eye { position: glam::Vec3::ZERO, target: glam::Vec3::NEG_Z, up: glam::Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 20.0 };
+    (scene, View { eye, width: 4, height: 4 })
+}
+
+/// What a face at depth 6 over some pixels of Figure 1 is told, as level, cell value and outcome.
+fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
+    let (scene, view) = figure_1();
+    let mut buffer = Buffer::default();
+    buffer.begin(&view);
+    buffer.draw(&scene, scene.live(), &Options::default());
+    buffer.refresh_all();
+    let mut recorder = Recorder::new(1000);
+    let mut query = Query::new(&mut buffer, NodeId(0), 1.0 / 6.0, 0, &mut recorder);
+    let is_hidden = query.face(0, &FaceImage::rectangle(pixels));
+    let reads = recorder.notes.iter().filter_map(|n| match n {
+        Evidence::Read(r) => Some((r.cell.level, (1.0 / r.held).round(), r.outcome)),
+        _ => None,
+    });
+    (is_hidden, reads.collect())
+}
+
+#[test]
+fn figures_1_and_2_of_georges_1995() {
+    let (scene, view) = figure_1();
+    let image = render(&scene, &view, scene.live());
+    let depths: Vec<f32> = image.depth.iter().map(|d| (1.0 / d).round()).collect();
+    assert_eq!(depths, [4.0, 9.0, 8.0, 8.0, 4.0, 5.0, 1.0, 3.0, 6.0, 2.0, 2.0, 4.0, 2.0, 2.0, 2.0, 4.0]);
+    use Outcome::{Behind, Descends, Shows};
+    // Over the left column of the upper left quarter: cell 9 does not hide it, the samples 4 and 4 do.
+    let left = PixelRect { x0: 0, x1: 1, y0: 0, y1: 2 };
+    assert_eq!(face_at_6(left), (true, vec![(1, 9.0, Descends), (0, 4.0, Behind), (0, 4.0, Behind)]));
+    // Over the upper row: sample 9 shows it.
+    let upper = PixelRect { x0: 0, x1: 2, y0: 0, y1: 1 };
+    assert_eq!(face_at_6(upper), (false, vec![(1, 9.0, Descends), (0, 4.0, Behind), (0, 9.0, Shows)]));
+    // Over the lower half: from the root, then cell 6, whose sample 6 is not nearer, though only just.
+    let lower = PixelRect { x0: 0, x1: 4, y0: 2, y1: 4 };
+    assert_eq!(face_at_6(lower), (false, vec![(2, 9.0, Descends), (1, 6.0, Shows)]));
+    // Over the lower right quarter: one look.
+    assert_eq!(face_at_6(PixelRect { x0: 2, x1: 4, y0: 2, y1: 4 }), (true, vec![(1, 4.0, Behind)]));
+}
+
+fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> Arc<Scene<S>> {
+    let mut unit = || (rng.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
+    let mut points = Vec::new();
+    for k in 0..n {
+        let middle = S::Vector::from_fn(|_| unit() * 20.0 - 10.0);
+        let size = [0.3, 2.0, 8.0][k as usize % 3];
+        points.extend((0..S::CORNERS).map(|_| middle + S::Vector::from_fn(|_| (unit() - 0.5) * size)));
+    }
+    let corner = |k: u32| k * S::CORNERS as u32;
+    Arc::new(Scene::new(Parts::simple("soup", points, (0..n).map(|k| make([corner(k), corner(k) + 1, corner(k) + 2])).collect())).expect("valid"))
+}
+
+/// A box that a query calls hidden changes no pixel when its outside is drawn after the rest; and of the boxes that
+/// change none, most are called hidden.
+fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners, shell: fn(&Aabb<S::Vector>) -> (Vec<S::Vector>, Vec<S::Corners>)) {
+    let mut rng = Pcg32::new(seed, 9);
+    let (mut hidden, mut unseen, mut rectangle_hidden) = (0, 0, 0);
+    for _ in 0..60 {
+        let scene = soup::<S>(&mut rng, 60, make);
+        let view = crate::scene::random_views(&scene, 1, u64::from(rng.next_u32()))[0];
+        let view = View { width: 1 + rng.next_u32() % 150, height: if S::CORNERS == 2 { 1 } else { 1 + rng.next_u32() % 150 }, ..view };
+        let mut buffer = Buffer::default();
+        buffer.begin(&view);
+        for part in scene.live().chunks(25) {
+            buffer.draw(&scene, part, &Options::default());
+        }
+        let drawn = render(&scene, &view, scene.live());
+        assert_eq!(drawn, *buffer.target());
+        for _ in 0..40 {
+            let mut unit = || (rng.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
+            let middle = S::Vector::from_fn(|_| unit() * 24.0 - 12.0);
+            let half = S::Vector::from_fn(|_| unit() * unit() * 3.0);
+            let bounds = Aabb { min: middle - half, max: middle + half };
+            let Footprint::Seen(image) = footprint(&view, &bounds) else { continue };
+            let (points, prims) = shell(&bounds);
+            let outside = Scene::<S>::new(Parts::simple("shell", points, prims)).expect("valid");
+            let mut with = drawn.clone();
+            S::draw(&mut with, &outside, &view, outside.live(), &Options::default());
+            // Ties go to the lower id, so a tie may show as well; both count as a change.
+            let changed = |t: &Target| (0..t.depth.len()).any(|i| t.depth[i] != drawn.depth[i] || t.item[i] != drawn.item[i]);
+            let answer = Query::new(&mut buffer, NodeId(0), image.nearest, 0, &mut Unobserved).faces(&bounds, &image, &view);
+            assert!(!answer.is_hidden || !changed(&with), "{bounds:?} is called hidden and shows");
+            let mut nobody = Unobserved;
+            let mut query = Query::new(&mut buffer, NodeId(0), image.nearest, 0, &mut nobody);
+            let by_rectangle = query.face(0, &FaceImage::rectangle(image.pixels));
+            assert!(!by_rectangle || answer.is_hidden, "what the rectangle hides, the faces do");
+            if let Footprint::Seen(sphere) = project_sphere(&view, &bounds) {
+                let (r, s) = (image.pixels, sphere.pixels);
+                assert!(r.is_empty() || s.x0 <= r.x0 && s.x1 >= r.x1 && s.y0 <= r.y0 && s.y1 >= r.y1, "the sphere is about the box");
+                assert!(sphere.nearest >= image.nearest);
+            }
+            hidden += u32::from(answer.is_hidden);
+            rectangle_hidden += u32::from(by_rectangle);
+            unseen += u32::from(!changed(&with));
+        }
+    }
+    assert!(hidden > 50 && hidden * 10 >= unseen * 8, "{hidden} of {unseen} unseen boxes are found");
+    assert!(rectangle_hidden <= hidden);
+}
+
+#[test]
+fn what_a_query_calls_hidden_does_not_show_in_flatland() {
+    fn shell(b: &Aabb<glam::Vec2>) -> (Vec<glam::Vec2>, Vec<[u32; 2]>) {
+        (b.corners().collect(), vec![[0, 1], [1, 3], [3, 2], [2, 0]])
+    }
+    queries_against_drawing::<Flat>(1, |[a, b, _]| [a, b], shell);
+}
+
+#[test]
+fn what_a_query_calls_hidden_does_not_show_in_space() {
+    fn shell(b: &Aabb<glam::Vec3>) -> (Vec<glam::Vec3>, Vec<[u32; 3]>) {
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        (b.corners().collect(), faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).collect())
+    }
+    queries_against_drawing::<Solid>(2, |c| c, shell);
+}
+
+/// Frames along a flight with jumps: each image is the plain one, and with coherence the list settles.
+fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
+    let mut rng = Pcg32::new(5, 9);
+    let scene = soup::<S>(&mut rng, 300, make);
+    for (form, interval) in [(0, 1), (0, 30), (1, 1), (1, 30)] {
+        let params = Params { form, check_interval: interval, leaf_primitives: 4, ..Params::default() };
+        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let mut memory = Memory::default();
+        for view in crate::scene::random_views(&scene, 12, 3) {
+            for step in 0..4 {
+                let mut view = View { width: 80, height: view.height.min(60), ..view };
+                view.eye.position = view.eye.position + view.eye.forward() * (0.05 * step as f32);
+                view.eye.target = view.eye.position + view.eye.forward();
+                let mut list = DrawList::default();
+                HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut Unobserved);
+                assert_eq!(render(&scene, &view, &list.prims), render(&scene, &view, scene.live()), "form {form}, interval {interval}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_image_of_a_flight_with_jumps_is_the_plain_one() {
+    flights::<Flat>(|[a, b, _]| [a, b]);
+    flights::<Solid>(|c| c);
+}
