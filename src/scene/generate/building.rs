@@ -35,7 +35,7 @@ pub(super) const GENERATOR: Generator = Generator {
 };
 
 /// Thickness of a wall, m.
-const WALL: f64 = 0.15;
+pub(super) const WALL: f64 = 0.15;
 
 fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
@@ -179,24 +179,25 @@ fn structure(sink: &mut Sink, plan: &Plan) {
         let name = if k < plan.rooms.len() { "room" } else { "corridor" };
         let number = if k < plan.rooms.len() { k } else { k - plan.rooms.len() };
         sink.begin(|| ("floor and ceiling".into(), format!("{name}_{number}")));
-        slab(sink, room.rect);
+        slab(sink, room.rect, [piece::FLOOR, piece::CEILING], HEIGHT);
     }
     for (k, wall) in plan.walls.iter().enumerate() {
         sink.begin(|| (format!("wall_{k}"), "walls".into()));
         sink.paint(piece::WALL);
-        build_wall(sink, wall);
+        build_wall(sink, wall, HEIGHT);
     }
 }
 
-fn slab(sink: &mut Sink, [x0, z0, x1, z1]: Rect) {
-    for (material, y, outward) in [(piece::FLOOR, 0.0, DVec3::Y), (piece::CEILING, HEIGHT, -DVec3::Y)] {
+/// Floor and ceiling of a rectangle, of two materials.
+pub(super) fn slab(sink: &mut Sink, [x0, z0, x1, z1]: Rect, [floor, ceiling]: [u32; 2], height: f64) {
+    for (material, y, outward) in [(floor, 0.0, DVec3::Y), (ceiling, height, -DVec3::Y)] {
         sink.paint(material);
         sink.face(&[(x0, z0), (x1, z0), (x1, z1), (x0, z1)].map(|(x, z)| DVec3::new(x, y, z)), outward);
     }
 }
 
 /// Both faces of a wall around its opening, and the reveal.
-fn build_wall(sink: &mut Sink, wall: &Wall) {
+pub(super) fn build_wall(sink: &mut Sink, wall: &Wall, height: f64) {
     let point = |along: f64, y: f64, across: f64| {
         let (a, b) = (along, wall.place + across);
         if wall.along_x { DVec3::new(a, y, b) } else { DVec3::new(b, y, a) }
@@ -205,9 +206,9 @@ fn build_wall(sink: &mut Sink, wall: &Wall) {
     let ahead = if wall.along_x { DVec3::X } else { DVec3::Z };
     let mut panes = Vec::with_capacity(4);
     match wall.opening {
-        None => panes.push([wall.from, wall.to, 0.0, HEIGHT]),
+        None => panes.push([wall.from, wall.to, 0.0, height]),
         Some([from, to, bottom, top]) => {
-            panes.extend([[wall.from, from, 0.0, HEIGHT], [from, to, top, HEIGHT], [to, wall.to, 0.0, HEIGHT]]);
+            panes.extend([[wall.from, from, 0.0, height], [from, to, top, height], [to, wall.to, 0.0, height]]);
             if bottom > 0.0 {
                 panes.push([from, to, 0.0, bottom]);
             }

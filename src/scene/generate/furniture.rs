@@ -35,8 +35,8 @@ pub(super) const SCREEN: u32 = 6;
 pub(super) const LAMP: u32 = 7;
 pub(super) const LEAF: u32 = 8;
 const POT: u32 = 9;
-const BOOKS: u32 = 10;
-const BLIND: u32 = 13;
+pub(super) const BOOKS: u32 = 10;
+pub(super) const BLIND: u32 = 13;
 pub(super) const PAPER: u32 = 14;
 
 /// Top of a desk, m.

@@ -4,14 +4,23 @@
 //! from a series, since those of system libraries differ in their last bits.
 
 mod blocks;
+mod box_and_objects;
 mod building;
+mod car;
+mod cars;
 mod city;
 mod furniture;
 mod house;
+mod lathe;
+mod machine_room;
+mod machinery;
 mod plan;
+mod sculpture;
+mod seminar_room;
 mod shapes;
 mod stand;
 mod street;
+mod thin_slabs;
 mod walk;
 
 use self::shapes::Sink;
@@ -59,7 +68,15 @@ impl Values {
     }
 }
 
-static GENERATORS: &[Generator] = &[building::GENERATOR, city::GENERATOR];
+static GENERATORS: &[Generator] = &[
+    building::GENERATOR,
+    city::GENERATOR,
+    machine_room::GENERATOR,
+    box_and_objects::GENERATOR,
+    thin_slabs::GENERATOR,
+    seminar_room::GENERATOR,
+    cars::GENERATOR,
+];
 
 /// All generators, by name.
 pub fn generators() -> &'static [Generator] {
