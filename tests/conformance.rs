@@ -256,21 +256,23 @@ fn films_replay_in_space() {
 }
 
 /// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise
-/// while the scenes stay the same. (`frustum` in flatland had 0.65 before the five scenes of the paper's figures came in.)
+/// while the scenes stay the same. (Before `box_and_objects` and
+/// `thin_slabs` came in `frustum` in flatland had 0.648 and `large-occluders` 0.81.)
 const FLOORS: [(&str, &str, f64); 10] = [
     ("hierarchical-z", "flatland", 0.35),
     ("hierarchical-z", "space", 0.5),
-    ("large-occluders", "flatland", 0.81),
+    ("large-occluders", "flatland", 0.756),
     ("large-occluders", "space", 0.68),
     ("z-buffer", "flatland", 0.0),
     ("z-buffer", "space", 0.0),
-    ("frustum", "flatland", 0.648),
+    ("frustum", "flatland", 0.623),
     ("frustum", "space", 0.63),
     ("centroid", "flatland", 0.95),
     ("centroid", "space", 0.95),
 ];
 
 fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
+    let mut fallen = Vec::new();
     for entry in S::methods() {
         let key = entry.card().key;
         let (mut unseen, mut culled) = (0, 0);
@@ -299,9 +301,12 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         let share = culled as f64 / unseen as f64;
         let floor = FLOORS.iter().find(|(method, space, _)| *method == key && *space == S::NAME);
         let (.., floor) = *floor.unwrap_or_else(|| panic!("`{key}` in {} needs a line in FLOORS; it culls {share:.3}", S::NAME));
-        assert!(share >= floor, "{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before", S::NAME);
+        if share < floor {
+            fallen.push(format!("{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before", S::NAME));
+        }
         println!("{key} in {}: {share:.4}", S::NAME);
     }
+    assert!(fallen.is_empty(), "{}", fallen.join("\n"));
 }
 
 #[test]

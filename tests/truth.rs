@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cullscope::culling::{Film, Methods, Settings};
 use cullscope::drawing::Subject;
-use cullscope::geometry::{Flat, NodeId, PrimId, Solid, View};
+use cullscope::geometry::{Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
 use cullscope::raster::{Drawable, render};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use cullscope::truth::Truth;
@@ -99,14 +99,32 @@ fn spoiled(certificate: &Certificate) -> Vec<(&'static str, Certificate)> {
                 ("the axes", with(beyond(far_corner, error, vec![0.0], box_max.clone()))),
             ]
         }
+        Claim::Behind { box_min, box_max } => {
+            let behind = |box_min: &[f64], by: f64| Claim::Behind { box_min: box_min.to_vec(), box_max: box_max.iter().map(|v| v + by).collect() };
+            vec![
+                ("the kind of subject", Certificate { subject: Subject::Prim(PrimId(0)), ..certificate.clone() }),
+                ("a node that is none", Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() }),
+                ("an object that is none", Certificate { subject: Subject::Object(ObjectId(u32::MAX)), ..certificate.clone() }),
+                ("the axes", with(behind(&[0.0], 0.0))),
+                ("a box that is too small", with(behind(&box_min, -1e3))),
+            ]
+        }
+        Claim::Unseen => vec![
+            ("the kind of subject", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
+            ("the primitive", Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() }),
+        ],
     }
 }
 
 fn checker_tells_right_from_wrong<S: Methods + Drawable>(scene: &Arc<Scene<S>>) {
     let mut tried = 0;
-    for (method, settings) in
-        [("frustum", &[("tree-height", "6"), ("backface-culling", "true")][..]), ("centroid", &[]), ("z-buffer", &[("backface-culling", "true")])]
-    {
+    let methods = [
+        ("frustum", &[("tree-height", "6"), ("backface-culling", "true")][..]),
+        ("centroid", &[]),
+        ("z-buffer", &[("backface-culling", "true")]),
+        ("large-occluders", &[("detail-objects", "true")]),
+    ];
+    for (method, settings) in methods {
         for view in random_views(scene, 5, 11) {
             let film = film(scene, &view, method, settings);
             let shown = certificates(&*film);
@@ -137,4 +155,80 @@ fn certificates_are_accepted_and_altered_ones_rejected_in_flatland() {
 #[test]
 fn certificates_are_accepted_and_altered_ones_rejected_in_space() {
     checker_tells_right_from_wrong(&building());
+}
+
+/// Everything that `large-occluders` calls hidden in views of a scene is; and what is seen cannot be called hidden.
+/// Returns how many claims there were of boxes and of primitives.
+fn hidden_is_hidden<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>], settings: &[(&str, &str)]) -> [usize; 2] {
+    let mut claims = [0, 0];
+    let one_sided = settings.contains(&("backface-culling", "true"));
+    for view in views {
+        let film = film(scene, view, "large-occluders", settings);
+        let shown = certificates(&*film);
+        assert_eq!(check_film(&*film), Ok(shown.len()), "{} from {view:?}", scene.name());
+        claims[0] += shown.iter().filter(|c| matches!(c.claim, Claim::Behind { .. })).count();
+        claims[1] += shown.iter().filter(|c| c.claim == Claim::Unseen).count();
+        let (checker, hierarchy) = (Checker::of(&*film), film.hierarchy());
+        let visible = Truth::new(scene, one_sided, 1, WHITE).look(scene, view);
+        for &prim in &visible {
+            let certificate = Certificate { step: 1, subject: Subject::Prim(prim), claim: Claim::Unseen };
+            assert!(checker.check(&certificate).is_err(), "{}: {prim} is seen", scene.name());
+        }
+        let seen = |node: &NodeId| hierarchy.prims(*node).iter().any(|p| visible.binary_search(p).is_ok());
+        for node in (0..hierarchy.node_count() as u32).map(NodeId).filter(seen) {
+            let (bounds, corner) = (hierarchy.bounds(node), |v: S::Vector| (0..S::Vector::AXES).map(|a| f64::from(v.get(a))).collect());
+            let claim = Claim::Behind { box_min: corner(bounds.min), box_max: corner(bounds.max) };
+            let why = checker.check(&Certificate { step: 1, subject: Subject::Node(node), claim });
+            assert!(why.is_err(), "{}: node {node:?} is seen from {view:?}", scene.name());
+        }
+    }
+    claims
+}
+
+#[test]
+fn what_large_occluders_hides_is_hidden_in_flatland() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes2d");
+    let files = std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path());
+    let (mut boxes, mut prims) = (0, 0);
+    for file in files.filter(|p| p.extension().is_some_and(|e| e == "json")) {
+        let Ok(AnyScene::Flat(scene)) = load(&file.to_string_lossy(), &LoadOptions::default(), &Quiet) else { panic!("{}", file.display()) };
+        let mut views = random_views(&scene, 3, 3);
+        views.extend(scene.paths().iter().flat_map(|p| p.views.iter().step_by(11)));
+        for settings in [&[][..], &[("tree-height", "12"), ("detail-objects", "true")], &[("backface-culling", "true")]] {
+            let claims = hidden_is_hidden(&scene, &views, settings);
+            (boxes, prims) = (boxes + claims[0], prims + claims[1]);
+        }
+    }
+    assert!(boxes > 300 && prims > 0, "{boxes} boxes, {prims} primitives");
+}
+
+#[test]
+fn what_large_occluders_hides_is_hidden_in_space() {
+    let scene = building();
+    let mut views = random_views(&scene, 4, 3);
+    views.extend(scene.paths()[0].views.iter().step_by(60));
+    views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
+    let mut boxes = 0;
+    for settings in [&[("tree-height", "12")][..], &[("detail-objects", "true")], &[("backface-culling", "true")]] {
+        boxes += hidden_is_hidden(&scene, &views, settings)[0];
+    }
+    assert!(boxes > 300, "{boxes}");
+}
+
+#[test]
+fn the_body_of_the_machine_room_is_hidden_on_the_first_half_of_the_flight() {
+    let Ok(AnyScene::Solid(scene)) = load("generate:machine-room?polygons=30000", &LoadOptions::default(), &Quiet) else { panic!("a room") };
+    let mut truth = Truth::new(&scene, false, 1, WHITE);
+    let body = |view: &View<Solid>, truth: &mut Truth| {
+        let visible = truth.look(&scene, &View { width: 256, height: 256, ..*view });
+        visible.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "torpedo").count()
+    };
+    let views = &scene.paths()[0].views;
+    for (k, view) in views.iter().enumerate().step_by(5) {
+        let looks_at_it = view.frustum().test(&cullscope::geometry::Aabb::of([view.eye.target]), 0x3f) == cullscope::geometry::FrustumTest::Inside;
+        assert!(looks_at_it, "view {k}");
+        let seen = body(view, &mut truth);
+        // Before the third door nothing of it is seen, behind it nearly all of one side.
+        assert!(if k < 110 { seen == 0 } else { k < 150 || seen > 500 }, "view {k}: {seen} triangles");
+    }
 }

@@ -1,19 +1,30 @@
-//! An independent checker: is what a method culled outside the view really outside?
+//! An independent checker: is what a method culled really out of view, or hidden?
 //!
-//! A certificate is what a film recorded as evidence of a cull: the plane, the box and its distance. The
-//! checker derives the planes anew from the Eye's definition, in f64, and shares no arithmetic with
-//! [`crate::geometry::Frustum`]; it asks that the box holds every point it stands for, that every corner lies
-//! outside the plane named, and that the recorded distances are right within their recorded error
-//! and the rounding of the view's axes to 32 bits, which methods and rasterizer share.
-//! Of a primitive that faces away it asks that the eye lies strictly behind the primitive's plane, in exact
-//! arithmetic. Cost: O(events + primitives culled).
+//! A certificate is what a film recorded as evidence of a cull, or a decision that something is hidden.
+//!
+//! - *Outside a plane*: the plane, the box and its distance. The checker derives the planes anew from the Eye's definition, in f64, and
+//!   shares no arithmetic with [`crate::geometry::Frustum`]; it asks that the box holds every point it stands for, that every
+//!   corner lies outside the plane named, and that the recorded distances are right within their recorded error and the
+//!   rounding of the view's axes to 32 bits, which methods and rasterizer share.
+//! - *Facing away*: the eye lies strictly behind the primitive's plane, in exact arithmetic.
+//! - *Behind*, of a node or of an object whose occlusion was recorded: every pixel center's ray that meets its box meets a surface
+//!   of the whole scene first, and no primitive that lies in the box owns a pixel. The module `hidden` says how, and what is
+//!   allowed for rounding. Below a node that was proven hidden nothing is left to prove.
+//! - *Unseen*, of a primitive that was decided by itself: it owns no pixel.
+//!
+//! Cost: O(events + primitives culled), and of what is hidden the image once and O(pixels in the rectangle of each box).
+
+use std::cell::OnceCell;
 
 use glam::{DVec2, DVec3};
 
-use crate::culling::{Event, Field, Film, Value, Verdict};
+use super::hidden::Sight;
+use super::widened;
+use crate::culling::{Event, Field, Film, KnobValue, Value, Verdict};
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, ObjectId, PrimId, Space, Vector, View, orient2d, orient3d};
+use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Vector, View, orient2d, orient3d};
 use crate::index::Hierarchy;
+use crate::raster::Drawable;
 use crate::scene::Scene;
 
 /// Evidence that something cannot be seen.
@@ -48,6 +59,15 @@ pub enum Claim {
         /// Signed distance of the eye from its plane, world units, negative.
         eye_distance: f64,
     },
+    /// Surfaces that are shown lie before every part of its box.
+    Behind {
+        /// Least corner of the box.
+        box_min: Vec<f64>,
+        /// Greatest corner of the box.
+        box_max: Vec<f64>,
+    },
+    /// It owns no pixel.
+    Unseen,
 }
 
 /// Why a film or certificate was not accepted.
@@ -61,9 +81,41 @@ pub struct Rejection {
 }
 
 /// The certificates of a film, in order.
-pub fn certificates<S: Space>(film: &dyn Film<S>) -> Vec<Certificate> {
-    let noted = film.events().iter().enumerate().filter(|(_, e)| matches!(e, Event::Noted(_)));
-    noted.filter_map(|(i, _)| certificate(i + 1, &film.fields(i).1)).collect()
+pub fn certificates<S: Drawable>(film: &dyn Film<S>) -> Vec<Certificate> {
+    let at = |(i, event): (usize, &Event)| {
+        let step = i + 1;
+        let behind = |subject, bounds| Some(Certificate { step, subject, claim: behind(bounds) });
+        match *event {
+            Event::Noted(_) => {
+                let fields = film.fields(i).1;
+                hidden_object(&fields).map_or_else(
+                    || certificate(step, &fields),
+                    |object| behind(Subject::Object(object), Aabb::of(of_object(film.scene(), object).flat_map(|p| film.scene().prim_points(p)))),
+                )
+            }
+            Event::DecidedNode(node, Verdict::Hidden) => behind(Subject::Node(node), film.hierarchy().bounds(node)),
+            Event::DecidedPrim(prim, Verdict::Hidden) => Some(Certificate { step, subject: Subject::Prim(prim), claim: Claim::Unseen }),
+            _ => None,
+        }
+    };
+    film.events().iter().enumerate().filter_map(at).collect()
+}
+
+fn behind<V: Vector>(bounds: Aabb<V>) -> Claim {
+    let corner = |v: V| (0..V::AXES).map(|a| f64::from(v.get(a))).collect();
+    Claim::Behind { box_min: corner(bounds.min), box_max: corner(bounds.max) }
+}
+
+fn of_object<S: Drawable>(scene: &Scene<S>, object: ObjectId) -> impl Iterator<Item = PrimId> {
+    scene.live().iter().copied().filter(move |&p| scene.object_of(p) == object)
+}
+
+/// The object that a note says is occluded: by one occluder, or by several that it counts.
+fn hidden_object(fields: &[Field]) -> Option<ObjectId> {
+    let get = |name: &str| fields.iter().find(|f| f.name == name).map(|f| &f.value);
+    let Some(Value::Integer(object)) = get("object") else { return None };
+    let full = matches!(get("occlusion"), Some(Value::Word(word)) if word == "full") || get("members").is_some();
+    u32::try_from(*object).ok().filter(|_| full).map(ObjectId)
 }
 
 fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
@@ -93,14 +145,22 @@ fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
 }
 
 /// Checks every certificate of a film, and that nothing was called outside without one. Returns how many
-/// certificates it accepted.
+/// certificates it accepted. What lies below a node that was proven hidden is accepted with it.
 ///
 /// # Errors
 /// The first that does not hold.
-pub fn check_film<S: Space>(film: &dyn Film<S>) -> Result<usize, Rejection> {
-    let checker = Checker::new(film.scene(), film.hierarchy(), film.view());
+pub fn check_film<S: Drawable>(film: &dyn Film<S>) -> Result<usize, Rejection> {
+    let checker = Checker::of(film);
     let certificates = certificates(film);
+    let mut proven = vec![false; film.hierarchy().node_count()];
     for certificate in &certificates {
+        if let (Claim::Behind { .. }, Subject::Node(node)) = (&certificate.claim, certificate.subject) {
+            let above = std::iter::successors(Some(node), |n| film.hierarchy().parent(*n));
+            if above.into_iter().any(|n| proven[n.at()]) {
+                continue;
+            }
+            proven[node.at()] = true;
+        }
         checker.check(certificate)?;
     }
     let mut shown = certificates.iter().peekable();
@@ -130,9 +190,13 @@ pub fn check_film<S: Space>(film: &dyn Film<S>) -> Result<usize, Rejection> {
 }
 
 /// Checks certificates of one view of one scene.
-pub struct Checker<'a, S: Space> {
+pub struct Checker<'a, S: Drawable> {
     scene: &'a Scene<S>,
     hierarchy: &'a dyn Hierarchy<S>,
+    view: View<S>,
+    one_sided: bool,
+    /// Drawn when it is first asked for.
+    sight: OnceCell<Sight<'a, S>>,
     eye: DVec3,
     planes: Vec<Plane>,
 }
@@ -150,8 +214,14 @@ struct Plane {
 /// Half-ulps that an axis is off by: a difference, a length, a quotient and two products of it.
 const AXIS_HALF_ULPS: f64 = 8.0;
 
-impl<'a, S: Space> Checker<'a, S> {
-    /// Derives the planes of the view volume from the Eye.
+impl<'a, S: Drawable> Checker<'a, S> {
+    /// For the certificates of a film.
+    pub fn of(film: &'a dyn Film<S>) -> Self {
+        let one_sided = film.knobs().iter().any(|(knob, value)| knob.name == "backface-culling" && *value == KnobValue::Switch(true));
+        Self { one_sided, ..Self::new(film.scene(), film.hierarchy(), film.view()) }
+    }
+
+    /// Derives the planes of the view volume from the Eye. Primitives have two sides.
     pub fn new(scene: &'a Scene<S>, hierarchy: &'a dyn Hierarchy<S>, view: &View<S>) -> Self {
         let eye = &view.eye;
         let position = widened(eye.position);
@@ -179,7 +249,7 @@ impl<'a, S: Space> Checker<'a, S> {
         let rounding = forward.abs() * half_ulps;
         planes.push(Plane { name: "near", normal: forward, offset: -f64::from(eye.near), rounding });
         planes.push(Plane { name: "far", normal: -forward, offset: f64::from(eye.far), rounding });
-        Self { scene, hierarchy, eye: position, planes }
+        Self { scene, hierarchy, view: *view, one_sided: false, sight: OnceCell::new(), eye: position, planes }
     }
 
     /// Checks one certificate.
@@ -192,7 +262,11 @@ impl<'a, S: Space> Checker<'a, S> {
             (Claim::Beyond { plane, far_corner, error, box_min, box_max }, subject) => {
                 self.points(subject).and_then(|points| self.beyond(&points, plane, *far_corner, *error, &[box_min, box_max]))
             }
-            _ => Err("the subject is not in the scene, or cannot face away".into()),
+            (Claim::Unseen, Subject::Prim(prim)) if self.is_live(prim) => self.sight().unseen(prim),
+            (Claim::Behind { box_min, box_max }, subject @ (Subject::Node(_) | Subject::Object(_))) => {
+                self.prims(subject).and_then(|prims| self.behind(subject, prims, box_min, box_max))
+            }
+            _ => Err("the subject is not in the scene, or the claim cannot be made of it".into()),
         };
         checked.map_err(|why| Rejection { step: certificate.step, why })
     }
@@ -201,17 +275,46 @@ impl<'a, S: Space> Checker<'a, S> {
         prim.at() < self.scene.prim_count() && self.scene.corners(prim).is_some()
     }
 
+    fn sight(&self) -> &Sight<'a, S> {
+        self.sight.get_or_init(|| Sight::new(self.scene, &self.view, self.one_sided))
+    }
+
+    fn behind(&self, subject: Subject, mut prims: Vec<PrimId>, box_min: &[f64], box_max: &[f64]) -> Result<(), String> {
+        if box_min.len() != S::Vector::AXES || box_max.len() != S::Vector::AXES {
+            return Err("the box has another number of axes than the space".into());
+        }
+        let [low, high] = [box_min, box_max].map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
+        let holds = |p: PrimId| self.scene.prim_points(p).map(widened).all(|p| p.cmpge(low).all() && p.cmple(high).all());
+        // A primitive that crosses the border of a cell may stand with it and reach out of its box; an object never does.
+        let must_hold_all = matches!(subject, Subject::Object(_));
+        let of_node = |node: NodeId| (widened(self.hierarchy.bounds(node).min), widened(self.hierarchy.bounds(node).max));
+        if matches!(subject, Subject::Node(node) if of_node(node) != (low, high)) {
+            return Err("the box is not that of the node".into());
+        }
+        prims.sort_unstable();
+        for &prim in &prims {
+            if holds(prim) {
+                self.sight().unseen(prim)?;
+            } else if must_hold_all {
+                return Err("the box does not hold everything that it stands for".into());
+            }
+        }
+        self.sight().behind(low, high, &prims)
+    }
+
     /// Every point that a subject stands for.
     fn points(&self, subject: Subject) -> Result<Vec<DVec3>, String> {
-        let prims = match subject {
+        Ok(self.prims(subject)?.iter().flat_map(|&p| self.scene.prim_points(p)).map(widened).collect())
+    }
+
+    /// Every primitive that a subject stands for.
+    fn prims(&self, subject: Subject) -> Result<Vec<PrimId>, String> {
+        Ok(match subject {
             Subject::Node(node) if node.at() < self.hierarchy.node_count() => self.hierarchy.prims(node).to_vec(),
             Subject::Prim(prim) if self.is_live(prim) => vec![prim],
-            Subject::Object(object) if object.at() < self.scene.objects().len() => {
-                self.scene.live().iter().copied().filter(|&p| self.scene.object_of(p) == object).collect()
-            }
+            Subject::Object(object) if object.at() < self.scene.objects().len() => of_object(self.scene, object).collect(),
             other => return Err(format!("{other:?} is not in the scene")),
-        };
-        Ok(prims.iter().flat_map(|&p| self.scene.prim_points(p)).map(widened).collect())
+        })
     }
 
     fn beyond(&self, points: &[DVec3], plane: &str, far_corner: f64, error: f64, bounds: &[&Vec<f64>; 2]) -> Result<(), String> {
@@ -261,10 +364,6 @@ impl<'a, S: Space> Checker<'a, S> {
         }
         Ok(())
     }
-}
-
-fn widened<V: Vector>(v: V) -> DVec3 {
-    DVec3::from_array(std::array::from_fn(|a| if a < V::AXES { f64::from(v.get(a)) } else { 0.0 }))
 }
 
 fn flat(v: DVec3) -> DVec2 {

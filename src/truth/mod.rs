@@ -5,10 +5,13 @@
 
 pub mod certificate;
 mod flip;
+mod hidden;
 
 pub use flip::flip_mean;
 
-use crate::geometry::{PrimId, View, faces_away};
+use glam::DVec3;
+
+use crate::geometry::{PrimId, Vector, View, faces_away};
 use crate::raster::{Drawable, Options, Target, shade, visible};
 use crate::scene::Scene;
 
@@ -111,4 +114,8 @@ fn turns_away<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> bo
         *to = from;
     }
     faces_away::<S>(view.eye.position, &corners[..S::CORNERS])
+}
+
+fn widened<V: Vector>(v: V) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|a| if a < V::AXES { f64::from(v.get(a)) } else { 0.0 }))
 }
