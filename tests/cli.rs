@@ -241,6 +241,39 @@ fn a_bad_trace_is_refused_by_its_first_bad_line() {
 }
 
 #[test]
+fn a_trace_is_proven_and_an_altered_one_is_not() {
+    let here = folder("prove");
+    for (method, scene, more) in [
+        ("frustum", "boxes.obj", &ALONG[..]),
+        ("large-occluders", "boxes.obj", &["--random-views", "3", "--size", "64x48"]),
+        ("large-occluders", "walls.json", &["--path", "eyes"]),
+    ] {
+        let trace = done(&here, &with(&["step", scene, "--method", method], more));
+        fs::write(here.join("run.jsonl"), &trace).expect("written");
+        let said = done(&here, &["trace", "check", "run.jsonl", "--prove"]);
+        assert!(said.contains("valid") && said.contains("proven: ") && !said.contains("proven: 0"), "{method}: {said}");
+        // The last decision is another one, and the format still holds.
+        let at = trace.rfind("\"verdict\":\"").expect("a decision");
+        let altered = trace[..at].to_owned() + &trace[at..].replacen("\"verdict\":\"", "\"verdict\":\"not-", 1);
+        fs::write(here.join("altered.jsonl"), altered).expect("written");
+        done(&here, &["trace", "check", "altered.jsonl"]);
+        let said = refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
+        let line = trace[..at].matches('\n').count() + 1;
+        assert!(said.contains(&format!("line {line} is not what the method tells")), "{method}: {said}");
+        let cut = trace.trim_end().rfind('\n').expect("lines") + 1;
+        fs::write(here.join("altered.jsonl"), &trace[..cut]).expect("written");
+        refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
+        fs::write(here.join("altered.jsonl"), trace.clone() + trace[cut..].replace("\"frame\":", "\"frame\":9").as_str()).expect("written");
+        let said = refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
+        assert!(said.contains("what follows"), "{method}: {said}");
+    }
+    fs::write(here.join("boxes.obj"), boxes().replacen("v 0 ", "v 0.5 ", 1)).expect("written");
+    let trace = fs::read_to_string(here.join("run.jsonl")).expect("a trace").replacen("walls.json", "boxes.obj", 1);
+    fs::write(here.join("other.jsonl"), trace).expect("written");
+    assert!(refused(&here, &["trace", "check", "other.jsonl", "--prove"], 1).contains("not the scene of this trace"));
+}
+
+#[test]
 fn scenes_are_described() {
     let here = folder("info");
     let info = json(&done(&here, &["scene", "info", "boxes.obj", "--json"]));

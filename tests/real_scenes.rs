@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use cullscope::geometry::{Flat, Solid};
+use cullscope::culling::{Methods, Settings};
+use cullscope::geometry::{Flat, PrimId, Solid};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
+use cullscope::truth::Truth;
 
 fn home() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -24,11 +26,16 @@ fn flat(path: &Path) -> std::sync::Arc<Scene<Flat>> {
 }
 
 /// Triangles, objects and views in space; what SOURCE.txt and the files' own lists say.
-const SHIPPED: [(&str, usize, usize, usize); 7] = [
+const SHIPPED: [(&str, usize, usize, usize); 12] = [
+    ("box_outline", 16, 3, 48),
     ("freedoom_e1m1", 3_693, 135, 119),
     ("freedoom_e1m2", 7_786, 316, 120),
     ("freedoom_e1m5", 27_828, 1_055, 120),
     ("freedoom_p2_map12", 44_232, 1_707, 118),
+    ("joint_convex", 18, 3, 48),
+    ("joint_disconnected", 18, 3, 48),
+    ("joint_not_convex", 19, 3, 48),
+    ("tangent_planes", 16, 3, 48),
     ("terrain_jacksboro_65k", 65_322, 132, 120),
     ("tree_aspen_5k", 4_896, 46, 120),
     ("tree_oak_52k", 52_325, 551, 120),
@@ -42,6 +49,26 @@ fn shipped_models_load_whole() {
         assert_eq!((scene.objects().len(), scene.paths()[0].views.len()), (objects, views), "{name}");
         assert!(scene.materials().iter().all(|m| m.name != "default"), "{name}: every face has a material");
         assert!(scene.report().notes.iter().all(|n| !n.contains("material")), "{name}: {:?}", scene.report());
+    }
+}
+
+/// The scenes of Coorg and Teller's figures in space say what the figures say of the first view.
+#[test]
+fn scenes_of_figures_show_what_the_figures_show() {
+    // How many triangles of the box are drawn: parts of it may lie behind one occluder.
+    let some = 1..=12;
+    for (name, drawn) in [("joint_convex", 0..=0), ("joint_not_convex", some.clone()), ("joint_disconnected", some), ("tangent_planes", 0..=0)] {
+        let scene = solid(&home().join("scenes3d").join(name).join(format!("{name}.obj")));
+        let views = &scene.paths()[0].views;
+        let of_box = |prims: &[PrimId]| prims.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "T").count();
+        let mut truth = Truth::new(&scene, false, 1, [1.0; 3]);
+        let method = <Solid as Methods>::method("large-occluders").expect("a method");
+        let mut run = method.ready(&scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
+        assert_eq!(of_box(&truth.look(&scene, &views[0])), 0, "{name}: the box is hidden");
+        let of_box_drawn = of_box(&run.cull(&views[0]).prims);
+        assert!(drawn.contains(&of_box_drawn), "{name}: {of_box_drawn} triangles of the box are drawn");
+        // Farther on the box comes into sight.
+        assert!(views.iter().any(|v| of_box(&truth.look(&scene, v)) > 0), "{name}");
     }
 }
 

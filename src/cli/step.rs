@@ -14,7 +14,7 @@ use crate::trace::Detail;
 use crate::trace::format::{Header, write_film, write_header};
 
 /// Events of a frame that are recorded before the rest is only counted.
-const FILM_CAP: usize = 10_000_000;
+pub(super) const FILM_CAP: usize = 10_000_000;
 
 #[derive(clap::Args)]
 #[command(

@@ -1,27 +1,116 @@
-//! `cullscope trace check`: whether a recorded run keeps to the trace format.
+//! `cullscope trace check`: whether a recorded run keeps to the trace format, and on demand whether it is true.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader, Read, Write};
+use std::sync::Arc;
 
-use super::{CliError, error::reason, output};
-use crate::trace::format;
+use serde_json::Value as Json;
+
+use super::methods::find;
+use super::progress::Bar;
+use super::step::FILM_CAP;
+use super::{CliError, World, error::reason, output, scene};
+use crate::culling::Settings;
+use crate::geometry::ViewPath;
+use crate::scene::{AnyScene, LoadOptions, Progress, Scene, parse_views};
+use crate::trace::Detail;
+use crate::trace::format::{self, Header, write_film, write_header};
+use crate::truth::certificate::check_film;
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
     /// Validate a trace and name its first bad line
-    #[command(after_help = "Example:\n  cullscope trace check run.jsonl")]
+    #[command(after_help = "Example:\n  cullscope trace check run.jsonl\n  cullscope trace check run.jsonl --prove")]
     Check {
         /// A trace, as `cullscope step` writes it
         #[arg(value_name = "FILE")]
         file: String,
+        /// Run its method again on its scene: every line must be the same, and what was called outside or hidden must be
+        #[arg(long)]
+        prove: bool,
     },
 }
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
-    let Command::Check { file } = command;
-    let opened = File::open(file).map_err(|e| CliError::work(file, reason(&e)))?;
-    let summary = format::check(BufReader::new(opened)).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))?;
+    let Command::Check { file, prove } = command;
+    let summary = format::check(read(file)?).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))?;
     let (method, scene) = (&summary.header.method, &summary.header.scene);
     let text = format!("{file}: valid: {} events in {} frames of `{method}` on {scene}\n", summary.events, summary.frames);
-    output::print(text.as_bytes())
+    if !prove {
+        return output::print(text.as_bytes());
+    }
+    let proven = match scene::open(scene, &LoadOptions::default())? {
+        AnyScene::Flat(scene) => proven(file, &summary.header, &scene),
+        AnyScene::Solid(scene) => proven(file, &summary.header, &scene),
+    };
+    output::print((text + &proven?).as_bytes())
+}
+
+fn read(file: &str) -> Result<BufReader<File>, CliError> {
+    File::open(file).map(BufReader::new).map_err(|e| CliError::work(file, reason(&e)))
+}
+
+/// Runs what the header says, compares it with the file line by line, and checks the certificates of every frame.
+fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Result<String, CliError> {
+    if header.more.get("scene_sha256").is_some_and(|hash| *hash != scene.hash_hex()) {
+        return Err(CliError::work(file, format!("{} is not the scene of this trace any more", header.scene)));
+    }
+    let text = |value: &Json| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    let settings = Settings(header.params.iter().map(|(key, value)| (key.clone(), text(value))).collect());
+    let view = Json::Object(header.view.clone()).to_string();
+    let path: ViewPath<S> = parse_views(view.as_bytes(), file, scene.origin())?;
+    let bar = Bar::new();
+    let mut run = find::<S>(&header.method)?.ready(scene, &settings, &bar)?.ok_or(CliError::Interrupted)?;
+    let detail = if header.more.get("detail").is_some_and(|d| d == "coarse") { Detail::Coarse } else { Detail::Full };
+    let mut same = Same { theirs: read(file)?, line: 1, buffer: Vec::new() };
+    let differs = |e: io::Error| CliError::work(file, reason(&e)).with_help("the trace was made by another version, with a preprocess, or altered");
+    write_header(header, &mut same).map_err(differs)?;
+    let (mut certificates, mut lost) = (0, 0);
+    for (frame, view) in path.views.iter().enumerate() {
+        bar.report(frame as f32 / path.views.len() as f32, "proving");
+        if bar.cancelled() {
+            return Err(CliError::Interrupted);
+        }
+        let film = run.record(view, FILM_CAP).film;
+        certificates += check_film(&*film).map_err(|e| CliError::work(format!("{file}: frame {frame}"), e.to_string()))?;
+        lost += film.lost();
+        write_film(&*film, frame as u64, detail, &mut same, &|_| false).map_err(differs)?;
+    }
+    same.end().map_err(differs)?;
+    let unseen = if lost > 0 { format!("; {lost} events past the {FILM_CAP} of a frame were not looked at") } else { String::new() };
+    Ok(format!("{file}: proven: {certificates} certificates in {} frames{unseen}\n", path.views.len()))
+}
+
+/// Takes what is written and asks that a file holds the same bytes.
+struct Same<R> {
+    theirs: R,
+    line: u64,
+    buffer: Vec<u8>,
+}
+
+impl<R: Read> Same<R> {
+    fn differs(&self, what: &str) -> io::Error {
+        io::Error::other(format!("line {} {what}", self.line))
+    }
+    /// That nothing follows.
+    fn end(mut self) -> io::Result<()> {
+        if self.theirs.read(&mut [0])? == 0 { Ok(()) } else { Err(self.differs("and what follows is not told by the method")) }
+    }
+}
+
+impl<R: Read> Write for Same<R> {
+    fn write(&mut self, ours: &[u8]) -> io::Result<usize> {
+        self.buffer.resize(ours.len(), 0);
+        let read = self.theirs.read_exact(&mut self.buffer);
+        let equal = ours.iter().zip(&self.buffer).take_while(|(a, b)| a == b).count();
+        self.line += ours[..equal].iter().filter(|b| **b == b'\n').count() as u64;
+        match read {
+            Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => Err(e),
+            Ok(()) if equal == ours.len() => Ok(equal),
+            _ => Err(self.differs("is not what the method tells")),
+        }
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

@@ -179,3 +179,74 @@ impl<'a, S: Drawable> Sight<'a, S> {
         (if slope.is_finite() { slope } else { f64::INFINITY }, nearest)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+    use crate::geometry::{Eye, Flat, Solid};
+    use crate::scene::Parts;
+
+    /// A wall 4 m before the eye that hides everything behind it within 14 degrees, and a thing behind it.
+    fn flatland() -> (Scene<Flat>, View<Flat>) {
+        let points = [[-1.0, 4.0], [1.0, 4.0], [-0.5, 8.0], [0.5, 8.0]].map(Vec2::from).to_vec();
+        let scene = Scene::new(Parts::simple("wall", points, vec![[1, 0], [3, 2]])).expect("a scene");
+        let eye = Eye { position: Vec2::ZERO, target: Vec2::Y, up: Vec2::X, fov: 1.5, near: 0.1, far: 100.0 };
+        (scene, View { eye, width: 256, height: 1 })
+    }
+
+    /// The same in space, looking along −z.
+    fn space() -> (Scene<Solid>, View<Solid>) {
+        let corner = |half: f32, z: f32| [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]].map(Vec3::from);
+        let points = [corner(1.0, -4.0), corner(0.5, -8.0)].concat();
+        let scene = Scene::new(Parts::simple("wall", points, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])).expect("a scene");
+        let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0, near: 0.1, far: 100.0 };
+        (scene, View { eye, width: 120, height: 90 })
+    }
+
+    /// Boxes by half width, nearest and farthest depth, aside by how much; and whether each is hidden.
+    const BOXES: [([f64; 4], bool); 10] = [
+        ([0.5, 6.0, 8.0, 0.0], true),
+        ([1.9, 8.0, 9.0, 0.0], true),
+        ([2.3, 8.0, 9.0, 0.0], false),
+        ([0.5, 8.0, 9.0, 3.0], false),
+        ([0.5, 2.0, 3.0, 0.0], false),
+        ([0.2, 3.0, 6.0, 0.0], false),
+        ([0.2, 4.0, 6.0, 0.0], true),
+        ([0.2, -1.0, 1.0, 0.0], false),
+        // Out of view, behind the eye and beside the image: no ray meets it.
+        ([0.5, -9.0, -8.0, 0.0], true),
+        ([0.5, 8.0, 9.0, 40.0], true),
+    ];
+
+    #[test]
+    fn boxes_are_hidden_where_every_ray_meets_the_wall_first() {
+        let ((flat, flat_view), (solid, solid_view)) = (flatland(), space());
+        let (line, image) = (Sight::new(&flat, &flat_view, false), Sight::new(&solid, &solid_view, false));
+        for ([half, near, far, aside], hidden) in BOXES {
+            let (low, high) = (DVec3::new(aside - half, near, 0.0), DVec3::new(aside + half, far, 0.0));
+            assert_eq!(line.behind(low, high, &[]).is_ok(), hidden, "flatland: {half} from {near} to {far}, {aside} aside");
+            let (low, high) = (DVec3::new(aside - half, -half, -far), DVec3::new(aside + half, half, -near));
+            assert_eq!(image.behind(low, high, &[]).is_ok(), hidden, "space: {half} from {near} to {far}, {aside} aside");
+        }
+        // A wall does not hide the box that it is itself the front of.
+        let wall = [PrimId(0), PrimId(1)];
+        assert!(line.behind(DVec3::new(-0.2, 4.0, 0.0), DVec3::new(0.2, 6.0, 0.0), &wall[..1]).is_err());
+        assert!(image.behind(DVec3::new(-0.2, -0.2, -6.0), DVec3::new(0.2, 0.2, -4.0), &wall).is_err());
+        assert!(line.unseen(PrimId(0)).is_err() && line.unseen(PrimId(1)).is_ok());
+        assert!(image.unseen(PrimId(0)).is_err() && image.unseen(PrimId(2)).is_ok());
+    }
+
+    #[test]
+    fn what_faces_away_hides_nothing_where_sides_matter() {
+        let (mut scene, view) = flatland();
+        let (low, high) = (DVec3::new(-0.5, 6.0, 0.0), DVec3::new(0.5, 8.0, 0.0));
+        assert!(Sight::new(&scene, &view, true).behind(low, high, &[]).is_ok());
+        let mut parts = scene.clone().into_parts();
+        parts.prims[0] = Some([0, 1]);
+        scene = Scene::new(parts).expect("a scene");
+        assert!(Sight::new(&scene, &view, true).behind(low, high, &[]).is_err());
+        assert!(Sight::new(&scene, &view, false).behind(low, high, &[]).is_ok());
+    }
+}

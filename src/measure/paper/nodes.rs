@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::walk::{Checked, Site, stop_or_go};
+use super::walk::Both;
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
 use crate::culling::{Event, Run, Verdict};
 use crate::drawing::{Plot, Role, Series, Shape};
@@ -47,15 +47,11 @@ fn in_frustum<S: World>(run: &dyn Run<S>, view: &View<S>) -> usize {
 }
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
-    let mut site = Site::new(scene, setup);
-    let mut frustum = site.frustum(&part(progress, 0.0, 0.1))?;
-    let mut occlusion = site.occlusion(&[], &part(progress, 0.1, 0.4))?;
-    let (views, rest) = (site.spread(), part(progress, 0.4, 1.0));
-    let mut checked = Checked::default();
+    let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.4)?;
+    let views = site.spread();
     // By frame: entered by frustum culling, entered, in the frustum, tested.
     let mut counts: Vec<[f64; 4]> = Vec::with_capacity(views.len());
-    for (i, view) in views.iter().enumerate() {
-        stop_or_go(&rest, i as f32 / views.len() as f32, "counting nodes")?;
+    let checked = site.each(&views, &part(progress, 0.4, 1.0), "counting nodes", |view| {
         let recording = occlusion.record(view, usize::MAX);
         let (mut entered, mut outside) = (0, 0);
         for event in recording.film.events() {
@@ -64,10 +60,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         }
         let before = frustum.count(view).1.nodes_entered as f64;
         counts.push([before, entered as f64, in_frustum(&*occlusion, view) as f64, (entered - outside) as f64]);
-        if site.is_checked(i) {
-            checked.add(site.missed(view, &recording.list.prims));
-        }
-    }
+        recording.list.prims
+    })?;
     let about = site.about();
     let sum = |at: usize| counts.iter().map(|c| c[at]).sum::<f64>();
     let mean = |at: usize| sum(at) / counts.len() as f64;

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::walk::{Checked, Moment, Site, Stretch, stop_or_go, times};
+use super::walk::{Moment, Site, Stretch, times};
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, Setup, Sweep, World, by_scene, column, part};
 use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
@@ -78,16 +78,13 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     for (i, (one, cull_ms)) in tried.iter_mut().zip(cull_ms).enumerate() {
         let step = part(progress, 0.65 + i as f32 * 0.025, 0.675 + i as f32 * 0.025);
         one.run.forget();
-        let (mut drawn, mut active, mut checked) = (0, 0, Checked::default());
-        for (k, view) in views.iter().enumerate() {
-            stop_or_go(&step, k as f32 / views.len() as f32, "culling")?;
+        let (mut drawn, mut active) = (0, 0);
+        let checked = site.each(&views, &step, "culling", |view| {
             let (list, tally) = one.run.count(view);
             drawn += list.prims.len();
             active += tally.named().get("occluders_active").copied().unwrap_or(0);
-            if site.is_checked(k) {
-                checked.add(site.missed(view, &list.prims));
-            }
-        }
+            list.prims
+        })?;
         let percent = 100.0 * drawn as f64 / all;
         let numbers = [f64::from(one.value), active as f64 / views.len() as f64, before, percent, cull_ms, one.build_ms].map(Cell::from);
         let names = [about.name.as_str().into(), one.parameter.into()];

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::walk::{Checked, Site, stop_or_go};
+use super::walk::Both;
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::table::{Cell, Table};
@@ -29,20 +29,15 @@ pub const SWEEP: Sweep = Sweep {
 const PAPER: [(&str, f64, f64, f64); 2] = [("Soda", 134_832.0, 19.7, 2.6), ("City", 108_841.0, 36.9, 5.6)];
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
-    let mut site = Site::new(scene, setup);
-    let mut frustum = site.frustum(&part(progress, 0.0, 0.1))?;
-    let mut occlusion = site.occlusion(&[], &part(progress, 0.1, 0.4))?;
-    let (views, rest) = (site.spread(), part(progress, 0.4, 1.0));
-    let (mut drawn, mut checked) = ([0; 2], Checked::default());
-    for (i, view) in views.iter().enumerate() {
-        stop_or_go(&rest, i as f32 / views.len() as f32, "culling")?;
+    let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.4)?;
+    let views = site.spread();
+    let mut drawn = [0; 2];
+    let checked = site.each(&views, &part(progress, 0.4, 1.0), "culling", |view| {
         drawn[0] += frustum.cull(view).prims.len();
         let list = occlusion.cull(view).prims;
         drawn[1] += list.len();
-        if site.is_checked(i) {
-            checked.add(site.missed(view, &list));
-        }
-    }
+        list
+    })?;
     let percent = drawn.map(|n| 100.0 * n as f64 / (views.len() * scene.live().len()) as f64);
     let ratio = (drawn[1] > 0).then(|| percent[0] / percent[1]);
     let about = site.about();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::walk::{Moment, Site, times};
+use super::walk::{Both, Moment, times};
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
 use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
@@ -47,9 +47,7 @@ fn row(source: &str, scene: &str, [frustum_cull, frustum_draw, cull, draw]: [f64
 }
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
-    let mut site = Site::new(scene, setup);
-    let mut frustum = site.frustum(&part(progress, 0.0, 0.05))?;
-    let mut occlusion = site.occlusion(&[], &part(progress, 0.05, 0.2))?;
+    let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.2)?;
     let stretches = site.stretches(WALKING_STEP_M);
     let walked: Vec<View<S>> = stretches.iter().flat_map(|s| s.frames.iter().copied()).collect();
     let mut target = Target::default();

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{BASELINE, METHOD, Measured, PaperError, Setup, World, method};
+use super::{BASELINE, METHOD, Measured, PaperError, Setup, World, method, part};
 use crate::culling::{Run, Settings};
 use crate::geometry::{PrimId, Vector, View, ViewPath};
 use crate::measure::timing::median;
@@ -43,6 +43,23 @@ pub struct Stretch<S: World> {
 pub struct Checked {
     pub missed: usize,
     pub views: usize,
+}
+
+/// A scene with both methods ready on it.
+pub struct Both<'a, S: World> {
+    pub site: Site<'a, S>,
+    pub frustum: Box<dyn Run<S>>,
+    pub occlusion: Box<dyn Run<S>>,
+}
+
+impl<'a, S: World> Both<'a, S> {
+    /// Builds what both need; it is `done` of `progress` then.
+    pub fn new(scene: &'a Arc<Scene<S>>, setup: &'a Setup, progress: &dyn Progress, done: f32) -> Result<Self, PaperError> {
+        let site = Site::new(scene, setup);
+        let frustum = site.frustum(&part(progress, 0.0, 0.25 * done))?;
+        let occlusion = site.occlusion(&[], &part(progress, 0.25 * done, done))?;
+        Ok(Self { site, frustum, occlusion })
+    }
 }
 
 impl<'a, S: World> Site<'a, S> {
@@ -106,22 +123,28 @@ impl<'a, S: World> Site<'a, S> {
 
     /// Compares answers to some of these views with the truth; the method walks all of them.
     pub fn check(&mut self, run: &mut dyn Run<S>, views: &[View<S>], progress: &dyn Progress) -> Result<Checked, PaperError> {
+        self.each(views, progress, "comparing with the truth", |view| run.cull(view).prims)
+    }
+    /// Asks for the answer to each view, which is `what` is done, and compares some of them with the truth.
+    pub fn each(
+        &mut self,
+        views: &[View<S>],
+        progress: &dyn Progress,
+        what: &'static str,
+        mut answer: impl FnMut(&View<S>) -> Vec<PrimId>,
+    ) -> Result<Checked, PaperError> {
         let mut checked = Checked::default();
         for (i, view) in views.iter().enumerate() {
-            stop_or_go(progress, i as f32 / views.len() as f32, "comparing with the truth")?;
-            let drawn = run.cull(view).prims;
-            if self.is_checked(i) {
+            stop_or_go(progress, i as f32 / views.len() as f32, what)?;
+            let drawn = answer(view);
+            if self.setup.check_every > 0 && i.is_multiple_of(self.setup.check_every) {
                 checked.add(self.missed(view, &drawn));
             }
         }
         Ok(checked)
     }
-    /// Whether the answer to the `i`th frame is compared with the truth.
-    pub fn is_checked(&self, i: usize) -> bool {
-        self.setup.check_every > 0 && i.is_multiple_of(self.setup.check_every)
-    }
     /// How many primitives of the item buffer were not drawn.
-    pub fn missed(&mut self, view: &View<S>, drawn: &[PrimId]) -> usize {
+    fn missed(&mut self, view: &View<S>, drawn: &[PrimId]) -> usize {
         let mut kept = vec![false; self.scene.prim_count()];
         drawn.iter().for_each(|p| kept[p.at()] = true);
         self.truth.look(self.scene, view).iter().filter(|p| !kept[p.at()]).count()
@@ -135,7 +158,7 @@ impl<'a, S: World> Site<'a, S> {
 }
 
 impl Checked {
-    pub fn add(&mut self, missed: usize) {
+    fn add(&mut self, missed: usize) {
         self.missed += missed;
         self.views += 1;
     }
@@ -146,7 +169,7 @@ impl Checked {
 }
 
 /// Says how far the work is, and stops it if nobody wants it any more.
-pub fn stop_or_go(progress: &dyn Progress, fraction: f32, what: &'static str) -> Result<(), PaperError> {
+fn stop_or_go(progress: &dyn Progress, fraction: f32, what: &'static str) -> Result<(), PaperError> {
     progress.report(fraction, what);
     if progress.cancelled() { Err(PaperError::Cancelled) } else { Ok(()) }
 }
