@@ -29,6 +29,10 @@ id!(
     NodeId
 );
 id!(
+    /// A cell of a tessellation.
+    CellId
+);
+id!(
     /// An object of a scene.
     ObjectId
 );

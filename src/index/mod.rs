@@ -3,6 +3,7 @@
 mod delaunay;
 mod kd_tree;
 mod octree;
+pub mod tessellation;
 mod whole;
 
 pub use delaunay::{Delaunay, Tetrahedron};

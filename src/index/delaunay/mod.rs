@@ -16,7 +16,6 @@ use glam::{DVec3, Vec3};
 
 use self::build::{Builder, Cell};
 use self::sign::Signs;
-use crate::geometry::orient3d;
 
 /// No tetrahedron: what lies beyond a face of the convex hull.
 const NONE: u32 = u32::MAX;
@@ -43,15 +42,6 @@ impl Tetrahedron {
     pub fn face(&self, face: usize) -> [u32; 3] {
         FACES[face].map(|k| self.vertices[k])
     }
-}
-
-/// Where a point lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In this tetrahedron, its boundary included.
-    Inside(u32),
-    /// Outside the convex hull, beyond a face of this tetrahedron.
-    Beyond(u32),
 }
 
 /// A frozen Delaunay triangulation.
@@ -84,28 +74,6 @@ impl Delaunay {
     /// Points that were left out, each with the point at the same place that stands for it.
     pub fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
-    }
-    /// A corner of a tetrahedron.
-    #[inline]
-    pub fn corner(&self, tetrahedron: u32, vertex: usize) -> Vec3 {
-        self.points[self.tetrahedra[tetrahedron as usize].vertices[vertex] as usize]
-    }
-
-    /// Walks from tetrahedron `start` to where a point lies; `None` if there are no tetrahedra. Exact.
-    /// Cost: O(∛n) steps for points as scenes have them.
-    pub fn locate(&self, point: Vec3, start: u32) -> Option<Place> {
-        let mut at = start;
-        self.tetrahedra.get(at as usize)?;
-        loop {
-            let tetrahedron = &self.tetrahedra[at as usize];
-            let beyond = |face: &usize| {
-                let [a, b, c] = tetrahedron.face(*face).map(|v| self.points[v as usize].as_dvec3());
-                orient3d(a, b, c, point.as_dvec3()) < 0.0
-            };
-            let Some(face) = (0..4).find(beyond) else { return Some(Place::Inside(at)) };
-            let Some(next) = tetrahedron.neighbor(face) else { return Some(Place::Beyond(at)) };
-            at = next;
-        }
     }
 }
 

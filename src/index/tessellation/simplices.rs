@@ -1,0 +1,188 @@
+//! Cells that are simplices: the Delaunay triangulation of perturbed cell centers.
+//!
+//! Klosowski and Silva 2000, Section 4.3. The centers of an octree's leaves lie on a lattice; they are moved at random, by a
+//! seed. Departure: the corners of the region are added, so that the cells cover the whole scene and not only the convex
+//! hull of the centers; what reaches beyond that hull would belong to no cell.
+
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
+
+use super::{Adjacency, BoxCells, Cellular, Neighbor, Tessellation};
+use crate::geometry::{Aabb, CellId, Vector};
+
+/// No neighbor.
+pub(super) const NONE: u32 = u32::MAX;
+/// A center is moved by at most this share of its cell's size along each axis.
+const JITTER: f32 = 0.125;
+/// The vertices of the face opposite each vertex, so that the cell's inside is in front of the face.
+const FACES: [[[usize; 3]; 4]; 2] = [[[1, 2, 0], [2, 0, 0], [0, 1, 0], [0, 0, 0]], [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]]];
+
+/// A triangle (the first three entries) or a tetrahedron, positively oriented.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Simplex {
+    /// Numbers of its points.
+    pub vertices: [u32; 4],
+    /// The simplex beyond the face opposite each vertex; [`u32::MAX`] if there is none.
+    pub neighbors: [u32; 4],
+}
+
+/// Simplices that fill a convex region.
+#[derive(Clone, Debug)]
+pub struct SimplexCells<S: Cellular> {
+    points: Vec<S::Vector>,
+    cells: Vec<Simplex>,
+    pub(super) adjacency: Adjacency<S::Vector>,
+}
+
+impl<S: Cellular> SimplexCells<S> {
+    /// Corners of a simplex.
+    const CORNERS: usize = S::Vector::AXES + 1;
+
+    /// The Delaunay triangulation of the centers of boxes, moved at random. `None` when cancelled.
+    pub fn of_centers(boxes: &BoxCells<S::Vector>, seed: u32, cancelled: &dyn Fn() -> bool) -> Option<Self> {
+        let mut rng = Pcg32::new(seed.into(), 7);
+        let mut share = || ((rng.next_u32() >> 8) as f32 / (1u32 << 23) as f32 - 1.0) * JITTER;
+        let mut points: Vec<S::Vector> = boxes.region().corners().collect();
+        for cell in (0..Tessellation::<S>::count(boxes) as u32).map(CellId) {
+            let size = Tessellation::<S>::bounds(boxes, cell).size();
+            points.push(Tessellation::<S>::center(boxes, cell) + S::Vector::from_fn(|a| size.get(a) * share()));
+        }
+        let cells = S::triangulate(&points, cancelled)?;
+        Some(Self::of(points, cells))
+    }
+    fn of(points: Vec<S::Vector>, cells: Vec<Simplex>) -> Self {
+        let mut made = Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
+        let mut pairs = Vec::with_capacity(made.cells.len() * Self::CORNERS);
+        for (cell, simplex) in made.cells.iter().enumerate() {
+            for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
+                // Face normals point inside.
+                let normal = -S::normal(&made.face(simplex, face)[..S::CORNERS]);
+                let unit = normal * (1.0 / normal.length().max(f32::MIN_POSITIVE));
+                pairs.push((CellId(cell as u32), Neighbor { cell: CellId(simplex.neighbors[face]), normal: unit }));
+            }
+        }
+        made.adjacency = Adjacency::new(made.cells.len(), pairs);
+        made
+    }
+    /// Points and simplices, for [`SimplexCells::of_tables`].
+    pub fn tables(&self) -> (&[S::Vector], &[Simplex]) {
+        (&self.points, &self.cells)
+    }
+    /// The cells of [`SimplexCells::tables`]; `None` if they are not a triangulation's: numbers out of range, a cell that is
+    /// not positive, faces that do not match.
+    pub fn of_tables(points: Vec<S::Vector>, cells: Vec<Simplex>) -> Option<Self> {
+        let in_range = |c: &Simplex| {
+            let corners = (0..Self::CORNERS).all(|i| (c.vertices[i] as usize) < points.len());
+            corners && (0..Self::CORNERS).all(|i| c.neighbors[i] == NONE || (c.neighbors[i] as usize) < cells.len())
+        };
+        if cells.is_empty() || !points.iter().all(|p| p.is_finite()) || !cells.iter().all(in_range) {
+            return None;
+        }
+        let made = Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
+        let sound = made.cells.iter().enumerate().all(|(cell, c)| made.is_positive(c) && (0..Self::CORNERS).all(|f| made.matches(cell as u32, c, f)));
+        sound.then(|| Self::of(made.points, made.cells))
+    }
+    fn is_positive(&self, cell: &Simplex) -> bool {
+        let [face, last] = [self.face(cell, Self::CORNERS - 1), [self.points[cell.vertices[Self::CORNERS - 1] as usize]; 3]];
+        S::side(&face[..S::CORNERS], last[0]) > 0.0
+    }
+    /// Whether the neighbor across a face has that face too, and knows its neighbor.
+    fn matches(&self, cell: u32, simplex: &Simplex, face: usize) -> bool {
+        let Some(other) = self.cells.get(simplex.neighbors[face] as usize) else { return true };
+        let Some(back) = (0..Self::CORNERS).find(|k| other.neighbors[*k] == cell) else { return false };
+        let others = |s: &Simplex, without: usize| {
+            let mut list: Vec<u32> = (0..Self::CORNERS).filter(|k| *k != without).map(|k| s.vertices[k]).collect();
+            list.sort_unstable();
+            list
+        };
+        others(simplex, face) == others(other, back)
+    }
+
+    /// The corners of a face, of which the first `S::CORNERS` count.
+    #[inline]
+    fn face(&self, cell: &Simplex, face: usize) -> [S::Vector; 3] {
+        FACES[S::Vector::AXES - 2][face].map(|k| self.points[cell.vertices[k] as usize])
+    }
+    /// The exact sign of the side of a face on which a point lies; positive inside.
+    #[inline]
+    fn side(&self, cell: &Simplex, face: usize, point: S::Vector) -> f64 {
+        S::side(&self.face(cell, face)[..S::CORNERS], point)
+    }
+    pub(super) fn corners(&self, cell: CellId) -> [S::Vector; 4] {
+        let vertices = self.cells[cell.at()].vertices;
+        std::array::from_fn(|k| self.points[vertices[if k < Self::CORNERS { k } else { 0 }] as usize])
+    }
+}
+
+impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
+    fn count(&self) -> usize {
+        self.cells.len()
+    }
+    fn bounds(&self, cell: CellId) -> Aabb<S::Vector> {
+        Aabb::of(self.corners(cell))
+    }
+    fn center(&self, cell: CellId) -> S::Vector {
+        let corners = self.corners(cell);
+        corners[..Self::CORNERS].iter().fold(S::Vector::default(), |sum, p| sum + *p * (1.0 / Self::CORNERS as f32))
+    }
+    fn contains(&self, cell: CellId, point: S::Vector) -> bool {
+        let simplex = &self.cells[cell.at()];
+        (0..Self::CORNERS).all(|face| self.side(simplex, face, point) >= 0.0)
+    }
+    fn neighbors(&self, cell: CellId) -> &[Neighbor<S::Vector>] {
+        self.adjacency.of(cell)
+    }
+    /// Walks through faces that have the point beyond them. This ends in a Delaunay triangulation; others come from damaged
+    /// files only, and there the number of steps ends it.
+    fn locate(&self, point: S::Vector, near: CellId) -> Option<CellId> {
+        let mut at = near;
+        for _ in 0..=self.cells.len() {
+            let simplex = &self.cells[at.at()];
+            let Some(face) = (0..Self::CORNERS).find(|face| self.side(simplex, *face, point) < 0.0) else { return Some(at) };
+            if simplex.neighbors[face] == NONE {
+                return None;
+            }
+            at = CellId(simplex.neighbors[face]);
+        }
+        None
+    }
+    fn leaves_into(&self, from: CellId, into: CellId, point: S::Vector) -> bool {
+        let simplex = &self.cells[from.at()];
+        let center = Tessellation::<S>::center(self, from);
+        let way = point - center;
+        // When the way meets the plane of each face; parts of 1.
+        let exit = |face: usize| {
+            let corners = self.face(simplex, face);
+            let inward = S::normal(&corners[..S::CORNERS]);
+            let speed = -inward.dot(way);
+            if speed > 0.0 { inward.dot(center - corners[0]) / speed } else { f32::INFINITY }
+        };
+        let first = (0..Self::CORNERS).map(exit).fold(f32::INFINITY, f32::min);
+        first >= 1.0 || (0..Self::CORNERS).any(|face| simplex.neighbors[face] == into.0 && exit(face) == first)
+    }
+    fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>) {
+        let start = to.len();
+        to.push(self.locate(prim[0], near).unwrap_or(near));
+        // The cells that meet a connected set hang together by faces.
+        let mut seen = start;
+        while seen < to.len() {
+            let at = to[seen];
+            seen += 1;
+            let simplex = self.cells[at.at()];
+            for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
+                let next = CellId(simplex.neighbors[face]);
+                let reaches = || prim.iter().any(|p| self.side(&simplex, face, *p) <= 0.0);
+                if !to[start..].contains(&next) && reaches() && S::meets_simplex(prim, &self.corners(next)) {
+                    to.push(next);
+                }
+            }
+        }
+    }
+    fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]> {
+        let corners = self.corners(cell);
+        (0..Self::CORNERS).flat_map(|i| (i + 1..Self::CORNERS).map(move |k| [corners[i], corners[k]])).collect()
+    }
+    fn bytes(&self) -> usize {
+        self.points.len() * size_of::<S::Vector>() + self.cells.len() * size_of::<Simplex>() + self.adjacency.bytes()
+    }
+}
