@@ -109,7 +109,7 @@ fn methods_are_listed_with_their_parameters() {
     let listed = json(&done(&here, &["methods", "--json"]));
     let methods = listed["methods"].as_array().expect("a list");
     let names: Vec<_> = methods.iter().map(|m| m["key"].as_str().expect("a key")).collect();
-    assert_eq!(names, ["z-buffer", "frustum", "centroid", "large-occluders", "hierarchical-z"]);
+    assert_eq!(names, ["z-buffer", "frustum", "centroid", "large-occluders", "hierarchical-z", "layered-projection"]);
     for method in methods {
         for param in method["params"].as_array().expect("a list") {
             assert_eq!(keys(param), ["default", "meaning", "name", "range", "source", "type", "unit"]);

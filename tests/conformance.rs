@@ -258,11 +258,13 @@ fn films_replay_in_space() {
 /// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise
 /// while the scenes stay the same. (Before `box_and_objects` and
 /// `thin_slabs` came in `frustum` in flatland had 0.648 and `large-occluders` 0.81.)
-const FLOORS: [(&str, &str, f64); 10] = [
+const FLOORS: [(&str, &str, f64); 12] = [
     ("hierarchical-z", "flatland", 0.35),
     ("hierarchical-z", "space", 0.5),
     ("large-occluders", "flatland", 0.756),
     ("large-occluders", "space", 0.68),
+    ("layered-projection", "flatland", 0.9),
+    ("layered-projection", "space", 0.9),
     ("z-buffer", "flatland", 0.0),
     ("z-buffer", "space", 0.0),
     ("frustum", "flatland", 0.623),

@@ -285,12 +285,12 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
             Event::Line(i) => format!("Line {}: {}", M::CARD.code[i as usize].label, M::CARD.code[i as usize].text.trim()),
             Event::FrameBegan => format!("A frame of {} begins: nothing is decided yet.", M::CARD.name),
             Event::Entered(n) => {
-                let (below, level) = (counted::<S>(self.index.prims(n).len()), self.index.level(n));
+                let (below, level) = (counted::<S>(self.index.held(n)), self.index.level(n));
                 format!("The traversal enters node {n} (level {level}), which holds {below}.")
             }
             Event::Left(n) => format!("The traversal leaves node {n}."),
             Event::Queued(n, key) => format!("Node {n} is queued with priority {key}."),
-            Event::DecidedNode(n, v) => node_sentence::<S>(n.0, self.index.prims(n).len(), v),
+            Event::DecidedNode(n, v) => node_sentence::<S>(n.0, self.index.held(n), v),
             Event::DecidedPrim(p, v) => prim_sentence::<S>(p.0, v),
         }
     }

@@ -13,6 +13,7 @@ mod evidence;
 mod hierarchical_z;
 mod knobs;
 mod large_occluders;
+mod layered_projection;
 mod method;
 
 pub use entry::{Entry, Film, Recording, RestoreError, Run};
@@ -30,6 +31,7 @@ pub static FLAT: &[&dyn Entry<Flat>] = &[
     &entry::Of::<baseline::Centroid>::NEW,
     &entry::Of::<large_occluders::LargeOccluders>::NEW,
     &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &entry::Of::<layered_projection::LayeredProjection>::NEW,
 ];
 /// Every method that runs in space, in the order of menus.
 pub static SOLID: &[&dyn Entry<Solid>] = &[
@@ -38,6 +40,7 @@ pub static SOLID: &[&dyn Entry<Solid>] = &[
     &entry::Of::<baseline::Centroid>::NEW,
     &entry::Of::<large_occluders::LargeOccluders>::NEW,
     &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &entry::Of::<layered_projection::LayeredProjection>::NEW,
 ];
 
 /// The methods of a space, for code that is generic over it.

@@ -82,9 +82,12 @@ fn nodes<S: Space>(hierarchy: &dyn Hierarchy<S>, stamps: &Stamps, step: usize, t
         let (state, bounds) = (stamps.node(id, step), hierarchy.bounds(id));
         let role = role_of(state);
         let decided = matches!(state, State::Decided(v) if v != Verdict::Partial);
+        let edges = hierarchy.edges(id);
         if decided && S::Vector::AXES == 2 {
-            let corners = [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec();
+            let corners = edges.map_or_else(|| [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec(), |edges| edges.iter().map(|e| e[0]).collect());
             to.push(Layer::Areas, role, Subject::Node(id), Mark::Area(corners));
+        } else if let Some(edges) = edges {
+            edges.into_iter().for_each(|edge| to.line(Layer::Nodes, role, Subject::Node(id), edge));
         } else {
             to.bounds(Layer::Nodes, role, Subject::Node(id), &bounds);
         }

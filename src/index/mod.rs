@@ -30,6 +30,14 @@ pub trait Hierarchy<S: Space>: Send + Sync {
     fn level(&self, node: NodeId) -> u32;
     /// All primitives at and below a node.
     fn prims(&self, node: NodeId) -> &[PrimId];
+    /// How many primitives meet a node, more than `prims` where nodes share some.
+    fn held(&self, node: NodeId) -> usize {
+        self.prims(node).len()
+    }
+    /// The edges of a node that is no box; those of a polygon run around it. `None` for a box.
+    fn edges(&self, _: NodeId) -> Option<Vec<[S::Vector; 2]>> {
+        None
+    }
     /// Bytes that the index takes.
     fn bytes(&self) -> usize;
 }

@@ -17,7 +17,7 @@ mod vertex_octree;
 
 pub use assignment::Assignment;
 pub use boxes::BoxCells;
-pub use simplices::SimplexCells;
+pub use simplices::{Simplex, SimplexCells};
 pub use space::Cellular;
 pub use vertex_kd_tree::vertex_kd_tree;
 pub use vertex_octree::vertex_octree;
@@ -53,7 +53,7 @@ pub trait Tessellation<S: Space>: Send + Sync {
     fn leaves_into(&self, from: CellId, into: CellId, point: S::Vector) -> bool;
     /// Adds the cells that a primitive meets, at least one, searched from the cell `near`. The primitive lies in the region.
     fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>);
-    /// The edges of a cell.
+    /// The edges of a cell; those of a triangle run around it.
     fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]>;
     /// Bytes that it takes.
     fn bytes(&self) -> usize;

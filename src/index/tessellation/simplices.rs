@@ -180,7 +180,10 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
     }
     fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]> {
         let corners = self.corners(cell);
-        (0..Self::CORNERS).flat_map(|i| (i + 1..Self::CORNERS).map(move |k| [corners[i], corners[k]])).collect()
+        if S::Vector::AXES == 2 {
+            return (0..3).map(|i| [corners[i], corners[(i + 1) % 3]]).collect();
+        }
+        (0..4).flat_map(|i| (i + 1..4).map(move |k| [corners[i], corners[k]])).collect()
     }
     fn bytes(&self) -> usize {
         self.points.len() * size_of::<S::Vector>() + self.cells.len() * size_of::<Simplex>() + self.adjacency.bytes()

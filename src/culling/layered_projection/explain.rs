@@ -1,0 +1,275 @@
+//! The evidence of this method: as fields, as sentences, and as marks in the world.
+
+use std::collections::BTreeMap;
+
+use super::index::{Index, cell_of, node_of};
+use crate::culling::event::Tallied;
+use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, short};
+use crate::culling::{Field, Note, Tally, Value};
+use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::geometry::{CellId, Vector, View};
+use crate::index::tessellation::Cellular;
+use crate::scene::Scene;
+
+/// What the method records.
+#[derive(Clone, Copy, Debug)]
+pub enum Evidence<S: Cellular> {
+    /// A cell to begin with was found.
+    Seeded(Seeded),
+    /// A box against the frustum.
+    Tested(Tested<S>),
+    /// A primitive's orientation.
+    Facing(Facing),
+    /// Solidity was handed on.
+    Transferred(Transferred<S::Vector>),
+    /// A cell was projected.
+    Projected(Projected),
+    /// The traversal ended.
+    Ended(Ended),
+}
+
+/// A cell from which the front grows.
+#[derive(Clone, Copy, Debug)]
+pub struct Seeded {
+    pub cell: CellId,
+    /// From the Eye, world units; 0 if the cell holds it.
+    pub distance: f32,
+    /// The front had run dry.
+    pub again: bool,
+}
+
+/// The operands of Figure 5.
+#[derive(Clone, Copy, Debug)]
+pub struct Transferred<V> {
+    pub a: CellId,
+    pub b: CellId,
+    /// |A| and ρ_max.
+    pub held: u32,
+    pub most: u32,
+    /// v, unit vector from the Eye to the center of B.
+    pub sight: V,
+    /// n(B), unit normal of the shared face toward B.
+    pub normal: V,
+    /// v · n(B), not below 0.
+    pub along: f32,
+    /// ρ(A).
+    pub of_a: f32,
+    pub star_shaped: bool,
+    /// ρ(B), penalty included.
+    pub solidity: f32,
+    /// What B had in the front.
+    pub before: Option<f32>,
+}
+
+impl<V> Transferred<V> {
+    /// |A| / ρ_max.
+    fn share(&self) -> f32 {
+        self.held as f32 / self.most.max(1) as f32
+    }
+    /// ρ(B) before the penalty.
+    fn sum(&self) -> f32 {
+        self.share() + self.along * self.of_a
+    }
+}
+
+/// A cell was taken from the front and drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Projected {
+    pub cell: CellId,
+    pub rank: u32,
+    pub solidity: f32,
+    pub held: u32,
+    pub drawn: u32,
+    pub left: u32,
+}
+
+/// The front is empty or the budget spent.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended {
+    pub cells: u32,
+    pub left: u32,
+    pub spent: bool,
+}
+
+/// The method's private state at a step: the front with the solidity of each cell, and what was projected last.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    front: BTreeMap<CellId, f32>,
+    projected: Vec<CellId>,
+}
+
+/// Projected cells that are numbered in a picture; the latest ones.
+const NUMBERED: usize = 64;
+/// Cells of the front that are labeled in a picture of flatland.
+const LABELED: usize = 200;
+
+impl<S: Cellular> Evidence<S> {
+    /// Changes the private state.
+    pub fn apply(&self, seen: &mut Seen) {
+        match self {
+            Self::Seeded(n) => _ = seen.front.insert(n.cell, 0.0),
+            Self::Transferred(n) => _ = seen.front.insert(n.b, n.solidity),
+            Self::Projected(n) => {
+                seen.front.remove(&n.cell);
+                seen.projected.push(n.cell);
+            }
+            _ => {}
+        }
+    }
+}
+
+impl<S: Cellular> Tallied for Evidence<S> {
+    fn tally(&self, tally: &mut Tally) {
+        match self {
+            Self::Seeded(_) => tally.add("seeds", 1),
+            Self::Tested(n) => n.tally(tally),
+            Self::Facing(_) => Facing::tally(tally),
+            Self::Transferred(n) => {
+                tally.add("solidities_updated", 1);
+                tally.add("penalties", (!n.star_shaped).into());
+                tally.add("cells_requeued", n.before.is_some().into());
+            }
+            Self::Projected(n) => {
+                tally.add("cells_projected", 1);
+                tally.add("empty_cells_projected", (n.held == 0).into());
+            }
+            Self::Ended(_) => {}
+        }
+    }
+}
+
+impl<S: Cellular> Note<S> for Evidence<S> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Seeded(_) => "CellSeeded",
+            Self::Tested(n) => n.kind(),
+            Self::Facing(_) => "OrientationTested",
+            Self::Transferred(_) => "SolidityTransferred",
+            Self::Projected(_) => "CellProjected",
+            Self::Ended(_) => "TraversalEnded",
+        }
+    }
+    fn fields(&self) -> Vec<Field> {
+        let switch = |name, v| Field { name, value: Value::Switch(v) };
+        match self {
+            Self::Seeded(n) => vec![integer("node", node_of(n.cell).0), number("distance_units", n.distance.into()), switch("again", n.again)],
+            Self::Tested(n) => n.fields(),
+            Self::Facing(n) => n.fields(),
+            Self::Transferred(n) => vec![
+                integer("from_node", node_of(n.a).0),
+                integer("node", node_of(n.b).0),
+                integer("held", n.held),
+                integer("rho_max", n.most),
+                Field { name: "view_direction", value: axes(n.sight) },
+                Field { name: "normal", value: axes(n.normal) },
+                number("alignment", n.along.into()),
+                number("from_solidity", n.of_a.into()),
+                number("transferred", n.sum().into()),
+                switch("star_shaped", n.star_shaped),
+                number("solidity", n.solidity.into()),
+            ],
+            Self::Projected(n) => vec![
+                integer("node", node_of(n.cell).0),
+                integer("rank", n.rank),
+                number("solidity", n.solidity.into()),
+                integer("held", n.held),
+                integer("drawn", n.drawn),
+                integer("budget_left", n.left),
+            ],
+            Self::Ended(n) => vec![integer("cells", n.cells), integer("budget_left", n.left), switch("spent", n.spent)],
+        }
+    }
+    fn sentence(&self, _: &Scene<S>) -> String {
+        let prims = S::PRIM;
+        match self {
+            Self::Seeded(n) if n.again => {
+                format!(
+                    "The front is empty and budget is left: the nearest cell in view that was not reached, node {}, starts a new one.",
+                    node_of(n.cell)
+                )
+            }
+            Self::Seeded(n) if n.distance > 0.0 => {
+                format!("The Eye is outside of all cells; the nearest cell in view is node {}, {} units away.", node_of(n.cell), short(n.distance))
+            }
+            Self::Seeded(n) => format!("The Eye is in the cell of node {}: the front begins there.", node_of(n.cell)),
+            Self::Tested(n) => n.sentence(),
+            Self::Facing(n) => n.sentence::<S>(),
+            Self::Transferred(n) => transfer_sentence::<S>(n),
+            Self::Projected(n) => format!(
+                "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} {prims}s that meet it are drawn now, {} of the budget are left.",
+                node_of(n.cell),
+                short(n.solidity),
+                n.rank + 1,
+                n.drawn,
+                n.held,
+                n.left
+            ),
+            Self::Ended(n) if n.spent => format!("The budget is spent after {} cells.", n.cells),
+            Self::Ended(n) => format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left),
+        }
+    }
+}
+
+fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
+    let (a, b) = (node_of(n.a), node_of(n.b));
+    let terms = format!("{} / {} + {} × {} = {}", n.held, n.most, short(n.along), short(n.of_a), short(n.sum()));
+    let star = if n.star_shaped {
+        String::new()
+    } else {
+        format!(
+            " The ray from its center to the Eye does not leave through that face: it is not star-shaped, and the penalty makes {} of it.",
+            short(n.solidity)
+        )
+    };
+    let before = n.before.map_or(String::new(), |v| format!(" It had {} in the front.", short(v)));
+    format!("Node {a} hands its solidity on to node {b}: |A| / ρ_max + (v · n) ρ(A) = {terms}.{star}{before}")
+}
+
+/// Draws the front, the latest projected cells, and the evidence of a note.
+pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    let flat = S::Vector::AXES == 2;
+    for (at, (&cell, &solidity)) in seen.front.iter().enumerate() {
+        outline(index, cell, Layer::Nodes, Role::Undecided, to);
+        if flat && at < LABELED {
+            label(to, index.cells.any().center(cell), short(solidity));
+        }
+    }
+    let first = seen.projected.len().saturating_sub(NUMBERED);
+    for (at, &cell) in seen.projected.iter().enumerate().skip(first).filter(|_| flat) {
+        label(to, index.cells.any().center(cell), format!("#{}", at + 1));
+    }
+    match note {
+        Some(Evidence::Tested(n)) => n.draw(view, to),
+        Some(Evidence::Facing(n)) => n.draw(scene, view, to),
+        Some(Evidence::Seeded(n)) => {
+            outline(index, n.cell, Layer::Emphasis, Role::Current, to);
+            to.line(Layer::Evidence, Role::Evidence, Subject::Node(node_of(n.cell)), [view.eye.position, index.cells.any().center(n.cell)]);
+        }
+        Some(Evidence::Projected(n)) => outline(index, n.cell, Layer::Emphasis, Role::Current, to),
+        Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),
+        Some(Evidence::Ended(_)) | None => {}
+    }
+}
+
+/// Figure 6: both cells, the normal of the face between them, the view direction, and the ray of the star-shape test.
+fn draw_transfer<S: Cellular>(n: &Transferred<S::Vector>, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    let cells = index.cells.any();
+    outline(index, n.a, Layer::Emphasis, Role::Partial, to);
+    outline(index, n.b, Layer::Emphasis, Role::Current, to);
+    let (a, b) = (cells.center(n.a), cells.center(n.b));
+    let length = 0.4 * cells.bounds(n.b).diagonal();
+    let subject = Subject::Node(node_of(n.b));
+    to.push(Layer::Evidence, Role::Evidence, subject, Mark::Arrow(a, a + n.normal * length));
+    label(to, a + n.normal * length, "n".into());
+    to.push(Layer::Evidence, Role::Eye, subject, Mark::Arrow(a, a + n.sight * length));
+    label(to, a + n.sight * length, "v".into());
+    to.line(Layer::Evidence, if n.star_shaped { Role::Faint } else { Role::Hidden }, subject, [b, view.eye.position]);
+    to.push(Layer::Evidence, Role::Evidence, subject, Mark::Dot { at: b, radius_pt: 2.5 });
+}
+
+fn outline<S: Cellular>(index: &Index<S>, cell: CellId, layer: Layer, role: Role, to: &mut Drawing<S::Vector>) {
+    debug_assert_eq!(cell_of(node_of(cell)), Some(cell));
+    for edge in index.cells.any().edges(cell) {
+        to.line(layer, role, Subject::Node(node_of(cell)), edge);
+    }
+}

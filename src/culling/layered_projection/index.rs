@@ -1,0 +1,130 @@
+//! What is built once: cells, which primitives meet which cell, and both as bytes.
+//!
+//! Klosowski and Silva 2000, Sections 3.1, 4.3 and 5.1. To the rest of the house it is a tree of two levels: the region, and
+//! below it the cells.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::Params;
+use super::saved::{self, Key};
+use crate::geometry::{Aabb, CellId, NodeId, PrimId, Space};
+use crate::index::Hierarchy;
+use crate::index::tessellation::{Assignment, BoxCells, Cellular, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree};
+use crate::scene::{Part, Progress, Scene};
+
+/// Cells of either shape.
+#[derive(Clone, Debug)]
+pub enum Cells<S: Cellular> {
+    /// Of an octree or a kD-tree.
+    Boxes(BoxCells<S::Vector>),
+    /// Of a Delaunay triangulation.
+    Simplices(SimplexCells<S>),
+}
+
+impl<S: Cellular> Cells<S> {
+    /// Whatever they are.
+    pub fn any(&self) -> &dyn Tessellation<S> {
+        match self {
+            Self::Boxes(cells) => cells,
+            Self::Simplices(cells) => cells,
+        }
+    }
+    fn build(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+        let fineness = Fineness { leaf_share: params.leaf_size as f32 / 100.0, ..Fineness::default() };
+        let cancelled = || progress.cancelled();
+        match params.tessellation {
+            Params::KD_TREE => vertex_kd_tree(scene, fineness, cancelled).map(Self::Boxes),
+            Params::DELAUNAY => {
+                let boxes = vertex_octree(scene, fineness, cancelled)?;
+                progress.report(0.5, "triangulating the cells' centers");
+                SimplexCells::of_centers(&boxes, params.seed, &cancelled).map(Self::Simplices)
+            }
+            _ => vertex_octree(scene, fineness, cancelled).map(Self::Boxes),
+        }
+    }
+}
+
+/// Cells and what is in them.
+#[derive(Clone, Debug)]
+pub struct Index<S: Cellular> {
+    pub cells: Cells<S>,
+    pub assignment: Assignment,
+    key: Key,
+    bounds: Aabb<S::Vector>,
+}
+
+impl<S: Cellular> Index<S> {
+    /// Builds it. `None` when cancelled.
+    pub fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+        progress.report(0.0, "dividing space into cells");
+        let cells = Cells::build(scene, params, &Part { whole: progress, start: 0.0, length: 0.3 })?;
+        let assignment = Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.7 })?;
+        Some(Self::of(scene, params, cells, assignment))
+    }
+    /// Builds it from bytes.
+    ///
+    /// # Errors
+    /// Why they do not fit the scene and the parameters.
+    pub fn restore(scene: &Arc<Scene<S>>, params: &Params, bytes: &[u8]) -> Result<Self, String> {
+        let (cells, assignment) = saved::read(bytes, &Key::of(scene, params), scene)?;
+        Ok(Self::of(scene, params, cells, assignment))
+    }
+    /// It as bytes.
+    pub fn save(&self) -> Vec<u8> {
+        saved::write(&self.key, &self.cells, &self.assignment)
+    }
+    fn of(scene: &Arc<Scene<S>>, params: &Params, cells: Cells<S>, assignment: Assignment) -> Self {
+        let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
+        let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
+        Self { cells, assignment, key: Key::of(scene, params), bounds }
+    }
+    /// Number of cells.
+    pub fn count(&self) -> usize {
+        self.cells.any().count()
+    }
+}
+
+/// The node that stands for a cell.
+pub fn node_of(cell: CellId) -> NodeId {
+    NodeId(cell.0 + 1)
+}
+
+/// The cell of a node other than the root.
+pub fn cell_of(node: NodeId) -> Option<CellId> {
+    node.0.checked_sub(1).map(CellId)
+}
+
+impl<S: Cellular> Hierarchy<S> for Index<S> {
+    fn node_count(&self) -> usize {
+        self.count() + 1
+    }
+    fn bounds(&self, node: NodeId) -> Aabb<S::Vector> {
+        cell_of(node).map_or(self.bounds, |cell| self.cells.any().bounds(cell))
+    }
+    fn parent(&self, node: NodeId) -> Option<NodeId> {
+        cell_of(node).map(|_| NodeId(0))
+    }
+    fn children(&self, node: NodeId) -> Range<u32> {
+        if node.0 == 0 { 1..self.count() as u32 + 1 } else { 0..0 }
+    }
+    fn level(&self, node: NodeId) -> u32 {
+        u32::from(node.0 != 0)
+    }
+    /// Of a cell those that meet no other cell: deciding it decides them alone.
+    fn prims(&self, node: NodeId) -> &[PrimId] {
+        cell_of(node).map_or(self.assignment.all(), |cell| self.assignment.own(cell))
+    }
+    fn held(&self, node: NodeId) -> usize {
+        cell_of(node).map_or(self.assignment.all().len(), |cell| self.assignment.held(cell) as usize)
+    }
+    fn edges(&self, node: NodeId) -> Option<Vec<[<S as Space>::Vector; 2]>> {
+        match &self.cells {
+            Cells::Simplices(cells) => cell_of(node).map(|cell| cells.edges(cell)),
+            Cells::Boxes(_) => None,
+        }
+    }
+    fn bytes(&self) -> usize {
+        self.cells.any().bytes() + self.assignment.bytes()
+    }
+}

@@ -1,0 +1,160 @@
+//! `layered-projection`: draws what is most likely visible first, until a budget is spent.
+//!
+//! Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG 6(2), 2000,
+//! <https://doi.org/10.1109/2945.856993>. Space is divided into cells ([`index`]); from the cell of the Eye on, the front
+//! ([`front`]) grows over neighbors, and always the cell is projected that has the least solidity: an estimate of how much
+//! stands between it and the Eye, handed on from cell to cell (Figures 4 to 6, [`walk`]).
+//!
+//! Departures: the view direction of the transfer is that from the Eye to the cell's center, for a single one says nothing
+//! near the rim of a wide view; a transfer against the view direction counts as none, not as negative; where a cell is cut
+//! by the view volume, its primitives are tested one by one, as the paper's baseline does; where the front runs dry before
+//! the budget does, the nearest cell in view that was not reached starts a new one, so that with an unlimited budget
+//! nothing is missed.
+//! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
+
+mod explain;
+mod front;
+mod index;
+mod saved;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+use std::sync::Arc;
+
+use self::explain::{Evidence, Seen};
+use self::index::Index;
+use self::walk::Walk;
+use crate::culling::knobs::backface_knob;
+use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer};
+use crate::drawing::Drawing;
+use crate::geometry::View;
+use crate::index::tessellation::Cellular;
+use crate::scene::{Progress, Scene};
+
+/// The method.
+pub struct LayeredProjection;
+
+/// Parameters of [`LayeredProjection`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Params {
+    /// Which of [`Params::TESSELLATIONS`].
+    tessellation: usize,
+    budget: Budget,
+    /// Per cent of the scene's longest side.
+    leaf_size: u32,
+    /// Per cent that are added to the solidity of a cell that is not star-shaped.
+    penalty: u32,
+    seed: u32,
+    backface_culling: bool,
+}
+
+impl Params {
+    const TESSELLATIONS: &'static [&'static str] = &["octree", "delaunay", "kd-tree"];
+    const DELAUNAY: usize = 1;
+    const KD_TREE: usize = 2;
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { tessellation: Self::DELAUNAY, budget: Budget::Percent(10.0), leaf_size: 5, penalty: 100, seed: 1, backface_culling: false }
+    }
+}
+
+const CODE: &[CodeLine] = &[
+    CodeLine { label: "RenderingLoop:1", text: "while the front F is not empty" },
+    CodeLine { label: "RenderingLoop:2", text: "  c := the cell of least solidity of F" },
+    CodeLine { label: "RenderingLoop:3", text: "  project c" },
+    CodeLine { label: "RenderingLoop:4", text: "  if the budget is spent" },
+    CodeLine { label: "RenderingLoop:5", text: "    break" },
+    CodeLine { label: "RenderingLoop:6", text: "  for each cell n adjacent to c" },
+    CodeLine { label: "RenderingLoop:7", text: "    if n is projected or out of view" },
+    CodeLine { label: "RenderingLoop:8", text: "      continue" },
+    CodeLine { label: "RenderingLoop:9", text: "    ρ := UpdateSolidity(n, c)" },
+    CodeLine { label: "RenderingLoop:10", text: "    enqueue n with ρ" },
+    CodeLine { label: "UpdateSolidity:1", text: "ρ(B) := |A| / ρ_max + (v · n(B)) ρ(A)" },
+    CodeLine { label: "UpdateSolidity:2", text: "if B is not star-shaped toward the eye" },
+    CodeLine { label: "UpdateSolidity:3", text: "  ρ(B) := ρ(B) with the penalty" },
+    CodeLine { label: "UpdateSolidity:4", text: "return ρ(B)" },
+];
+
+/// Numbers of the lines that events refer to.
+mod line {
+    pub const TAKE: u8 = 1;
+    pub const PROJECT: u8 = 2;
+    pub const SPENT: u8 = 4;
+    pub const SKIP: u8 = 7;
+    pub const ENQUEUE: u8 = 9;
+    pub const PENALTY: u8 = 12;
+}
+
+/// The paper, of which a parameter names the section.
+macro_rules! section {
+    ($section:literal) => {
+        concat!("Klosowski and Silva 2000, Section ", $section)
+    };
+}
+
+impl<S: Cellular> Method<S> for LayeredProjection {
+    type Params = Params;
+    type Index = Index<S>;
+    type Memory = ();
+    type Note = Evidence<S>;
+    type Dense = Seen;
+    const CARD: Card = Card {
+        key: "layered-projection",
+        name: "Prioritized-layered projection",
+        summary: "Divides space into cells and projects those first that least is likely to stand in front of, until a budget of primitives is spent.",
+        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set Estimation. IEEE TVCG 6(2), 2000.",
+        doi: "10.1109/2945.856993",
+        conservative: false,
+        code: CODE,
+    };
+    // The front is copied for a keyframe: far longer than an entry of it takes to replay.
+    const KEYFRAME_NOTES: usize = 2048;
+
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let knob = |name, unit, meaning, source| Knob { name, unit, meaning, source };
+        let cells = knob("tessellation", "", "which cells space is divided into", section!("4.3"));
+        knobs.choice(cells, Params::TESSELLATIONS, &mut params.tessellation);
+        let budget = knob("budget", "primitives", "how many primitives are drawn: a number, or a share of the scene such as 10%", section!("3"));
+        knobs.budget(budget, &mut params.budget);
+        let leaf = knob("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
+        knobs.integer(leaf, 1..=100, &mut params.leaf_size);
+        let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by";
+        knobs.integer(knob("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
+        let seed = knob("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));
+        knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
+        backface_knob(knobs, &mut params.backface_culling);
+    }
+    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Index<S>> {
+        Index::build(scene, params, progress)
+    }
+    fn save(index: &Index<S>) -> Option<Vec<u8>> {
+        Some(index.save())
+    }
+    fn restore(scene: &Arc<Scene<S>>, params: &Params, saved: &[u8], _: &dyn Progress) -> Result<Option<Index<S>>, String> {
+        Index::restore(scene, params, saved).map(Some)
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        index: &Index<S>,
+        scene: &Scene<S>,
+        view: &View<S>,
+        params: &Params,
+        (): &mut (),
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        Walk::new(index, scene, view, params, out, watch).run();
+    }
+    fn dense(_: &Scene<S>, _: &View<S>) -> Seen {
+        Seen::default()
+    }
+    fn apply(seen: &mut Seen, _: &Scene<S>, note: &Evidence<S>) {
+        note.apply(seen);
+    }
+    fn explain(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+        explain::draw(seen, scene, index, view, note, to);
+    }
+}

@@ -1,0 +1,254 @@
+//! The properties that the paper's algorithm promises, and its arithmetic.
+
+use std::sync::Arc;
+
+use super::explain::Evidence;
+use super::index::node_of;
+use super::{LayeredProjection, Params};
+use crate::culling::{Budget, DrawList, Event, Field, Film, Method, Methods, Recorder, Run, Settings, Value, Verdict};
+use crate::geometry::{CellId, Flat, PrimId, Solid, Vector, View};
+use crate::index::tessellation::Cellular;
+use crate::raster::{Drawable, render};
+use crate::scene::{Quiet, Scene, framing_view, random_views, samples};
+
+trait World: Methods + Drawable + Cellular {}
+impl<S: Methods + Drawable + Cellular> World for S {}
+
+const KINDS: [&str; 3] = ["octree", "delaunay", "kd-tree"];
+
+fn settings(pairs: &[(&str, &str)]) -> Settings {
+    Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
+}
+fn run<S: World>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
+    S::method("layered-projection").expect("listed").ready(scene, &settings(pairs), &Quiet).expect("settings fit").expect("not cancelled")
+}
+
+/// Views from inside and one from outside.
+fn views<S: World>(scene: &Scene<S>) -> Vec<View<S>> {
+    let mut views = random_views(scene, 4, 3);
+    views.push(framing_view(&scene.bounds(), 64, 64));
+    for view in &mut views {
+        (view.width, view.height) = (64, view.height.min(64));
+    }
+    views
+}
+
+fn both(flat: impl Fn(&Arc<Scene<Flat>>, &'static str), solid: impl Fn(&Arc<Scene<Solid>>, &'static str)) {
+    for kind in KINDS {
+        (0..2).for_each(|seed| flat(&samples::soup(seed, 300), kind));
+        (0..2).for_each(|seed| solid(&samples::soup(seed, 300), kind));
+    }
+}
+
+fn value(fields: &[Field], name: &str) -> f64 {
+    match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
+        Some(Value::Number(v)) => *v,
+        Some(Value::Integer(v)) => *v as f64,
+        Some(Value::Switch(v)) => f64::from(u8::from(*v)),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// Replays the front from the events: each cell is taken once, and is the first of the least.
+fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let (mut requeued, mut ties) = (0, 0);
+    for view in views(scene) {
+        let film = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", "8")]).record(&view, usize::MAX).film;
+        let mut front: Vec<(u32, f32)> = Vec::new();
+        let mut taken = Vec::new();
+        for event in film.events() {
+            match *event {
+                Event::Queued(node, solidity) => {
+                    assert!(!taken.contains(&node), "{kind}: {node} was projected before");
+                    requeued += usize::from(front.iter().any(|(n, _)| *n == node.0));
+                    front.retain(|(n, _)| *n != node.0);
+                    front.push((node.0, solidity));
+                }
+                Event::Entered(node) if node.0 != 0 => {
+                    let least = front.iter().map(|f| f.1).fold(f32::INFINITY, f32::min);
+                    let at = front.iter().position(|f| f.1 == least).expect("the front is not empty");
+                    ties += usize::from(front.iter().filter(|f| f.1 == least).count() > 1);
+                    assert_eq!(front.remove(at).0, node.0, "{kind}: the first of the least");
+                    taken.push(node);
+                }
+                _ => {}
+            }
+        }
+        assert!(front.is_empty() && taken.len() > 10, "{kind}: {}", taken.len());
+    }
+    assert!(requeued > 20 && ties > 20, "{kind}: {requeued} put in again, {ties} ties");
+}
+
+#[test]
+fn each_cell_is_projected_once_and_is_the_least_of_the_front() {
+    both(is_a_priority_order, is_a_priority_order);
+}
+
+fn keeps_to_the_budget<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    for view in views(scene) {
+        let drawn = |budget: &str| run(scene, &[("tessellation", kind), ("budget", budget)]).cull(&view).prims;
+        let all = drawn("100%");
+        for budget in [0, 1, 2, 17, 100] {
+            let part = drawn(&budget.to_string());
+            assert_eq!(part, all[..budget.min(all.len())], "{kind}: a smaller budget draws the beginning of a larger one's list");
+        }
+        assert_eq!(drawn("5%"), all[..15.min(all.len())], "{kind}");
+    }
+}
+
+#[test]
+fn the_budget_is_used_up_and_never_exceeded() {
+    both(keeps_to_the_budget, keeps_to_the_budget);
+}
+
+fn sees_all<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    for leaf in ["3", "20", "100"] {
+        let mut run = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", leaf)]);
+        for view in views(scene) {
+            let drawn = run.cull(&view).prims;
+            assert_eq!(render(scene, &view, &drawn).items, render(scene, &view, scene.live()).items, "{kind}, leaf {leaf}");
+            assert!(drawn.len() < scene.live().len() || view.eye.near > 1.0, "{kind}: what is out of view is not drawn");
+        }
+    }
+}
+
+#[test]
+fn with_an_unlimited_budget_the_image_is_the_z_buffers() {
+    both(sees_all, sees_all);
+}
+
+fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let view = views(scene)[1];
+    let film = run(scene, &[("tessellation", kind), ("penalty", "50"), ("budget", "100%")]).record(&view, usize::MAX).film;
+    let (mut solidity, mut penalties, mut count) = (std::collections::BTreeMap::new(), 0, 0);
+    for at in 0..film.events().len() {
+        let (what, fields) = film.fields(at);
+        let v = |name| value(&fields, name);
+        match what {
+            "CellProjected" => _ = solidity.insert(v("node") as u32, v("solidity")),
+            "SolidityTransferred" => {
+                assert_eq!(solidity[&(v("from_node") as u32)], v("from_solidity"));
+                let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
+                assert!((sum - v("transferred")).abs() <= 1e-6 * sum && (0.0..=1.00001).contains(&v("alignment")));
+                let want = v("transferred") * if v("star_shaped") == 1.0 { 1.0 } else { 1.5 };
+                assert!((want - v("solidity")).abs() <= 1e-6 * want, "{want}");
+                let queued = film.events()[at..].iter().find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
+                assert_eq!(queued, Some((v("node") as u32, v("solidity") as f32)));
+                penalties += usize::from(v("star_shaped") == 0.0);
+                count += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(penalties > 5 && penalties < count, "{kind}: {penalties} of {count}");
+}
+
+#[test]
+fn solidity_is_handed_on_as_in_figure_5() {
+    both(hands_on_solidity, hands_on_solidity);
+}
+
+#[test]
+fn figure_6_written_out() {
+    // The eye looks along x through A into B and C: B lies ahead, C beside.
+    fn index(n: usize) -> CellId {
+        CellId(n as u32)
+    }
+    let scene = samples::soup::<Flat>(1, 300);
+    let params = Params { tessellation: 0, leaf_size: 30, ..Params::default() };
+    let built = LayeredProjection::build(&scene, &params, &Quiet).expect("not cancelled");
+    let cells = built.cells.any();
+    let mut view = framing_view::<Flat>(&scene.bounds(), 64, 1);
+    view.eye.position = cells.center(index(0));
+    view.eye.target = view.eye.position + glam::Vec2::X;
+    (view.eye.near, view.eye.fov) = (0.01, 3.0);
+    let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
+    LayeredProjection::cull(&built, &scene, &view, &params, &mut (), &mut list, &mut recorder);
+    let handed = recorder.notes.iter().filter_map(|n| if let Evidence::Transferred(t) = n { Some(t) } else { None });
+    let first: Vec<_> = handed.take_while(|t| t.a == index(0)).collect();
+    assert!(!first.is_empty());
+    for t in first {
+        let share = built.assignment.held(t.a) as f32 / built.assignment.most() as f32;
+        // From the cell of the eye nothing is handed on but its own share.
+        assert_eq!((t.of_a, t.solidity, t.star_shaped), (0.0, share, true), "{t:?}");
+        assert!(t.sight.dot(t.normal) > 0.7, "the neighbors of a square lie straight ahead of its center");
+    }
+}
+
+fn is_reproducible<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let of_seed = |seed: &str| {
+        let mut run = run(scene, &[("tessellation", kind), ("seed", seed)]);
+        views(scene).iter().map(|v| run.cull(v).prims).collect::<Vec<Vec<PrimId>>>()
+    };
+    assert_eq!(of_seed("1"), of_seed("1"), "{kind}");
+    assert_eq!(of_seed("1") == of_seed("2"), kind != "delaunay", "{kind}: the seed moves the points of the triangulation only");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_order() {
+    both(is_reproducible, is_reproducible);
+}
+
+fn is_told<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let view = views(scene)[0];
+    let recording = run(scene, &[("tessellation", kind), ("budget", "9"), ("backface-culling", "true")]).record(&view, usize::MAX);
+    let film = &recording.film;
+    assert_eq!(recording.list.prims.len(), 9);
+    assert!(film.events().iter().any(|e| matches!(e, Event::DecidedPrim(_, Verdict::OverBudget) | Event::DecidedNode(_, Verdict::OverBudget))));
+    for at in 0..film.events().len() {
+        assert!(!film.sentence(at).contains("NaN") && film.sentence(at).len() > 10);
+    }
+    assert!(film.hierarchy().held(node_of(CellId(0))) >= film.hierarchy().prims(node_of(CellId(0))).len());
+}
+
+#[test]
+fn what_the_budget_leaves_out_is_told() {
+    both(is_told, is_told);
+}
+
+fn is_saved<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let pairs = [("tessellation", kind), ("leaf-size", "10")];
+    let mut made = run(scene, &pairs);
+    let saved = made.save().expect("there is something to save");
+    let entry = S::method("layered-projection").expect("listed");
+    let restore = |pairs: &[(&str, &str)], bytes: &[u8]| entry.restore(scene, &settings(pairs), bytes, &Quiet).map_err(|e| e.to_string());
+    let mut again = restore(&pairs, &saved).expect("it fits").expect("not cancelled");
+    for view in views(scene) {
+        assert_eq!(made.cull(&view), again.cull(&view), "{kind}");
+    }
+    assert_eq!(again.save(), Some(saved.clone()));
+    let refused = |pairs: &[(&str, &str)], bytes: &[u8]| restore(pairs, bytes).err().expect("refused");
+    assert!(refused(&[("tessellation", kind)], &saved).contains("leaf-size=10"));
+    for at in (0..saved.len()).step_by(saved.len() / 40) {
+        let mut bad = saved.clone();
+        bad[at] ^= 4;
+        assert!(!refused(&pairs, &bad).is_empty());
+        assert!(!refused(&pairs, &saved[..at]).is_empty());
+    }
+    let other = samples::soup::<S>(77, 300);
+    let elsewhere = entry.restore(&other, &settings(&pairs), &saved, &Quiet).err().map(|e| e.to_string());
+    assert_eq!(elsewhere.as_deref(), Some("it was made for another scene"));
+}
+
+#[test]
+fn saved_cells_are_those_that_were_made_and_fit_nothing_else() {
+    both(is_saved, is_saved);
+}
+
+#[test]
+fn a_hole_in_the_front_is_no_hole_in_the_picture() {
+    // Two clusters far apart: the front may run dry between them, and a view that sees both finds both.
+    let near = samples::soup::<Solid>(1, 200);
+    let mut parts = Arc::unwrap_or_clone(near).into_parts();
+    let count = parts.points.len();
+    parts.points.iter_mut().skip(count / 2).for_each(|p| *p += glam::Vec3::splat(500.0));
+    let scene = Arc::new(Scene::<Solid>::new(parts).expect("a scene"));
+    for kind in KINDS {
+        sees_all(&scene, kind);
+    }
+}
+
+#[test]
+fn budgets_count_primitives_of_the_whole_scene() {
+    assert_eq!(Budget::Percent(10.0).of(810_000), 81_000);
+}
