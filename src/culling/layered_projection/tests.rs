@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::explain::Evidence;
 use super::index::node_of;
 use super::{LayeredProjection, Params};
-use crate::culling::{Budget, DrawList, Event, Field, Film, Method, Methods, Recorder, Run, Settings, Value, Verdict};
-use crate::geometry::{CellId, Flat, PrimId, Solid, Vector, View};
+use crate::culling::{Budget, DrawList, Event, Field, Method, Methods, Recorder, Run, Settings, Value, Verdict};
+use crate::geometry::{CellId, Flat, PrimId, Solid, View};
 use crate::index::tessellation::Cellular;
 use crate::raster::{Drawable, render};
 use crate::scene::{Quiet, Scene, framing_view, random_views, samples};
@@ -51,9 +51,9 @@ fn value(fields: &[Field], name: &str) -> f64 {
 
 /// Replays the front from the events: each cell is taken once, and is the first of the least.
 fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    let (mut requeued, mut ties) = (0, 0);
+    let (mut requeued, mut ties, mut projected) = (0, 0, 0);
     for view in views(scene) {
-        let film = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", "8")]).record(&view, usize::MAX).film;
+        let film = run(scene, &[("tessellation", kind), ("budget", "1000"), ("leaf-size", "8")]).record(&view, usize::MAX).film;
         let mut front: Vec<(u32, f32)> = Vec::new();
         let mut taken = Vec::new();
         for event in film.events() {
@@ -74,9 +74,10 @@ fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
                 _ => {}
             }
         }
-        assert!(front.is_empty() && taken.len() > 10, "{kind}: {}", taken.len());
+        assert!(front.is_empty(), "{kind}: all are taken");
+        projected += taken.len();
     }
-    assert!(requeued > 20 && ties > 20, "{kind}: {requeued} put in again, {ties} ties");
+    assert!(projected > 50 && requeued > 20 && ties > 5, "{kind}: {projected} projected, {requeued} put in again, {ties} ties");
 }
 
 #[test]
@@ -106,7 +107,7 @@ fn sees_all<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
         let mut run = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", leaf)]);
         for view in views(scene) {
             let drawn = run.cull(&view).prims;
-            assert_eq!(render(scene, &view, &drawn).items, render(scene, &view, scene.live()).items, "{kind}, leaf {leaf}");
+            assert_eq!(render(scene, &view, &drawn).item, render(scene, &view, scene.live()).item, "{kind}, leaf {leaf}");
             assert!(drawn.len() < scene.live().len() || view.eye.near > 1.0, "{kind}: what is out of view is not drawn");
         }
     }
@@ -118,7 +119,7 @@ fn with_an_unlimited_budget_the_image_is_the_z_buffers() {
 }
 
 fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    let view = views(scene)[1];
+    let view = views(scene)[4];
     let film = run(scene, &[("tessellation", kind), ("penalty", "50"), ("budget", "100%")]).record(&view, usize::MAX).film;
     let (mut solidity, mut penalties, mut count) = (std::collections::BTreeMap::new(), 0, 0);
     for at in 0..film.events().len() {
@@ -190,7 +191,7 @@ fn the_same_seed_gives_the_same_order() {
 }
 
 fn is_told<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    let view = views(scene)[0];
+    let view = views(scene)[4];
     let recording = run(scene, &[("tessellation", kind), ("budget", "9"), ("backface-culling", "true")]).record(&view, usize::MAX);
     let film = &recording.film;
     assert_eq!(recording.list.prims.len(), 9);
