@@ -113,12 +113,12 @@ mod tests {
         let mut list: Vec<(CellId, f32)> = Vec::new();
         for _ in 0..4000 {
             let cell = CellId(rng.next_u32() % 40);
-            if rng.next_u32() % 3 > 0 && !front.is_projected(cell) {
+            if !rng.next_u32().is_multiple_of(3) && !front.is_projected(cell) {
                 let solidity = (rng.next_u32() % 8) as f32;
                 list.retain(|(c, _)| *c != cell);
                 list.push((cell, solidity));
                 front.put(cell, solidity);
-            } else if rng.next_u32() % 20 == 0 {
+            } else if rng.next_u32().is_multiple_of(20) {
                 // The first of the least.
                 let want = (0..list.len()).min_by(|a, b| list[*a].1.total_cmp(&list[*b].1)).map(|at| list.remove(at));
                 assert_eq!(front.take(), want);

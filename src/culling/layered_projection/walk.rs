@@ -244,12 +244,23 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
             }
         }
-        let mut in_view = vec![false; self.marks.len()];
-        for cell in (0..count).map(CellId).filter(|c| self.sights[c.at()] != Sight::Outside) {
-            index.assignment.shared(cell).iter().for_each(|n| in_view[*n as usize] = true);
+        for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
+            if !self.marks[number] {
+                let verdict = self.fate_of_the_rest(prim, spent);
+                self.watch.event(Event::DecidedPrim(prim, verdict));
+            }
         }
-        for (number, &prim) in index.assignment.all_shared().iter().enumerate().filter(|(n, _)| !self.marks[*n]) {
-            self.watch.event(Event::DecidedPrim(prim, if in_view[number] { Verdict::OverBudget } else { Verdict::Outside }));
+    }
+    /// Why a shared primitive was not reached.
+    fn fate_of_the_rest(&mut self, prim: PrimId, spent: bool) -> Verdict {
+        let (bounds, planes) = (self.scene.prim_bounds(prim), Frustum::<S::Vector>::ALL);
+        let test = self.frustum.test(&bounds, planes);
+        if matches!(test, FrustumTest::Outside(_)) {
+            let frustum = &self.frustum;
+            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, planes, test)));
+            return Verdict::Outside;
         }
+        // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though no plane says so.
+        if spent { Verdict::OverBudget } else { Verdict::Hidden }
     }
 }
