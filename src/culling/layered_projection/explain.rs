@@ -50,7 +50,7 @@ pub struct Transferred<V> {
     pub sight: V,
     /// n(B), unit normal of the shared face toward B.
     pub normal: V,
-    /// v · n(B), not below 0.
+    /// The part of ρ(A) that is handed on: v · n(B), not below 0, or 1.
     pub along: f32,
     /// ρ(A).
     pub of_a: f32,
@@ -212,6 +212,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
 
 fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let (a, b) = (node_of(n.a), node_of(n.b));
+    let part = if n.along == 1.0 { "ρ(A)" } else { "(v · n) ρ(A)" };
     let terms = format!("{} / {} + {} × {} = {}", n.held, n.most, short(n.along), short(n.of_a), short(n.sum()));
     let star = if n.star_shaped {
         String::new()
@@ -222,7 +223,7 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
         )
     };
     let before = n.before.map_or(String::new(), |v| format!(" It had {} in the front.", short(v)));
-    format!("Node {a} hands its solidity on to node {b}: |A| / ρ_max + (v · n) ρ(A) = {terms}.{star}{before}")
+    format!("Node {a} hands its solidity on to node {b}: |A| / ρ_max + {part} = {terms}.{star}{before}")
 }
 
 /// Draws the front, the latest projected cells, and the evidence of a note.

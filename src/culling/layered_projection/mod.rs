@@ -9,7 +9,8 @@
 //! near the rim of a wide view; a transfer against the view direction counts as none, not as negative; where a cell is cut
 //! by the view volume, its primitives are tested one by one, as the paper's baseline does; where the front runs dry before
 //! the budget does, the nearest cell in view that was not reached starts a new one, so that with an unlimited budget
-//! nothing is missed.
+//! nothing is missed. A parameter hands on the whole solidity in place of its part v · n: through the oblique faces of
+//! tetrahedra that part shrinks from cell to cell, and what lies far behind walls is soon as good as what is seen.
 //! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod explain;
@@ -43,6 +44,8 @@ pub struct Params {
     budget: Budget,
     /// Per cent of the scene's longest side.
     leaf_size: u32,
+    /// Which of [`Params::TRANSFERS`].
+    transfer: usize,
     /// Per cent that are added to the solidity of a cell that is not star-shaped.
     penalty: u32,
     seed: u32,
@@ -53,11 +56,21 @@ impl Params {
     const TESSELLATIONS: &'static [&'static str] = &["octree", "delaunay", "kd-tree"];
     const DELAUNAY: usize = 1;
     const KD_TREE: usize = 2;
+    const TRANSFERS: &'static [&'static str] = &["aligned", "whole"];
+    const WHOLE: usize = 1;
 }
 
 impl Default for Params {
     fn default() -> Self {
-        Self { tessellation: Self::DELAUNAY, budget: Budget::Percent(10.0), leaf_size: 5, penalty: 100, seed: 1, backface_culling: false }
+        Self {
+            tessellation: Self::DELAUNAY,
+            budget: Budget::Percent(10.0),
+            leaf_size: 5,
+            transfer: 0,
+            penalty: 100,
+            seed: 1,
+            backface_culling: false,
+        }
     }
 }
 
@@ -121,6 +134,8 @@ impl<S: Cellular> Method<S> for LayeredProjection {
         knobs.budget(budget, &mut params.budget);
         let leaf = knob("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
         knobs.integer(leaf, 1..=100, &mut params.leaf_size);
+        let meaning = "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
+        knobs.choice(knob("transfer", "", meaning, section!("3.2")), Params::TRANSFERS, &mut params.transfer);
         let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by";
         knobs.integer(knob("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
         let seed = knob("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));

@@ -156,7 +156,7 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (held, most) = (assignment.held(a), assignment.most());
         let toward = self.cells.center(b.cell) - self.view.eye.position;
         let sight = toward * (1.0 / toward.length().max(f32::MIN_POSITIVE));
-        let along = sight.dot(b.normal).max(0.0);
+        let along = if self.params.transfer == Params::WHOLE { 1.0 } else { sight.dot(b.normal).max(0.0) };
         let sum = held as f32 / most.max(1) as f32 + along * of_a;
         let star_shaped = self.cells.leaves_into(b.cell, a, self.view.eye.position);
         let solidity = if star_shaped { sum } else { sum * (1.0 + self.params.penalty as f32 / 100.0) };
