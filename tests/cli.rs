@@ -494,3 +494,23 @@ fn tables_of_the_paper_are_measured_and_written() {
     refused(&here, &["paper", "coorg-teller-nodes", "--scene", "missing.obj"], 1);
     refused(&here, &["paper", "coorg-teller-nodes", "--size", "0x3"], 2);
 }
+
+#[test]
+fn occlusion_is_measured_on_an_input_that_others_read_too() {
+    let folder = folder("bench");
+    fs::write(folder.join("wall.obj"), "v -2 -2 -5\nv 2 -2 -5\nv 2 2 -5\nv -2 2 -5\nf 1 2 3 4\n").expect("a written file");
+    // Behind the wall, before it, behind the eye, beside the wall.
+    let boxes = "-0.5 -0.5 -8 0.5 0.5 -7\n-0.5 -0.5 -4 0.5 0.5 -3\n0 0 3 1 1 4\n6 -0.5 -8 7 0.5 -7\n";
+    fs::write(folder.join("boxes.txt"), boxes).expect("a written file");
+    let camera = "1 0 0 0  0 1 0 0  0 0 -1 -0.2  0 0 -1 0  0.1  0 0 0\n";
+    fs::write(folder.join("cams.txt"), camera).expect("a written file");
+    let call = ["bench", "occlusion", "--mesh", "wall.obj", "--boxes", "boxes.txt", "--cams", "cams.txt", "--size"];
+    let said = done(&folder, &[&call[..], &["64x64", "--repeat", "2", "--dump-vis", "vis"]].concat());
+    assert!(said.starts_with("RESULT render_ms=") && said.contains(" pct_occluded_of_infrustum=33.333 false=0 hash="), "{said}");
+    assert_eq!(fs::read(folder.join("vis")).expect("a written file"), [1, 0, 3, 0]);
+    let wide = refused(&folder, &[&call[..], &["64x32"]].concat(), 1);
+    assert!(wide.contains("cams.txt line 1") && wide.contains("square"), "{wide}");
+    fs::write(folder.join("cams.txt"), "1 2 3\n").expect("a written file");
+    assert!(refused(&folder, &[&call[..], &["64x64"]].concat(), 1).contains("expected 20 finite numbers"));
+    assert!(refused(&folder, &[&call[..], &["64x64", "--set", "coherenc=true"]].concat(), 2).contains("coherenc"));
+}

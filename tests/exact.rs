@@ -43,9 +43,10 @@ struct Sum {
     all_ms: f64,
 }
 
-fn look<S: Methods + Drawable>(method: &str, scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
+fn look<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
     let entry = S::method(method).expect("a method");
-    let mut run = entry.ready(scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
+    let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let mut run = entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled");
     let mut truth = Truth::new(scene, false, 1, WHITE);
     let mut target = Target::default();
     let mut sum = Sum { views: views.len(), ..Sum::default() };
@@ -82,14 +83,22 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
 }
 
 /// The methods that draw fewer primitives than all, and promise to miss none.
-const METHODS: [&str; 3] = ["frustum", "large-occluders", "hierarchical-z"];
+const METHODS: [(&str, &[(&str, &str)]); 6] = [
+    ("frustum", &[]),
+    ("large-occluders", &[]),
+    ("hierarchical-z", &[]),
+    ("hierarchical-z", &[("coherence", "false"), ("query", "rectangles"), ("redistribution", "split")]),
+    ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
+    ("hierarchical-z", &[("processors", "4"), ("leaf-primitives", "256")]),
+];
 
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
-    METHODS.iter().map(|method| check_method(method, scene, views)).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+    METHODS.iter().map(|(method, pairs)| check_method(method, pairs, scene, views)).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-fn check_method<S: Methods + Drawable>(method: &str, scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
-    let sum = look(method, scene, views);
+fn check_method<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
+    let sum = look(method, pairs, scene, views);
+    let method = pairs.iter().fold(method.to_owned(), |text, (k, v)| format!("{text} {k}={v}"));
     let per = |total: f64| total / sum.views.max(1) as f64;
     println!(
         "{method:<16} {:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",

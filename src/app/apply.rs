@@ -244,6 +244,7 @@ impl State {
             Action::LayoutDebug => self.set_layout(Layout::Debug),
             Action::LayoutLecture => self.set_layout(Layout::Lecture),
             Action::LayoutFigure => self.set_layout(Layout::Figure),
+            Action::LayoutPictures => self.set_layout(Layout::Pictures),
             Action::ResetLayout => self.effects.push(Effect::ResetLayout),
             Action::ScaleUp => shown.scale = (shown.scale * 1.1).min(4.0),
             Action::ScaleDown => shown.scale = (shown.scale / 1.1).max(0.5),

@@ -158,6 +158,7 @@ actions! {
     View LayoutDebug "layout-debug" "Layout: debug" ["Alt+1"] "All panels.";
     View LayoutLecture "layout-lecture" "Layout: lecture" ["Alt+2"] "Big type, few panels, the step in a caption.";
     View LayoutFigure "layout-figure" "Layout: figure" ["Alt+3"] "The picture alone, as it is exported.";
+    View LayoutPictures "layout-pictures" "Layout: pictures" ["Alt+4"] "The method's own pictures (a pyramid, lists, a timeline) beside the scene.";
     View ResetLayout "reset-layout" "Reset layout" ["Alt+0"] "Puts every panel back.";
     View Tables "paper-table" "Paper tables…" [] "Measures the tables of the method's paper, beside the paper's own figures.";
     View ScaleUp "scale-up" "Larger" ["Ctrl+Plus", "Ctrl+Equals"] "Everything larger.";

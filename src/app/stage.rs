@@ -8,6 +8,7 @@ use std::sync::Arc;
 use crate::culling::{Card, Event, Field, Film, Knob, KnobValue, Methods, Verdict};
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
+use crate::raster::DepthScale;
 use crate::scene::{Report, Scene, framing_view, write_views};
 use crate::trace::{Counts, Moves, Stamps, State};
 
@@ -136,6 +137,12 @@ pub trait Staged {
     fn card(&self) -> Option<&'static Card>;
     /// Parameters of the recorded run.
     fn film_knobs(&self) -> Vec<(Knob, KnobValue)>;
+    /// Names of the method's pictures that are not of the world.
+    fn pictures(&self) -> &'static [&'static str];
+    /// One of them at a step; empty if there is none.
+    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing;
+    /// What is under a point of it, in words.
+    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String>;
     /// Events of the film.
     fn events(&self) -> &[Event];
     /// Events that were not kept.
@@ -233,6 +240,15 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn film_knobs(&self) -> Vec<(Knob, KnobValue)> {
         self.recorded.as_ref().map_or(vec![], |r| r.film.knobs().to_vec())
+    }
+    fn pictures(&self) -> &'static [&'static str] {
+        self.recorded.as_ref().map_or(&[], |r| r.film.pictures())
+    }
+    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing {
+        self.recorded.as_ref().filter(|_| which < self.pictures().len()).map_or(Drawing::default(), |r| r.film.picture(step, which, scale))
+    }
+    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String> {
+        self.recorded.as_ref()?.film.probe(step, which, at)
     }
     fn events(&self) -> &[Event] {
         self.recorded.as_ref().map_or(&[], |r| r.film.events())

@@ -51,17 +51,20 @@ pub enum Layout {
     Lecture,
     /// The picture alone.
     Figure,
+    /// The method's own pictures beside the scene.
+    Pictures,
 }
 
 impl Layout {
     /// Every layout, in the order of menus.
-    pub const ALL: [Layout; 3] = [Layout::Debug, Layout::Lecture, Layout::Figure];
+    pub const ALL: [Layout; 4] = [Layout::Debug, Layout::Lecture, Layout::Figure, Layout::Pictures];
     /// Its name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Debug => "debug",
             Self::Lecture => "lecture",
             Self::Figure => "figure",
+            Self::Pictures => "pictures",
         }
     }
 }

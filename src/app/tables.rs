@@ -14,12 +14,8 @@ use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::render::{self, PngSize, SvgOptions};
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 
-/// What is measured where no scene is open.
-const SCENES: [&str; 2] = ["generate:building", "generate:city"];
 /// Frames a scene: few enough to wait for.
 const FRAMES: usize = 96;
-/// The method whose parameters are taken over.
-const METHOD: &str = "large-occluders";
 /// Resolution of PNG files, for print.
 const DPI: f32 = 300.0;
 
@@ -54,8 +50,9 @@ pub(super) fn measure(name: &str, scene: Option<AnyScene>, settings: Settings, p
     let mut start = 0.0;
     let mut scenes: Vec<AnyScene> = scene.into_iter().collect();
     if scenes.is_empty() {
-        for (i, source) in SCENES.iter().enumerate() {
-            let part = Part { whole: progress, start: 0.1 * i as f32, length: 0.1 };
+        let share = 0.2 / experiment.scenes.len() as f32;
+        for (i, source) in experiment.scenes.iter().enumerate() {
+            let part = Part { whole: progress, start: share * i as f32, length: share };
             scenes.push(load(source, &LoadOptions::default(), &part).map_err(|e| e.to_string())?);
         }
         start = 0.2;
@@ -75,7 +72,9 @@ impl State {
                     Any::Flat(s) => AnyScene::Flat(s.scene.clone()),
                     Any::Solid(s) => AnyScene::Solid(s.scene.clone()),
                 });
-                let settings = if self.method == METHOD { self.settings.clone() } else { Settings::default() };
+                // The parameters that are set are taken over if they are those of its method.
+                let is_its = Experiment::named(name).is_some_and(|e| e.method == self.method);
+                let settings = if is_its { self.settings.clone() } else { Settings::default() };
                 self.worker.ask("Measuring", Job::Measure { name, scene, settings });
             }
             Tables::Stop => {

@@ -4,6 +4,7 @@
 //! 1 the work failed, 2 the words of the call are off. An error is one line, `error: WHAT: WHY`, and if it
 //! helps one line `help: …`.
 
+mod bench;
 mod convert;
 mod cull;
 mod error;
@@ -59,6 +60,9 @@ enum Command {
     Figure(figure::Args),
     /// Measure the tables of the papers, beside the papers' own figures
     Paper(paper::Args),
+    /// Measure on an input that other programs read too
+    #[command(subcommand)]
+    Bench(bench::Command),
     /// List the methods and their parameters
     Methods(methods::Args),
     /// Look into scenes and convert them
@@ -85,6 +89,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Paper(args)) => paper::run(&args),
+        Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),
         Some(Command::Trace(command)) => trace::run(&command),

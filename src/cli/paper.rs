@@ -13,7 +13,7 @@ use crate::figure::chart;
 use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::raster::Target;
 use crate::render::{RenderError, Theme};
-use crate::scene::{LoadOptions, Part};
+use crate::scene::{AnyScene, LoadOptions, Part};
 
 #[derive(clap::Args)]
 #[command(
@@ -30,7 +30,7 @@ pub(super) struct Args {
     #[arg(long)]
     list: bool,
     /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]; may be given several times [default:
-    /// generate:building and generate:city]
+    /// generated scenes that are likened to the paper's]
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     /// Frames that are measured on each scene
@@ -69,10 +69,7 @@ enum Format {
     Png,
 }
 
-/// What the paper's models are likened to.
-const SCENES: [&str; 2] = ["generate:building", "generate:city"];
-
-fn size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
     let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
     both.ok_or_else(|| format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX))
@@ -93,8 +90,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         experiment.check(&setup.settings).map_err(explained)?;
     }
     let formats: BTreeSet<Format> = args.format.iter().copied().collect();
-    let sources: Vec<&str> = if args.scene.is_empty() { SCENES.to_vec() } else { args.scene.iter().map(String::as_str).collect() };
-    let scenes = sources.iter().map(|s| scene::open(s, &LoadOptions::default())).collect::<Result<Vec<_>, _>>()?;
+    let open = |sources: &[&str]| sources.iter().map(|s| scene::open(s, &LoadOptions::default())).collect::<Result<Vec<_>, _>>();
+    let named = open(&args.scene.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let mut own: (&[&str], Vec<AnyScene>) = (&[], vec![]);
     if formats.iter().any(|f| *f != Format::Text) {
         fs::create_dir_all(&args.out).map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
     }
@@ -102,7 +100,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let n = experiments.len() as f32;
         let bar = Bar::new();
         let part = Part { whole: &bar, start: i as f32 / n, length: 1.0 / n };
-        let report = experiment.run(&scenes, &setup, &part).map_err(explained)?;
+        if named.is_empty() && own.0 != experiment.scenes {
+            own = (experiment.scenes, open(experiment.scenes)?);
+        }
+        let scenes = if named.is_empty() { &own.1 } else { &named };
+        let report = experiment.run(scenes, &setup, &part).map_err(explained)?;
         drop(bar);
         for format in &formats {
             write(&report, *format, &args.out, &recipe(args, experiment))?;

@@ -8,6 +8,7 @@ use super::{Card, DrawList, Event, Field, Knob, KnobValue, Knobs, Method, Note, 
 use crate::drawing::Drawing;
 use crate::geometry::{Space, View};
 use crate::index::Hierarchy;
+use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
 
 /// A method of a space.
@@ -104,8 +105,10 @@ pub trait Film<S: Space>: Send + Sync {
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
     /// Names of the method's pictures that are not of the world.
     fn pictures(&self) -> &'static [&'static str];
-    /// Picture `which < pictures().len()` at a step, in paper coordinates.
-    fn picture(&self, step: usize, which: usize) -> Drawing;
+    /// Picture `which < pictures().len()` at a step, in paper coordinates, with depths in gray on this scale.
+    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing;
+    /// What is under a point of such a picture, in words.
+    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String>;
 }
 
 pub(super) struct Of<M>(PhantomData<fn() -> M>);
@@ -199,7 +202,7 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
             index: self.index.clone(),
             knobs: self.knobs(),
             view: *view,
-            keys: Mutex::new(vec![(0, M::dense(&self.scene, view))]),
+            states: Mutex::new(States { keys: vec![(0, M::dense(&self.scene, view))], last: None }),
             recorder,
         };
         Recording { list, film: Arc::new(film) }
@@ -221,8 +224,7 @@ struct Reel<S: Space, M: Method<S>> {
     knobs: Vec<(Knob, KnobValue)>,
     view: View<S>,
     recorder: Recorder<M::Note>,
-    /// (notes applied, state), ascending, filled as far as anyone has looked.
-    keys: Mutex<Vec<(usize, M::Dense)>>,
+    states: Mutex<States<M::Dense>>,
 }
 
 impl<S: Space, M: Method<S>> Reel<S, M> {
@@ -233,19 +235,33 @@ impl<S: Space, M: Method<S>> Reel<S, M> {
         &self.recorder.notes[..last.unwrap_or(0)]
     }
     /// Large state after the first `seen` notes.
-    fn dense_after(&self, seen: usize) -> M::Dense {
-        let mut keys = self.keys.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    fn dense_after(&self, seen: usize) -> Arc<M::Dense> {
+        let mut states = self.states.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        let States { keys, last } = &mut *states;
         let nearest = keys.partition_point(|(at, _)| *at <= seen) - 1;
-        let (mut at, mut dense) = keys[nearest].clone();
+        // Mostly the step before was looked at last.
+        let (mut at, mut dense) = match last.take() {
+            Some((at, dense)) if (keys[nearest].0..=seen).contains(&at) => (at, dense),
+            _ => (keys[nearest].0, Arc::new(keys[nearest].1.clone())),
+        };
         while at < seen && size_of::<M::Dense>() > 0 {
-            M::apply(&mut dense, &self.scene, &self.recorder.notes[at]);
+            M::apply(Arc::make_mut(&mut dense), &self.scene, &self.recorder.notes[at]);
             at += 1;
             if at.is_multiple_of(M::KEYFRAME_NOTES) && keys.last().is_some_and(|(last, _)| *last < at) {
-                keys.push((at, dense.clone()));
+                keys.push((at, (*dense).clone()));
             }
         }
+        *last = Some((at, dense.clone()));
         dense
     }
+}
+
+/// Large state at some steps.
+struct States<D> {
+    /// (notes applied, state), ascending, filled as far as anyone has looked.
+    keys: Vec<(usize, D)>,
+    /// The one that was looked at last.
+    last: Option<(usize, Arc<D>)>,
 }
 
 impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
@@ -304,9 +320,12 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     fn pictures(&self) -> &'static [&'static str] {
         M::PICTURES
     }
-    fn picture(&self, step: usize, which: usize) -> Drawing {
+    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing {
         let notes = self.notes_before(step);
-        M::picture(&self.dense_after(notes.len()), &self.scene, &self.index, &self.view, notes, which)
+        M::picture(&self.dense_after(notes.len()), &self.view, notes, which, scale)
+    }
+    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String> {
+        M::probe(&self.dense_after(self.notes_before(step).len()), &self.view, which, at)
     }
 }
 

@@ -79,6 +79,8 @@ pub(super) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, V
 /// Listens to a run. It cannot answer: nothing is returned and no state is seen, so a watched run and
 /// an unwatched one cannot differ.
 pub trait Observer<Note> {
+    /// Whether anybody hears. Only for leaving the order of work open where nobody does; never for what is decided.
+    const LISTENS: bool = true;
     /// A fact in the shared vocabulary.
     fn event(&mut self, event: Event);
     /// A piece of evidence. The closure runs only if someone is listening.
@@ -90,6 +92,7 @@ pub trait Observer<Note> {
 pub struct Unobserved;
 
 impl<N> Observer<N> for Unobserved {
+    const LISTENS: bool = false;
     #[inline(always)]
     fn event(&mut self, _: Event) {}
     #[inline(always)]
@@ -118,6 +121,13 @@ impl Tally {
         match self.own.iter_mut().find(|(known, _)| std::ptr::eq(*known, name)) {
             Some((_, count)) => *count += by,
             None => self.add_by_text(name, by),
+        }
+    }
+    /// Raises a count of the method's own to `least`.
+    pub fn at_least(&mut self, name: &'static str, least: u64) {
+        match self.own.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, count)) => *count = least.max(*count),
+            None => self.own.push((name, least)),
         }
     }
     #[cold]

@@ -6,6 +6,7 @@ use super::{Knobs, Observer, event::Tallied};
 use crate::drawing::Drawing;
 use crate::geometry::{PrimId, Space, View};
 use crate::index::Hierarchy;
+use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
 
 /// One line of a method's pseudocode.
@@ -139,8 +140,12 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     const PICTURES: &'static [&'static str] = &[];
     /// Draws picture `which < PICTURES.len()` at one step, in paper coordinates with its size: from the large
     /// state and all notes up to that step, the current one last.
-    fn picture(_dense: &Self::Dense, _scene: &Scene<S>, _index: &Self::Index, _view: &View<S>, _notes: &[Self::Note], _which: usize) -> Drawing {
+    fn picture(_dense: &Self::Dense, _view: &View<S>, _notes: &[Self::Note], _which: usize, _scale: DepthScale) -> Drawing {
         Drawing::default()
+    }
+    /// What is under a point of that picture, in words.
+    fn probe(_dense: &Self::Dense, _view: &View<S>, _which: usize, _at: glam::Vec2) -> Option<String> {
+        None
     }
     /// Draws, in world coordinates, what is private to the method at one step: its large state, and
     /// the evidence of the current note.

@@ -18,6 +18,7 @@ mod method;
 
 pub use entry::{Entry, Film, Recording, RestoreError, Run};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
+pub use hierarchical_z::anatomy as obscuration;
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
 pub use large_occluders::anatomy;
 pub use method::{Card, CodeLine, DrawList, Field, Method, Note, Value};

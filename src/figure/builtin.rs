@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::coorg_teller;
 use super::page::{Entry, Page, Paper, Swatch, legend};
 use super::{Look, Panel, Picture, observer_above, panels, world};
+use super::{coorg_teller, georges};
 use crate::culling::{Film, Methods, Settings, Value, Verdict};
 use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
 use crate::geometry::{Aabb, Flat, NodeId, Solid, View};
-use crate::raster::{self, Drawable};
+use crate::raster;
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, example, load};
 use crate::trace::Stamps;
 
@@ -30,7 +30,7 @@ pub struct Builtin {
 
 impl Builtin {
     /// Figure `i` of a paper.
-    const fn of_paper(figures: &[coorg_teller::Row], i: usize) -> Self {
+    const fn of_paper(figures: &[Row], i: usize) -> Self {
         let (name, summary, make) = figures[i];
         Self { name, summary, make }
     }
@@ -42,6 +42,9 @@ impl Builtin {
         (self.make)(tint)
     }
 }
+
+/// Name, summary and maker of a figure of a paper.
+pub(super) type Row = (&'static str, &'static str, fn(Tint) -> Result<Drawing, SceneError>);
 
 /// All built-in figures, in the order of lists.
 pub static BUILTIN: &[Builtin] = &[
@@ -62,16 +65,23 @@ pub static BUILTIN: &[Builtin] = &[
     Builtin::of_paper(coorg_teller::FIGURES, 8),
     Builtin::of_paper(coorg_teller::FIGURES, 9),
     Builtin::of_paper(coorg_teller::FIGURES, 10),
+    Builtin::of_paper(georges::FIGURES, 0),
+    Builtin::of_paper(georges::FIGURES, 1),
+    Builtin::of_paper(georges::FIGURES, 2),
+    Builtin::of_paper(georges::FIGURES, 3),
+    Builtin::of_paper(georges::FIGURES, 4),
+    Builtin::of_paper(georges::FIGURES, 5),
+    Builtin::of_paper(georges::FIGURES, 6),
 ];
 
 /// Width of a figure over two columns, inside its margins.
-const WIDTH_PT: f32 = 496.0;
+pub(super) const WIDTH_PT: f32 = 496.0;
 
-fn settings(pairs: &[(&str, &str)]) -> Settings {
+pub(super) fn settings(pairs: &[(&str, &str)]) -> Settings {
     Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
 }
 
-fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>, method: &str, pairs: &[(&str, &str)]) -> Arc<dyn Film<S>> {
+pub(super) fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>, method: &str, pairs: &[(&str, &str)]) -> Arc<dyn Film<S>> {
     let entry = S::method(method).expect("built-in figures name methods that exist");
     let run = entry.ready(scene, &settings(pairs), &Quiet).expect("built-in figures use settings that exist");
     run.expect("nobody cancels a built-in figure").record(view, usize::MAX).film
@@ -84,13 +94,13 @@ fn airy(scene: &Scene<Flat>, eye: Vec2) -> Aabb<Vec2> {
     Aabb { min: b.min - air, max: b.max + air }
 }
 
-fn flat_panel(film: &dyn Film<Flat>, step: usize, look: &Look, label: String) -> Panel {
+pub(super) fn flat_panel(film: &dyn Film<Flat>, step: usize, look: &Look, label: String) -> Panel {
     let stamps = Stamps::new(film);
     Panel { label, picture: Picture::Flat(world(film, &stamps, step, look), airy(film.scene(), film.view().eye.position)) }
 }
 
 /// A built-in view of a flatland scene: an eye of the file.
-fn eye(scene: &Scene<Flat>, number: usize) -> View<Flat> {
+pub(super) fn eye(scene: &Scene<Flat>, number: usize) -> View<Flat> {
     scene.paths()[0].views[number % scene.paths()[0].views.len()]
 }
 
@@ -98,7 +108,7 @@ fn eye(scene: &Scene<Flat>, number: usize) -> View<Flat> {
 const STREET: &str = "street";
 
 /// A page over two columns with the legend of what occurs in the picture.
-fn page(title: &str, caption: impl Into<String>, content: &Drawing) -> Drawing {
+pub(super) fn page(title: &str, caption: impl Into<String>, content: &Drawing) -> Drawing {
     Page { paper: Paper::TwoColumns, title: title.to_owned(), legend: legend(content), caption: caption.into() }.compose(content)
 }
 
@@ -246,7 +256,10 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
         &[
             Panel { label: "shaded".into(), picture: pixels(raster::shade(&target, &*scene, &view, paper)) },
             Panel { label: format!("item buffer: {visible} triangles visible"), picture: pixels(items) },
-            Panel { label: "depth, logarithmic: near is dark".into(), picture: pixels(depth_image(&target.depth, &view)) },
+            Panel {
+                label: "depth, logarithmic: near is dark".into(),
+                picture: pixels(raster::shade_depth(&target.depth, &target.depth, 1.0 / view.eye.far, raster::DepthScale::Logarithmic)),
+            },
         ],
     );
     let caption = format!(
@@ -255,12 +268,4 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
         scene.live().len()
     );
     Ok(page("The truth: an item buffer", caption, &content))
-}
-
-/// View depth on a logarithmic gray scale from near (dark) to far (light).
-fn depth_image<S: Drawable>(reciprocal_depth: &[f32], view: &View<S>) -> Vec<u8> {
-    let nearest = reciprocal_depth.iter().copied().fold(0.0, f32::max).max(1.0 / view.eye.far);
-    let range = (nearest * view.eye.far).ln().max(1e-6);
-    let gray = |d: &f32| (255.0 * ((nearest / d).ln() / range).clamp(0.0, 1.0)) as u8;
-    reciprocal_depth.iter().map(gray).flat_map(|g| [g, g, g, 255]).collect()
 }

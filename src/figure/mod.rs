@@ -9,6 +9,7 @@ mod builtin;
 mod chart;
 mod clip;
 mod coorg_teller;
+mod georges;
 mod look;
 pub mod page;
 mod panels;

@@ -61,6 +61,10 @@ pub struct OctreeNode<V> {
     pub bounds: Aabb<V>,
     /// Bounds of all primitives here and below as wholes: beyond `bounds` where some are shared with a neighbor.
     pub whole: Aabb<V>,
+    /// The same of what the node itself holds, without its children.
+    pub held: Aabb<V>,
+    /// Those as wholes.
+    pub held_whole: Aabb<V>,
     /// Which child of its parent it is: bit `a` is set for the upper half along axis `a`.
     pub octant: u8,
     /// Depth below the root.
@@ -132,6 +136,7 @@ impl<V: Vector> Octree<V> {
             node.bounds = node.bounds.union(clipped(&e.bounds, &node.cube));
             node.whole = node.whole.union(e.bounds);
         }
+        (node.held, node.held_whole) = (node.bounds, node.whole);
         self.order.extend(own.iter().chain(&passed).map(|e| e.prim));
         self.shared.extend(shared.iter().map(|e| e.prim));
         drop((own, shared, passed));
@@ -210,6 +215,10 @@ impl<V: Vector> Octree<V> {
     pub fn nodes(&self) -> &[OctreeNode<V>] {
         &self.nodes
     }
+    /// The cube that a cube is part of; `None` for the root.
+    pub fn parent_of(&self, node: NodeId) -> Option<NodeId> {
+        (node.0 != 0).then(|| NodeId(self.nodes[node.at()].parent))
+    }
     /// The primitives that are a node's alone.
     #[inline]
     pub fn own(&self, node: NodeId) -> &[PrimId] {
@@ -279,6 +288,8 @@ impl<V: Vector> OctreeNode<V> {
             cube,
             bounds: empty,
             whole: empty,
+            held: empty,
+            held_whole: empty,
             octant,
             level,
             parent,
@@ -332,7 +343,7 @@ impl<S: Space> Hierarchy<S> for Octree<S::Vector> {
         self.nodes[node.at()].bounds
     }
     fn parent(&self, node: NodeId) -> Option<NodeId> {
-        (node.0 != 0).then(|| NodeId(self.nodes[node.at()].parent))
+        self.parent_of(node)
     }
     fn children(&self, node: NodeId) -> Range<u32> {
         self.nodes[node.at()].children()

@@ -10,7 +10,7 @@
 use rayon::prelude::*;
 
 use super::pyramid::Pyramid;
-use super::setup::{Setup, center};
+use super::setup::{Edge, Setup, center};
 use super::simd::{self, Lanes, Work};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
 use super::{Extent, Options, Sieve, Target, check_size};
@@ -213,37 +213,56 @@ fn fill_small<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     }
 }
 
+/// Rows whose spans are found at a time: the arithmetic of many rows is SIMD, that of one is not.
+const SPAN_ROWS: usize = 16;
+
 /// Rows of any width, from the exact ends of their spans.
 #[inline(always)]
 fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
     let ahead = band.width * PREFETCH_ROWS;
-    for y in y0..y1 {
-        let (mut begin, mut end) = (0, s.x1 - s.x0);
+    let mut y = y0;
+    while y < y1 {
+        let (mut begin, mut end) = ([0; SPAN_ROWS], [s.x1 - s.x0; SPAN_ROWS]);
         for (edge, &inverse) in s.edges.iter().zip(&inverse) {
-            let e = edge.at + i64::from(edge.dy) * i64::from(y - s.y0);
-            if edge.dx > 0 {
-                begin = begin.max(-quotient(e, inverse));
-            } else if edge.dx < 0 {
-                end = end.min(quotient(e, inverse) + 1);
-            } else if e < 0 {
-                end = 0;
+            narrow(edge, inverse, y - s.y0, &mut begin, &mut end);
+        }
+        for (k, y) in (y..y1.min(y + SPAN_ROWS as i32)).enumerate() {
+            let row = (y - band.first_row) as usize * band.width;
+            let base = l.splat(s.plane.at_row(y));
+            let (mut x, end) = (s.x0 + begin[k], s.x0 + end[k]);
+            while x < end {
+                let at = row + x as usize;
+                let past = row + end.min(x + L::N as i32) as usize;
+                // Rows are a page apart, which hardware does not foresee.
+                l.prefetch(band.depth.get(at + ahead));
+                l.prefetch(band.item.get(at + ahead));
+                let along = l.mul(slope, l.ramp_f(center(x) - s.plane.x, 1 << SUBPIXEL_BITS));
+                let z = l.clamp(l.add(base, along), low, high);
+                l.merge(&mut band.depth[at..past], &mut band.item[at..past], l.all(), z, s.id);
+                x += L::N as i32;
             }
         }
-        let row = (y - band.first_row) as usize * band.width;
-        let base = l.splat(s.plane.at_row(y));
-        let (mut x, end) = (s.x0 + begin, s.x0 + end);
-        while x < end {
-            let at = row + x as usize;
-            let past = row + end.min(x + L::N as i32) as usize;
-            // Rows are a page apart, which hardware does not foresee.
-            l.prefetch(band.depth.get(at + ahead));
-            l.prefetch(band.item.get(at + ahead));
-            let along = l.mul(slope, l.ramp_f(center(x) - s.plane.x, 1 << SUBPIXEL_BITS));
-            let z = l.clamp(l.add(base, along), low, high);
-            l.merge(&mut band.depth[at..past], &mut band.item[at..past], l.all(), z, s.id);
-            x += L::N as i32;
+        y += SPAN_ROWS as i32;
+    }
+}
+
+/// Takes from the spans of some rows, the first of them `skipped` rows below the triangle's first, what lies beyond an edge.
+#[inline(always)]
+fn narrow(edge: &Edge, inverse: f64, skipped: i32, begin: &mut [i32; SPAN_ROWS], end: &mut [i32; SPAN_ROWS]) {
+    let (at, dy) = (edge.at + i64::from(edge.dy) * i64::from(skipped), i64::from(edge.dy));
+    if edge.dx > 0 {
+        for (k, begin) in begin.iter_mut().enumerate() {
+            *begin = (*begin).max(-quotient(at + dy * k as i64, inverse));
+        }
+    } else if edge.dx < 0 {
+        for (k, end) in end.iter_mut().enumerate() {
+            *end = (*end).min(quotient(at + dy * k as i64, inverse) + 1);
+        }
+    } else {
+        for (k, end) in end.iter_mut().enumerate() {
+            *end = if at + dy * (k as i64) < 0 { 0 } else { *end };
         }
     }
 }
@@ -257,7 +276,10 @@ fn quotient(e: i64, inverse: f64) -> i32 {
     const NUDGE: f64 = 1.0 / (1 << 26) as f64;
     let q = (e as f64 * inverse + NUDGE).clamp(-LIMIT, LIMIT);
     // Truncation rounds down once the value is not negative.
-    (q + LIMIT) as i32 - LIMIT as i32
+    // SAFETY: the value lies within 0..=2¹⁷. (The checked conversion is not SIMD.)
+    #[allow(unsafe_code)]
+    let floor: i32 = unsafe { (q + LIMIT).to_int_unchecked() };
+    floor - LIMIT as i32
 }
 
 struct Project<'a> {

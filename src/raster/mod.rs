@@ -24,7 +24,7 @@ mod tests;
 mod vertex;
 
 pub use pyramid::{Pyramid, PyramidCell};
-pub use shade::{shade, shade_with};
+pub use shade::{DepthScale, shade, shade_depth, shade_with};
 pub use simd::Isa;
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};

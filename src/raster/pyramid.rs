@@ -122,6 +122,15 @@ impl Pyramid {
     pub fn is_stale(&self, cell: PyramidCell) -> bool {
         (1..=TILE_LEVEL as u8).contains(&cell.level) && self.state[self.tile_of(cell)] & STALE != 0
     }
+    /// Whether any tile under a cell of any level above 0 is stale; slower.
+    pub fn is_stale_below(&self, cell: PyramidCell) -> bool {
+        if u32::from(cell.level) <= TILE_LEVEL {
+            return self.is_stale(cell);
+        }
+        let r = cell.pixels(self.width, self.height);
+        let columns = r.x0 / TILE_PX..r.x1.div_ceil(TILE_PX);
+        (r.y0 / TILE_PX..r.y1.div_ceil(TILE_PX)).any(|row| columns.clone().any(|c| self.state[(row * self.columns + c) as usize] & STALE != 0))
+    }
     #[inline]
     fn tile_of(&self, cell: PyramidCell) -> usize {
         let up = TILE_LEVEL - u32::from(cell.level);

@@ -59,3 +59,45 @@ fn encode(color: [f32; 3]) -> [u8; 4] {
     });
     [r, g, b, 255]
 }
+
+/// How depths become gray.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DepthScale {
+    /// By the logarithm of the view depth.
+    #[default]
+    Logarithmic,
+    /// By the view depth.
+    Linear,
+    /// By rank: as many pixels of every gray.
+    Equalized,
+}
+
+impl DepthScale {
+    /// Every scale, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Logarithmic, Self::Linear, Self::Equalized];
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Logarithmic => "logarithmic",
+            Self::Linear => "linear",
+            Self::Equalized => "equalized",
+        }
+    }
+}
+
+/// A gray picture of depths (`1/w`): near is dark, far is light, on the scale of the depths that occur in `all`; `empty`, where
+/// nothing was drawn, is white. RGBA.
+pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -> Vec<u8> {
+    let drawn = all.iter().copied().filter(|d| *d > empty);
+    let (nearest, farthest) = drawn.clone().fold((0f32, f32::INFINITY), |(n, f), d| (n.max(d), f.min(d)));
+    let mut ranks: Vec<f32> = if scale == DepthScale::Equalized { drawn.collect() } else { vec![] };
+    ranks.sort_by(|a, b| b.total_cmp(a));
+    let share = |d: f32| match scale {
+        DepthScale::Logarithmic => (nearest / d).ln() / (nearest / farthest).ln(),
+        DepthScale::Linear => (1.0 / d - 1.0 / nearest) / (1.0 / farthest - 1.0 / nearest),
+        DepthScale::Equalized => ranks.partition_point(|r| *r > d) as f32 / ranks.len() as f32,
+    };
+    // The lightest gray stays apart from white.
+    let gray = |d: f32| if d <= empty { 255 } else { (20.0 + 205.0 * Some(share(d)).filter(|s| s.is_finite()).unwrap_or(0.0).clamp(0.0, 1.0)) as u8 };
+    depths.iter().map(|&d| gray(d)).flat_map(|g| [g, g, g, 255]).collect()
+}

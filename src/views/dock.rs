@@ -5,7 +5,7 @@ use egui_tiles::{Container, Linear, LinearDir, SimplificationOptions, TileId, Ti
 use serde::{Deserialize, Serialize};
 
 use super::window::Cache;
-use super::{Answers, canvas, code, events, inspector, parameters, space, strip, timeline, why};
+use super::{Answers, canvas, code, events, inspector, parameters, pictures, space, strip, timeline, why};
 use crate::app::{Any, Layout, State};
 
 /// A panel.
@@ -27,6 +27,8 @@ pub enum Pane {
     Timeline,
     /// The pseudocode.
     Code,
+    /// The method's own pictures.
+    Pictures,
 }
 
 impl Pane {
@@ -41,9 +43,11 @@ impl Pane {
             Self::Parameters => "Parameters",
             Self::Timeline => "Timeline",
             Self::Code => "Pseudocode",
+            Self::Pictures => "Pictures",
         }
     }
-    const ALL: [Pane; 8] = [Self::Events, Self::Eye, Self::Observer, Self::Why, Self::Inspector, Self::Parameters, Self::Timeline, Self::Code];
+    const ALL: [Pane; 9] =
+        [Self::Events, Self::Eye, Self::Observer, Self::Why, Self::Inspector, Self::Parameters, Self::Timeline, Self::Code, Self::Pictures];
 }
 
 /// The panels of a layout.
@@ -57,12 +61,18 @@ pub fn tree(layout: Layout) -> Tree<Pane> {
             linear(&mut tiles, LinearDir::Horizontal, &[(observer, 2.0), (right, 1.0)])
         }
         Layout::Figure => tiles.insert_pane(Pane::Observer),
+        Layout::Pictures => {
+            let [observer, pictures, timeline, code] = [Pane::Observer, Pane::Pictures, Pane::Timeline, Pane::Code].map(|p| tiles.insert_pane(p));
+            let left = linear(&mut tiles, LinearDir::Vertical, &[(observer, 1.6), (code, 1.3), (timeline, 0.8)]);
+            linear(&mut tiles, LinearDir::Horizontal, &[(left, 1.0), (pictures, 1.5)])
+        }
     };
     Tree::new(egui::Id::unique("panels"), root, tiles)
 }
 
 fn debug(tiles: &mut Tiles<Pane>) -> TileId {
-    let [events, eye, observer, why, inspector, parameters, timeline, code] = Pane::ALL.map(|p| tiles.insert_pane(p));
+    let [events, eye, observer, why, inspector, parameters, timeline, code, own] = Pane::ALL.map(|p| tiles.insert_pane(p));
+    let eye = tiles.insert_tab_tile(vec![eye, own]);
     let pictures = linear(tiles, LinearDir::Horizontal, &[(eye, 1.0), (observer, 1.25)]);
     let side = linear(tiles, LinearDir::Vertical, &[(why, 1.0), (inspector, 1.2), (parameters, 1.0)]);
     let below = linear(tiles, LinearDir::Horizontal, &[(timeline, 1.3), (code, 1.0)]);
@@ -127,6 +137,7 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
                     Pane::Inspector => inspector::show(state, ui, answers),
                     Pane::Parameters => parameters::show(state, self.cache, ui, answers),
                     Pane::Timeline => timeline::show(state, self.cache, ui, answers),
+                    Pane::Pictures => pictures::show(state, self.cache, ui),
                     _ => code::show(state, ui, answers),
                 });
             }

@@ -16,6 +16,7 @@ mod legend;
 mod menu;
 mod palette;
 mod parameters;
+mod pictures;
 mod reach;
 mod space;
 mod status;

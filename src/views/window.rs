@@ -28,6 +28,8 @@ pub type Lanes = ((u64, usize), [Vec<Cell>; 4]);
 pub struct Cache {
     /// The flatland drawing of a film's step.
     pub flat: Option<((u64, usize, Look), Drawing<glam::Vec2>)>,
+    /// The method's picture at a step.
+    pub picture: super::pictures::Shown,
     /// The flatland Eye's image.
     pub image: Option<Image>,
     /// The timeline's cells for a film and a width.

@@ -40,7 +40,7 @@ impl<S: Drawable> Buffer<S> {
     pub fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
         if let Some(view) = &self.view {
             S::draw(&mut self.target, scene, view, prims, options);
-            self.pyramid.touch(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height });
+            self.pyramid.touch(options.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height }));
         }
     }
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid holds for it. The same
@@ -49,10 +49,18 @@ impl<S: Drawable> Buffer<S> {
         let extent = S::extent(scene, self.view.as_ref()?, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
+    /// Makes a part of the pyramid stale.
+    pub fn touch(&mut self, pixels: PixelRect) {
+        self.pyramid.touch(pixels);
+    }
     /// Farthest depth that is held for a cell.
     #[inline]
     pub fn farthest(&self, cell: PyramidCell) -> f32 {
         self.pyramid.farthest(&self.target.depth, cell)
+    }
+    /// Farthest depth that is held for a rectangle.
+    pub fn farthest_over(&self, pixels: PixelRect) -> f32 {
+        self.pyramid.farthest_over(&self.target.depth, pixels)
     }
     /// Brings the tile of a cell up to date.
     #[inline]

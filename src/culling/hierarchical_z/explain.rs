@@ -2,12 +2,13 @@
 
 use super::buffer::Buffer;
 use super::query::Answer;
+use super::simulation::{Job, Unit, Worked};
 use super::space::Faces;
 use crate::culling::event::Tallied;
 use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
 use crate::culling::{Field, Note, Tally, Value};
 use crate::drawing::{Drawing, Layer, Role, Subject};
-use crate::geometry::{Aabb, Footprint, NodeId, PixelRect, PrimId, Vector, View, project_box};
+use crate::geometry::{Aabb, Footprint, NodeId, PixelRect, PrimId, Projection, Vector, View, project_box};
 use crate::raster::{Extent, Options, PyramidCell};
 use crate::scene::Scene;
 
@@ -38,6 +39,8 @@ pub enum Evidence<S: Faces> {
     Facing(Facing),
     /// What is due at the end of a frame.
     Checked(Check),
+    /// A unit of the simulated machine worked.
+    Worked(Worked),
 }
 
 /// Whether the visible list is checked at the end of a frame, and why.
@@ -104,6 +107,8 @@ pub struct Rasterized {
     pub operands: Option<(Extent, f32)>,
     pub is_hidden: bool,
     pub backface_culling: bool,
+    /// The part of the image it was drawn in, if not all; then the pyramid was not asked.
+    pub window: Option<PixelRect>,
 }
 
 /// View depth of a depth, world units.
@@ -119,7 +124,11 @@ impl<S: Faces> Evidence<S> {
             Self::RefreshedUnder(pixels, most) => _ = buffer.refresh_under(pixels, most as usize),
             Self::RefreshedAll => buffer.refresh_all(),
             Self::Rasterized(n) if !n.is_hidden => {
-                _ = buffer.draw(scene, &[n.prim], &Options { backface_culling: n.backface_culling, ..Options::default() });
+                let options = Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
+                match n.window {
+                    Some(_) => buffer.draw_all(scene, &[n.prim], &options),
+                    None => _ = buffer.draw(scene, &[n.prim], &options),
+                }
             }
             _ => {}
         }
@@ -172,8 +181,9 @@ fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, 
     let section = |w: f32| corners.iter().map(|&(x, y)| at(x, y, w)).collect::<Vec<_>>();
     to.outline(Layer::Evidence, Role::Occluder, Subject::None, section(far));
     to.outline(Layer::Evidence, Role::Current, Subject::None, section(near));
-    label(to, at(pixels.x1, pixels.y0, far), format!("drawn to {}", short(far)));
-    label(to, at(pixels.x1, pixels.y0, near), format!("nearest {}", short(near)));
+    // At opposite corners, so that they do not meet.
+    label(to, at(pixels.x0, pixels.y0, far), format!("drawn to {}", short(far)));
+    label(to, at(pixels.x1, pixels.y1, near), format!("nearest {}", short(near)));
 }
 
 impl<S: Faces> Answered<S> {
@@ -255,6 +265,7 @@ impl<S: Faces> Tallied for Evidence<S> {
             Self::SharedUnseen(..) => tally.add("shared_primitives_unseen", 1),
             Self::Facing(_) => Facing::tally(tally),
             Self::Checked(n) => tally.add("checks", n.is_due.into()),
+            Self::Worked(n) => n.tally(tally),
         }
     }
 }
@@ -280,6 +291,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::SharedUnseen(..) => "SharedUnseen",
             Self::Facing(_) => "OrientationTested",
             Self::Checked(_) => "ListChecked",
+            Self::Worked(n) => n.kind(),
         }
     }
     fn fields(&self) -> Vec<Field> {
@@ -319,6 +331,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 number("farthest_units", units(n.farthest[0]).into()),
                 number("farthest_before_units", units(n.farthest[1]).into()),
             ],
+            Self::Worked(n) => n.fields(),
         }
     }
     fn sentence(&self, _: &Scene<S>) -> String {
@@ -340,6 +353,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::SharedUnseen(prim, node) => format!("The {} {prim} lies in several cubes below node {node}; none of them can be seen.", S::PRIM),
             Self::Facing(n) => n.sentence::<S>(),
             Self::Checked(n) => n.sentence(),
+            Self::Worked(n) => n.sentence(),
         }
     }
 }
@@ -396,6 +410,65 @@ impl Rasterized {
     }
 }
 
+impl Unit {
+    /// Its name on the timeline.
+    pub fn name(self) -> String {
+        match self {
+            Self::Processor(p) => format!("processor {p}"),
+            Self::Renderer(r) => format!("renderer {r}"),
+        }
+    }
+}
+
+impl Worked {
+    fn tally(&self, tally: &mut Tally) {
+        let (busy, ticks) = match self.job {
+            Job::DrawVisible | Job::DrawFound => ("structures_drawn", "ticks_transforming"),
+            Job::Ask => ("boxes_sent", "ticks_asking"),
+            Job::Wait => ("waits", "ticks_waiting"),
+            Job::Rasterize => ("rasterizations", "ticks_rasterizing"),
+            Job::Answer => ("answers", "ticks_answering"),
+        };
+        tally.add(busy, 1);
+        tally.add(ticks, (self.to - self.from).into());
+        tally.at_least("ticks_of_frame", self.to.into());
+    }
+    fn kind(&self) -> &'static str {
+        match self.job {
+            Job::DrawVisible => "VisibleDrawn",
+            Job::DrawFound => "FoundDrawn",
+            Job::Ask => "BoxSent",
+            Job::Wait => "Waited",
+            Job::Rasterize => "RegionRasterized",
+            Job::Answer => "RegionAnswered",
+        }
+    }
+    fn fields(&self) -> Vec<Field> {
+        vec![
+            Field { name: "unit", value: Value::Word(self.unit.name()) },
+            integer("node", self.node.0),
+            integer("from_ticks", self.from),
+            integer("to_ticks", self.to),
+            integer("region", self.region),
+            integer("count", self.count),
+        ]
+    }
+    fn sentence(&self) -> String {
+        let (who, node, count, region) = (self.unit.name(), self.node, self.count, self.region);
+        let what = match self.job {
+            Job::DrawVisible => format!("transforms and sends out node {node}, which is on its visible list: {count} primitives"),
+            Job::DrawFound => format!("transforms and sends out node {node}, which a renderer saw: {count} primitives"),
+            Job::Ask if count > 1 => format!("asks for the box of node {node}, for {count} of its structures at once"),
+            Job::Ask => format!("asks for the box of node {node}"),
+            Job::Wait => "waits for answers".into(),
+            Job::Rasterize => format!("rasterizes {count} primitives of node {node} in region {region}"),
+            Job::Answer if count == 0 => format!("answers for the box of node {node} in region {region}: all enables off, nothing of it shows"),
+            Job::Answer => format!("answers for the box of node {node} in region {region}: some pixel of it shows"),
+        };
+        format!("Ticks {} to {}: {who} {what}.", self.from, self.to)
+    }
+}
+
 impl Check {
     fn sentence(&self) -> String {
         let of = format!("{} of {} cubes are new on the visible list, {} frames since it was checked", self.added, self.listed, self.frames);
@@ -407,7 +480,7 @@ impl Check {
     }
 }
 
-/// The pixels and the nearest depth of a box, or nothing if it is out of view.
-pub fn footprint<S: Faces>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Footprint {
-    project_box(&view.projection(), bounds, view.eye.near, view.eye.far, view.width, view.height)
+/// Where a box falls in the image.
+pub fn footprint<S: Faces>(view: &View<S>, projection: &Projection<S::Vector>, bounds: &Aabb<S::Vector>) -> Footprint {
+    project_box(projection, bounds, view.eye.near, view.eye.far, view.width, view.height)
 }

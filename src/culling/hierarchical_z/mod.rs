@@ -2,7 +2,7 @@
 //!
 //! Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, <https://doi.org/10.1145/166117.166147>, as
 //! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, describes it (Section 3), and Georges'
-//! parallel form (Sections 4 and 5, [`parallel`]). The cubes that were visible in the last frame are drawn first, which
+//! parallel form (Sections 4 and 5, [`simulation`]). The cubes that were visible in the last frame are drawn first, which
 //! almost completes the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`query`]); in the end
 //! those that cannot be seen leave the list of visible ones.
 //!
@@ -11,26 +11,32 @@
 //! front to back; a cube on the list whose ancestor left it leaves with it.
 //! Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
 
+pub mod anatomy;
 mod buffer;
 mod explain;
+mod picture;
 mod query;
+mod simulation;
 mod space;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use self::buffer::Buffer;
 use self::explain::{Answered, Check, Evidence, Rasterized, footprint};
-use self::query::{Answer, Query};
+use self::query::{Answer, Held, Query};
+use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
 use self::space::{FaceImage, Faces, project_sphere};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
+use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Unobserved, Verdict};
 use crate::drawing::{Drawing, Subject};
-use crate::geometry::{Aabb, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Space, Vector, View, nearest_depth};
+use crate::geometry::{Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View, nearest_depth};
 use crate::index::{Octree, OctreeNode, Redistribution, Shape};
-use crate::raster::{Options, PyramidCell};
+use crate::raster::{DepthScale, Options, PyramidCell};
 use crate::scene::{Progress, Scene};
 
 /// The method.
@@ -51,6 +57,7 @@ pub struct Params {
     /// Index into [`Redistribution::ALL`].
     redistribution: usize,
     small_percent: u32,
+    machine: Machine,
     backface_culling: bool,
 }
 
@@ -62,11 +69,11 @@ impl Default for Params {
             query: 0,
             primitive_test: true,
             check_interval: 0,
-            // Cubes of a dozen primitives: a test costs about as much as drawing three.
             tree_levels: 12,
-            leaf_primitives: 16,
+            leaf_primitives: 0,
             redistribution: 0,
             small_percent: 12,
+            machine: Machine::default(),
             backface_culling: false,
         }
     }
@@ -137,12 +144,14 @@ pub struct Memory<S: Faces> {
     frames: u32,
     /// The farthest depth of the last image.
     farthest: f32,
+    /// The simulated machine's.
+    lists: Lists,
     scratch: Scratch<S>,
 }
 
 impl<S: Faces> Default for Memory<S> {
     fn default() -> Self {
-        Self { listed: Vec::new(), frames: 0, farthest: 0.0, scratch: Scratch::default() }
+        Self { listed: Vec::new(), frames: 0, farthest: 0.0, lists: Lists::default(), scratch: Scratch::default() }
     }
 }
 
@@ -168,6 +177,8 @@ impl<S: Faces> Clone for Scratch<S> {
     }
 }
 
+/// Fewer primitives are drawn on one thread: handing them out would take longer.
+const PARALLEL_PRIMS: usize = 2048;
 /// The share of new cubes on the list from which on it is checked early (Georges 1995, Section 4.2: "a large number").
 const MANY_ADDED: u32 = 4;
 /// The change of the farthest depth, as a factor, from which on the list is checked early ("a rapid shift").
@@ -222,7 +233,11 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         knobs.integer(check, 0..=1000, &mut params.check_interval);
         let source = "Georges 1995, Section 3.1";
         knobs.integer(knob("tree-levels", "levels", "levels of the octree at most", source), 1..=Shape::MOST_LEVELS, &mut params.tree_levels);
-        knobs.integer(knob("leaf-primitives", "", "a cube with no more primitives is not divided", source), 1..=100_000, &mut params.leaf_primitives);
+        knobs.integer(
+            knob("leaf-primitives", "", "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments", source),
+            0..=100_000,
+            &mut params.leaf_primitives,
+        );
         let crossing = knob(
             "redistribution",
             "",
@@ -235,13 +250,14 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             0..=100,
             &mut params.small_percent,
         );
+        machine_knobs(&mut params.machine, knobs);
         backface_knob(knobs, &mut params.backface_culling);
     }
     fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
         progress.report(0.0, "building the octree");
         let shape = Shape {
             levels: params.tree_levels,
-            leaf_prims: params.leaf_primitives,
+            leaf_prims: if params.leaf_primitives == 0 { leaf_prims::<S>() } else { params.leaf_primitives },
             redistribution: Redistribution::ALL[params.redistribution],
             small: params.small_percent as f32 / 100.0,
         };
@@ -267,6 +283,10 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         drawn.clear();
         drawn.resize(scene.prim_count(), false);
         buffer.begin(view);
+        if params.machine.processors > 1 {
+            Simulation::new(index, scene, view, params, buffer, drawn, &mut memory.lists, out, watch).run();
+            return;
+        }
         let options = Options { backface_culling: params.backface_culling, threads: threads(), ..Options::default() };
         let frustum = view.frustum();
         let mut frame = Frame {
@@ -274,6 +294,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             scene,
             view,
             frustum,
+            projection: view.projection(),
             params,
             options,
             buffer,
@@ -282,6 +303,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             prims,
             listed: &mut memory.listed,
             waiting: Vec::new(),
+            asked: Vec::new(),
             passing: Vec::new(),
             added: 0,
             out,
@@ -295,6 +317,13 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         (memory.frames, memory.farthest) = (if check.is_due { 0 } else { check.frames }, check.farthest[0]);
     }
     const KEYFRAME_NOTES: usize = 1 << 14;
+    const PICTURES: &'static [&'static str] = picture::PICTURES;
+    fn picture(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], which: usize, scale: DepthScale) -> Drawing {
+        picture::picture(buffer, view, notes, which, scale)
+    }
+    fn probe(buffer: &Buffer<S>, view: &View<S>, which: usize, at: glam::Vec2) -> Option<String> {
+        picture::probe(buffer, view, which, at)
+    }
     fn dense(_: &Scene<S>, view: &View<S>) -> Buffer<S> {
         let mut buffer = Buffer::default();
         buffer.begin(view);
@@ -310,6 +339,55 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     }
 }
 
+/// Primitives of a cube that is not divided. In space a test costs about as much as drawing a dozen triangles, and most cubes
+/// that are asked for again and again are visible: 128 was the best of 16 to 128 on generated rooms and cities. Flatland scenes
+/// are small and are there to be looked at.
+fn leaf_prims<S: Space>() -> u32 {
+    if S::CORNERS == 2 { 8 } else { 128 }
+}
+
+/// The parameters of the simulated machine.
+fn machine_knobs(machine: &mut Machine, knobs: &mut dyn Knobs) {
+    let four = "Georges 1995, Section 4.1";
+    let five = "Georges 1995, Section 5.1";
+    let processors = knob("processors", "", "graphics processors of a simulated parallel machine; 1: the sequential form, without simulation", five);
+    knobs.integer(processors, 1..=256, &mut machine.processors);
+    knobs.integer(
+        knob("renderers", "", "renderers of the simulated machine, which share the screen's regions of 128 × 128 pixels", five),
+        1..=256,
+        &mut machine.renderers,
+    );
+    let distribution = knob(
+        "distribution",
+        "",
+        "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts of the scene (structure), or a part of every structure (primitive)",
+        four,
+    );
+    knobs.choice(distribution, DISTRIBUTIONS, &mut machine.distribution);
+    let allocation = knob(
+        "allocation",
+        "",
+        "static: every region has its renderer all the time; dynamic: the busiest regions first, the others when a renderer is free",
+        five,
+    );
+    knobs.choice(allocation, ALLOCATIONS, &mut machine.allocation);
+    let source = "Georges 1995, Section 5.3";
+    knobs.switch(knob("overlap-queries", "", "a simulated processor goes on while it waits for answers", source), &mut machine.overlap);
+    knobs.switch(
+        knob("farthest-shortcut", "", "a simulated processor first compares a box with the farthest depth of each region", source),
+        &mut machine.farthest_first,
+    );
+    let source = "Georges 1995, Section 4.2";
+    knobs.integer(knob("transform-cost", "ticks", "simulated time to transform a primitive", source), 1..=10_000, &mut machine.transform);
+    knobs.integer(knob("rasterize-cost", "ticks", "simulated time to rasterize a primitive in a region", source), 1..=10_000, &mut machine.rasterize);
+    knobs.integer(knob("answer-cost", "ticks", "simulated time in which a renderer answers for a box", source), 1..=10_000, &mut machine.answer);
+    knobs.integer(
+        knob("message-cost", "ticks", "simulated time of a message between a processor and a renderer", source),
+        0..=10_000,
+        &mut machine.message,
+    );
+}
+
 /// Threads that draw: all of the pool that the run was put into, or the calling one alone.
 fn threads() -> usize {
     rayon::current_thread_index().map_or(1, |_| rayon::current_num_threads())
@@ -321,6 +399,7 @@ struct Frame<'a, S: Faces, O> {
     scene: &'a Scene<S>,
     view: &'a View<S>,
     frustum: Frustum<S::Vector>,
+    projection: Projection<S::Vector>,
     params: &'a Params,
     options: Options,
     buffer: &'a mut Buffer<S>,
@@ -328,8 +407,9 @@ struct Frame<'a, S: Faces, O> {
     cubes: &'a mut [bool],
     prims: &'a mut Vec<PrimId>,
     listed: &'a mut [bool],
-    /// Two-pass form: cubes that passed their test and are drawn after all tests.
+    /// Two-pass form: cubes that are drawn together with others; and what was asked ahead.
     waiting: Vec<NodeId>,
+    asked: Vec<Option<bool>>,
     /// Visited cubes that passed primitives on to several children.
     passing: Vec<NodeId>,
     /// Cubes that came onto the list.
@@ -342,17 +422,69 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
     fn run(&mut self) {
         self.watch.event(Event::Line(line::CLEAR));
         self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
-        self.watch.event(Event::Line(line::VISIT_ROOT));
-        if FORMS[self.params.form] == "two-pass" {
+        if self.is_two_pass() {
+            let listed = std::mem::take(&mut self.waiting);
+            self.draw_together(listed);
             self.watch.note(|| Evidence::RefreshedAll);
             self.buffer.refresh_all();
+            if self.options.threads > 1 && !O::LISTENS {
+                self.ask_ahead();
+            }
         }
+        self.watch.event(Event::Line(line::VISIT_ROOT));
         self.visit(NodeId(0), Frustum::<S::Vector>::ALL);
-        for node in std::mem::take(&mut self.waiting) {
-            self.draw(node);
+        if self.is_two_pass() {
+            let found = std::mem::take(&mut self.waiting);
+            self.draw_together(found);
         }
         for node in std::mem::take(&mut self.passing) {
             self.say_unseen(node);
+        }
+    }
+
+    fn is_two_pass(&self) -> bool {
+        FORMS[self.params.form] == "two-pass"
+    }
+    /// Draws a cube, now or with others.
+    fn draw_or_wait(&mut self, id: NodeId) {
+        if self.is_two_pass() { self.waiting.push(id) } else { self.draw(id) }
+    }
+
+    /// Two-pass form on several threads: asks for all cubes that will be asked for, level by level. The pyramid does not
+    /// change meanwhile, so the answers are those that asking one by one would give. Not done while somebody listens, who is to
+    /// hear of every cell.
+    fn ask_ahead(&mut self) {
+        self.asked.clear();
+        self.asked.resize(self.index.nodes().len(), None);
+        // What threads share; who listens is not among it.
+        let (index, buffer, frustum, cubes) = (self.index, &*self.buffer, &self.frustum, &*self.cubes);
+        let (view, projection, params) = (self.view, &self.projection, self.params);
+        let is_hidden = |id: NodeId| {
+            let node = &index.nodes()[id.at()];
+            match question(node, view, projection, params) {
+                Question::Decided { crosses_near } => !crosses_near,
+                Question::Open(image, nearest) => {
+                    let mut nobody = Unobserved;
+                    let query = Query::new(buffer, id, nearest, line::BEHIND, &mut nobody);
+                    ask(query, params, &node.bounds, &image, view).is_hidden
+                }
+            }
+        };
+        let ask = |&(id, planes): &(NodeId, u8)| match frustum.test(&index.nodes()[id.at()].bounds, planes) {
+            FrustumTest::Outside(_) => None,
+            FrustumTest::Partial(cutting) => Some((id, cutting, !cubes[id.at()] && is_hidden(id))),
+            FrustumTest::Inside => Some((id, 0, !cubes[id.at()] && is_hidden(id))),
+        };
+        let mut level = vec![(NodeId(0), Frustum::<S::Vector>::ALL)];
+        while !level.is_empty() {
+            let answers: Vec<_> = level.par_iter().filter_map(ask).collect();
+            level.clear();
+            for (id, cutting, is_hidden) in answers {
+                self.asked[id.at()] = Some(is_hidden);
+                if !is_hidden {
+                    level.extend(index.nodes()[id.at()].children().map(|c| (NodeId(c), cutting)));
+                }
+            }
         }
     }
 
@@ -371,7 +503,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
         self.watch.event(Event::Line(line::DRAW_LISTED));
         self.watch.note(|| Evidence::Listed(id, true));
         self.cubes[id.at()] = true;
-        self.draw(id);
+        self.draw_or_wait(id);
         for child in front_to_back(self.index, node, self.view) {
             self.draw_listed(child, cutting);
         }
@@ -397,14 +529,15 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
         } else {
             self.watch.event(Event::Line(line::OBSCURED));
-            if self.is_obscured(id) {
+            let ahead = self.asked.get(id.at()).copied().flatten();
+            if ahead.unwrap_or_else(|| self.is_obscured(id)) {
                 return self.leave(id, Verdict::Hidden);
             }
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
             self.watch.event(Event::Line(line::ADD));
             self.listed[id.at()] = true;
             self.added += 1;
-            if FORMS[self.params.form] == "two-pass" { self.waiting.push(id) } else { self.draw(id) }
+            self.draw_or_wait(id);
         }
         if !index.passed(id).is_empty() {
             self.passing.push(id);
@@ -422,30 +555,14 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
 
     /// Draws what a cube holds and is not drawn yet.
     fn draw(&mut self, id: NodeId) {
-        let (index, scene, view) = (self.index, self.scene, self.view);
         self.prims.clear();
-        self.prims.extend_from_slice(index.own(id));
-        for &prim in index.shared(id) {
-            if !std::mem::replace(&mut self.drawn[prim.at()], true) {
-                self.prims.push(prim);
-            }
-        }
-        if self.params.backface_culling {
-            let watch = &mut *self.watch;
-            self.prims.retain(|&prim| {
-                let away = prim_faces_away(scene, view.eye.position, prim);
-                if away {
-                    watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
-                    watch.event(Event::DecidedPrim(prim, Verdict::Outside));
-                }
-                !away
-            });
-        }
+        self.gather(id);
         if self.prims.is_empty() {
             return;
         }
+        let bounds = &self.index.nodes()[id.at()].bounds;
         if self.params.primitive_test
-            && let Footprint::Seen(image) = footprint(view, &index.nodes()[id.at()].bounds)
+            && let Footprint::Seen(image) = footprint(self.view, &self.projection, bounds)
         {
             let (pixels, most) = (image.pixels, self.prims.len());
             self.watch.note(move || Evidence::RefreshedUnder(pixels, most as u32));
@@ -453,10 +570,43 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
         }
         self.rasterize();
     }
+    /// Draws what several cubes hold, all at once.
+    fn draw_together(&mut self, nodes: Vec<NodeId>) {
+        self.prims.clear();
+        nodes.into_iter().for_each(|node| self.gather(node));
+        self.rasterize();
+    }
+    /// Adds what a cube holds, is not drawn yet and faces the eye to the primitives at hand.
+    fn gather(&mut self, id: NodeId) {
+        let (index, scene, view) = (self.index, self.scene, self.view);
+        let first = self.prims.len();
+        self.prims.extend_from_slice(index.own(id));
+        for &prim in index.shared(id) {
+            if !std::mem::replace(&mut self.drawn[prim.at()], true) {
+                self.prims.push(prim);
+            }
+        }
+        if !self.params.backface_culling {
+            return;
+        }
+        let mut kept = first;
+        for at in first..self.prims.len() {
+            let prim = self.prims[at];
+            if prim_faces_away(scene, view.eye.position, prim) {
+                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+            } else {
+                self.prims[kept] = prim;
+                kept += 1;
+            }
+        }
+        self.prims.truncate(kept);
+    }
 
     /// Draws the primitives at hand, and says of each what became of it.
     fn rasterize(&mut self) {
-        let (scene, options) = (self.scene, &self.options);
+        let threads = if self.prims.len() < PARALLEL_PRIMS { 1 } else { self.options.threads };
+        let (scene, options) = (self.scene, &Options { threads, ..self.options });
         let hidden = if self.params.primitive_test {
             self.buffer.draw(scene, self.prims, options).to_vec()
         } else {
@@ -470,7 +620,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
             self.watch.note(move || {
                 let operands = buffer.operands(scene, prim, options);
-                Evidence::Rasterized(Rasterized { prim, operands, is_hidden, backface_culling: options.backface_culling })
+                Evidence::Rasterized(Rasterized { prim, operands, is_hidden, backface_culling: options.backface_culling, window: None })
             });
             self.watch.event(Event::DecidedPrim(prim, if is_hidden { Verdict::Hidden } else { Verdict::Visible }));
             if !is_hidden {
@@ -480,30 +630,22 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
     }
 
     /// Whether the pyramid hides a cube.
-    fn is_obscured(&mut self, id: NodeId) -> bool {
-        let (view, node) = (self.view, &self.index.nodes()[id.at()]);
-        let (bounds, whole) = (&node.bounds, &node.whole);
-        let sphere = QUERIES[self.params.query] == "sphere";
-        let image = match if sphere { project_sphere(view, whole) } else { footprint(view, bounds) } {
-            Footprint::Seen(image) => image,
-            // Its corner is beside the view, but not by enough for the frustum's test.
-            Footprint::Outside => return self.answered(id, bounds, false),
-            Footprint::CrossesNear => {
-                self.watch.event(Event::Line(line::NEAR));
-                return self.answered(id, bounds, true);
+    fn is_obscured(&mut self, node: NodeId) -> bool {
+        let bounds = self.index.nodes()[node.at()].bounds;
+        match question(&self.index.nodes()[node.at()], self.view, &self.projection, self.params) {
+            Question::Decided { crosses_near } => {
+                if crosses_near {
+                    self.watch.event(Event::Line(line::NEAR));
+                }
+                self.answered(node, &bounds, crosses_near)
             }
-        };
-        let nearest = if sphere || whole == bounds { image.nearest } else { nearest_depth(&view.projection(), whole, view.eye.near) };
-        let mut query = Query::new(&mut *self.buffer, id, nearest, line::BEHIND, &mut *self.watch);
-        let answer = if self.params.query == 0 {
-            query.faces(bounds, &image, view)
-        } else {
-            query.face(0, &FaceImage::rectangle(image.pixels));
-            query.answer
-        };
-        let bounds = *bounds;
-        self.watch.note(move || Evidence::Answered(Answered { node: id, bounds, pixels: image.pixels, answer, crosses_near: false }));
-        answer.is_hidden
+            Question::Open(image, nearest) => {
+                let query = Query::new(&mut *self.buffer, node, nearest, line::BEHIND, &mut *self.watch);
+                let answer = ask(query, self.params, &bounds, &image, self.view);
+                self.watch.note(move || Evidence::Answered(Answered { node, bounds, pixels: image.pixels, answer, crosses_near: false }));
+                answer.is_hidden
+            }
+        }
     }
     /// Notes the answer for a box that needs no cell.
     fn answered(&mut self, node: NodeId, bounds: &Aabb<S::Vector>, crosses_near: bool) -> bool {
@@ -561,6 +703,41 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             self.check(NodeId(child), cutting);
         }
     }
+}
+
+/// What there is to ask for a cube.
+enum Question {
+    /// Nothing: it reaches the near plane and counts as visible, or lies beside the view.
+    Decided { crosses_near: bool },
+    /// Whether what lies in this image, and no nearer than this depth, is hidden.
+    Open(BoxImage, f32),
+}
+
+/// What is asked of the pyramid for a cube, if anything.
+fn question<S: Faces>(node: &OctreeNode<S::Vector>, view: &View<S>, projection: &Projection<S::Vector>, params: &Params) -> Question {
+    let is_sphere = QUERIES[params.query] == "sphere";
+    match if is_sphere { project_sphere(view, &node.whole) } else { footprint(view, projection, &node.bounds) } {
+        Footprint::Seen(image) if is_sphere || node.whole == node.bounds => Question::Open(image, image.nearest),
+        Footprint::Seen(image) => Question::Open(image, nearest_depth(projection, &node.whole, view.eye.near)),
+        // Beside the view, but not by enough for the frustum's test.
+        Footprint::Outside => Question::Decided { crosses_near: false },
+        Footprint::CrossesNear => Question::Decided { crosses_near: true },
+    }
+}
+
+/// Asks for a box in the way that the parameters say.
+fn ask<S: Faces, B: Held<S>, W: Observer<Evidence<S>>>(
+    mut query: Query<'_, S, B, W>,
+    params: &Params,
+    bounds: &Aabb<S::Vector>,
+    image: &BoxImage,
+    view: &View<S>,
+) -> Answer {
+    if QUERIES[params.query] == "faces" {
+        return query.faces(bounds, image, view);
+    }
+    query.face(0, &FaceImage::rectangle(image.pixels));
+    query.answer
 }
 
 /// The children of a cube, those on the eye's side first.

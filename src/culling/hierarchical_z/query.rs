@@ -18,7 +18,7 @@ use super::buffer::Buffer;
 use super::explain::{Evidence, Outcome, Read};
 use super::space::{FaceImage, Faces};
 use crate::culling::{Event, Observer};
-use crate::geometry::{Aabb, BoxImage, NodeId, View};
+use crate::geometry::{Aabb, BoxImage, NodeId, PixelRect, View};
 use crate::raster::PyramidCell;
 
 /// How a query ended.
@@ -35,10 +35,57 @@ pub struct Answer {
     pub decisive: Option<(PyramidCell, f32)>,
 }
 
+impl Answer {
+    /// Takes in what another part of the image says.
+    pub fn join(&mut self, other: &Self) {
+        self.reads += other.reads;
+        let decides = match (self.decisive, other.decisive) {
+            (Some((_, a)), Some((_, b))) => b < a,
+            (None, b) => b.is_some(),
+            (_, None) => false,
+        };
+        if decides {
+            self.decisive = other.decisive;
+        }
+    }
+}
+
+/// What is drawn so far, to be read and perhaps to be brought up to date.
+pub trait Held<S: Faces> {
+    fn buffer(&self) -> &Buffer<S>;
+    /// Whether the tile of a cell is stale and may be brought up to date.
+    fn would_refresh(&self, cell: PyramidCell) -> bool;
+    fn refresh(&mut self, cell: PyramidCell);
+}
+
+impl<S: Faces> Held<S> for &mut Buffer<S> {
+    fn buffer(&self) -> &Buffer<S> {
+        self
+    }
+    #[inline]
+    fn would_refresh(&self, cell: PyramidCell) -> bool {
+        self.pyramid().is_stale(cell)
+    }
+    fn refresh(&mut self, cell: PyramidCell) {
+        Buffer::refresh(self, cell);
+    }
+}
+
+/// For several threads at once; what is stale stays so.
+impl<S: Faces> Held<S> for &Buffer<S> {
+    fn buffer(&self) -> &Buffer<S> {
+        self
+    }
+    fn would_refresh(&self, _: PyramidCell) -> bool {
+        false
+    }
+    fn refresh(&mut self, _: PyramidCell) {}
+}
+
 /// One query.
-pub struct Query<'a, S: Faces, O> {
+pub struct Query<'a, S: Faces, B: Held<S>, O> {
     /// What is drawn so far.
-    pub buffer: &'a mut Buffer<S>,
+    pub buffer: B,
     /// Whose box it is.
     pub node: NodeId,
     /// Who listens.
@@ -46,18 +93,24 @@ pub struct Query<'a, S: Faces, O> {
     /// Line of the pseudocode at which cells are compared.
     pub line: u8,
     pub answer: Answer,
+    space: std::marker::PhantomData<S>,
 }
 
-impl<'a, S: Faces, O: Observer<Evidence<S>>> Query<'a, S, O> {
-    pub fn new(buffer: &'a mut Buffer<S>, node: NodeId, nearest: f32, line: u8, watch: &'a mut O) -> Self {
-        Self { buffer, node, watch, line, answer: Answer { is_hidden: true, nearest, reads: 0, decisive: None } }
+impl<'a, S: Faces, B: Held<S>, O: Observer<Evidence<S>>> Query<'a, S, B, O> {
+    pub fn new(buffer: B, node: NodeId, nearest: f32, line: u8, watch: &'a mut O) -> Self {
+        Self { buffer, node, watch, line, answer: Answer { is_hidden: true, nearest, reads: 0, decisive: None }, space: std::marker::PhantomData }
     }
 
     /// Asks for a box by its front faces, each as it is projected.
-    pub fn faces(mut self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>) -> Answer {
+    pub fn faces(self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>) -> Answer {
+        self.faces_in(bounds, image, view, PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height })
+    }
+    /// The same within a window of the image.
+    pub fn faces_in(mut self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>, window: PixelRect) -> Answer {
         let (faces, count) = S::front(bounds, view.eye.position);
         for (number, face) in faces[..count].iter().enumerate() {
-            let face = S::image(*face, image, view.width, view.height);
+            let mut face = S::image(*face, image, view.width, view.height);
+            face.pixels = face.pixels.intersection(window);
             if !self.face(number as u8, &face) {
                 break;
             }
@@ -68,7 +121,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Query<'a, S, O> {
     /// Asks for one face.
     pub fn face(&mut self, number: u8, face: &FaceImage) -> bool {
         if !face.pixels.is_empty() {
-            let cell = self.buffer.pyramid().finest_over(face.pixels);
+            let cell = self.buffer.buffer().pyramid().finest_over(face.pixels);
             self.answer.is_hidden &= self.behind(number, face, cell);
         }
         self.answer.is_hidden
@@ -77,14 +130,14 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Query<'a, S, O> {
     /// Whether the face lies behind all that is drawn in a cell.
     fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
         let nearest = self.answer.nearest;
-        let mut held = self.buffer.farthest(cell);
-        if nearest >= held && self.buffer.pyramid().is_stale(cell) {
+        let mut held = self.buffer.buffer().farthest(cell);
+        if nearest >= held && self.buffer.would_refresh(cell) {
             self.watch.note(|| Evidence::Refreshed(cell));
             self.buffer.refresh(cell);
-            held = self.buffer.farthest(cell);
+            held = self.buffer.buffer().farthest(cell);
         }
         self.answer.reads += 1;
-        let pixels = cell.pixels(self.buffer.target().width, self.buffer.target().height);
+        let pixels = cell.pixels(self.buffer.buffer().target().width, self.buffer.buffer().target().height);
         let outcome = if nearest < held {
             Outcome::Behind
         } else if cell.level == 0 || cell.level <= TILE_LEVEL && face.covers(pixels) {
@@ -112,7 +165,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Query<'a, S, O> {
 
     /// Whether the face lies behind all that is drawn in the cells below one.
     fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
-        let (width, height) = (self.buffer.target().width, self.buffer.target().height);
+        let (width, height) = (self.buffer.buffer().target().width, self.buffer.buffer().target().height);
         for k in 0..4 {
             let child = PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
             if face.touches(child.pixels(width, height)) && !self.behind(number, face, child) {

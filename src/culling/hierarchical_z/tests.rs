@@ -81,9 +81,12 @@ fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> 
     Arc::new(Scene::new(Parts::simple("soup", points, (0..n).map(|k| make([corner(k), corner(k) + 1, corner(k) + 2])).collect())).expect("valid"))
 }
 
+/// The outside of a box: points and primitives.
+type Shell<S> = fn(&Aabb<<S as Space>::Vector>) -> (Vec<<S as Space>::Vector>, Vec<<S as Space>::Corners>);
+
 /// A box that a query calls hidden changes no pixel when its outside is drawn after the rest; and of the boxes that
 /// change none, most are called hidden.
-fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners, shell: fn(&Aabb<S::Vector>) -> (Vec<S::Vector>, Vec<S::Corners>)) {
+fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners, shell: Shell<S>) {
     let mut rng = Pcg32::new(seed, 9);
     let (mut hidden, mut unseen, mut rectangle_hidden) = (0, 0, 0);
     for _ in 0..60 {
@@ -102,7 +105,7 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             let middle = S::Vector::from_fn(|_| unit() * 24.0 - 12.0);
             let half = S::Vector::from_fn(|_| unit() * unit() * 3.0);
             let bounds = Aabb { min: middle - half, max: middle + half };
-            let Footprint::Seen(image) = footprint(&view, &bounds) else { continue };
+            let Footprint::Seen(image) = footprint(&view, &view.projection(), &bounds) else { continue };
             let (points, prims) = shell(&bounds);
             let outside = Scene::<S>::new(Parts::simple("shell", points, prims)).expect("valid");
             let mut with = drawn.clone();
@@ -171,4 +174,83 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
 fn every_image_of_a_flight_with_jumps_is_the_plain_one() {
     flights::<Flat>(|[a, b, _]| [a, b]);
     flights::<Solid>(|c| c);
+}
+
+/// The simulated machine draws the plain image however structures and regions are dealt, says what it answers, and takes as long
+/// as its busiest unit.
+fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
+    let mut rng = Pcg32::new(6, 9);
+    let scene = soup::<S>(&mut rng, 200, make);
+    for (case, (distribution, allocation)) in [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1)].into_iter().enumerate() {
+        let machine = Machine { processors: 3, renderers: 2, distribution, allocation, overlap: case % 2 == 0, ..Machine::default() };
+        let params = Params { machine, leaf_primitives: 4, check_interval: 3, ..Params::default() };
+        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let (mut memory, mut hidden, mut work) = (Memory::default(), 0, 0);
+        for view in crate::scene::random_views(&scene, 6, 4) {
+            let view = View { width: 300, height: view.height.min(200), ..view };
+            let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
+            let mut same = memory.clone();
+            HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut recorder);
+            let plain = render(&scene, &view, scene.live());
+            assert_eq!(render(&scene, &view, &list.prims), plain, "case {case}");
+            let mut again = DrawList::default();
+            HierarchicalZ::cull(&index, &scene, &view, &params, &mut same, &mut again, &mut Unobserved);
+            assert_eq!(list, again, "case {case}: a frame is the same again, unobserved");
+            let mut told = vec![None; scene.prim_count()];
+            for event in &recorder.events {
+                if let Event::DecidedPrim(p, v) = event {
+                    told[p.at()].get_or_insert(*v);
+                }
+            }
+            let mut drawn: Vec<PrimId> = scene.live().iter().copied().filter(|p| told[p.at()] == Some(Verdict::Visible)).collect();
+            hidden += told.iter().filter(|t| **t == Some(Verdict::Hidden)).count();
+            drawn.sort_unstable();
+            assert_eq!(drawn, list.ascending(), "case {case}: told and answered");
+            assert!(told.iter().all(Option::is_some), "case {case}: all is told");
+            // What a film replays is the run's own image.
+            let mut replayed = <HierarchicalZ as Method<S>>::dense(&scene, &view);
+            recorder.notes.iter().for_each(|n| <HierarchicalZ as Method<S>>::apply(&mut replayed, &scene, n));
+            assert_eq!(*replayed.target(), plain, "case {case}: replayed");
+            work += work_of_renderers(&recorder.notes, case);
+        }
+        assert!(hidden > 20 && work > 50, "case {case}: {hidden} hidden, {work} jobs");
+    }
+}
+
+fn work_of_renderers<S: Faces>(notes: &[Evidence<S>], case: usize) -> usize {
+    let mut work: Vec<_> = notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some((w.unit, w.from, w.to)) } else { None }).collect();
+    work.sort();
+    assert!(work.windows(2).all(|w| w[0].0 != w[1].0 || w[0].2 <= w[1].1), "case {case}: no unit does two things at a time");
+    work.iter().filter(|w| matches!(w.0, super::simulation::Unit::Renderer(_))).count()
+}
+
+#[test]
+fn the_simulated_machine_draws_the_plain_image() {
+    machines::<Flat>(|[a, b, _]| [a, b]);
+    machines::<Solid>(|c| c);
+}
+
+#[test]
+fn threads_leave_no_trace() {
+    let mut rng = Pcg32::new(7, 9);
+    let scene = soup::<Solid>(&mut rng, 6000, |c| c);
+    for form in [0, 1] {
+        let params = Params { form, ..Params::default() };
+        let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let views = crate::scene::random_views(&scene, 5, 4);
+        let run = || {
+            let mut memory = Memory::default();
+            let frame = |view: &View<Solid>| {
+                let mut list = DrawList::default();
+                HierarchicalZ::cull(&index, &scene, view, &params, &mut memory, &mut list, &mut Unobserved);
+                list
+            };
+            views.iter().map(frame).collect::<Vec<_>>()
+        };
+        let alone = run();
+        for threads in [2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            assert_eq!(pool.install(run), alone, "form {form}, {threads} threads");
+        }
+    }
 }

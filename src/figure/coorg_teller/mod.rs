@@ -12,9 +12,6 @@ use crate::drawing::Drawing;
 use crate::figure::Tint;
 use crate::scene::SceneError;
 
-/// Name, summary and maker of a figure.
-pub type Row = (&'static str, &'static str, fn(Tint) -> Result<Drawing, SceneError>);
-
 /// The figures, in the paper's order.
 pub const FIGURES: &[Row] = &[
     ("large-occluders-2", "Regions of full, partial and no occlusion between supporting and separating lines", flat::supporting_lines),

@@ -1,11 +1,13 @@
-//! The tables of Coorg and Teller, "Real-Time Occlusion Culling for Models with Large Occluders", I3D 1997,
-//! <https://doi.org/10.1145/253284.253312>, Section 4, measured on any scene beside the paper's own figures.
+//! The tables and tests of the papers, measured on any scene beside the papers' own figures: Coorg and Teller, "Real-Time
+//! Occlusion Culling for Models with Large Occluders", I3D 1997, <https://doi.org/10.1145/253284.253312>, Section 4; Georges,
+//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2 ([`georges`]).
 //!
-//! An [`Experiment`] is a value: a name, and what it runs on each scene. All walk the scene's path `figure 8` (where a
-//! scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
+//! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the scene's path
+//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
 //! models and machines are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the
 //! answers are checked: the triangles that an item buffer shows and the method did not draw are counted (0 expected).
 
+mod georges;
 mod nodes;
 mod occluders;
 mod table_1;
@@ -92,6 +94,8 @@ pub struct Report {
     pub plots: Vec<Plot>,
     /// The scenes.
     pub scenes: Vec<Measured>,
+    /// Digital object identifier of the paper.
+    pub doi: &'static str,
     /// Parameters of the method that the experiment does not vary.
     pub params: Vec<(&'static str, String)>,
     /// Frames a scene, at most.
@@ -130,7 +134,7 @@ impl Report {
             "cullscope": env!("CARGO_PKG_VERSION"),
             "experiment": self.name,
             "title": self.title,
-            "paper_doi": "10.1145/253284.253312",
+            "paper_doi": self.doi,
             "scenes": scenes.collect::<Vec<_>>(),
             "params": params,
             "frames": self.frames,
@@ -149,6 +153,11 @@ pub struct Experiment {
     pub title: &'static str,
     /// One line for lists.
     pub summary: &'static str,
+    /// Key of the method that it is about.
+    pub method: &'static str,
+    /// What it is measured on where no scene is named.
+    pub scenes: &'static [&'static str],
+    doi: &'static str,
     /// What else is to be known for reading the table.
     notes: &'static [&'static str],
     /// Parameters that it varies itself.
@@ -160,6 +169,9 @@ pub struct Experiment {
 pub static EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "coorg-teller-table-1",
+        method: METHOD,
+        scenes: WALKED,
+        doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Table 1: polygons drawn",
         summary: "Percent of the polygons drawn after view-frustum culling and after occlusion culling",
         notes: &["Averages over views evenly spaced along the whole path."],
@@ -168,6 +180,9 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "coorg-teller-table-2",
+        method: METHOD,
+        scenes: WALKED,
+        doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Table 2: time to cull and to draw",
         summary: "Milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion culling",
         notes: &[TIMES, "We draw with a software rasterizer, the paper with graphics hardware of its time."],
@@ -176,6 +191,9 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "coorg-teller-table-3",
+        method: METHOD,
+        scenes: WALKED,
+        doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Table 3: time in visibility against speed",
         summary: "Time to cull a frame against the speed of the walker, with and without planes kept from frame to frame",
         notes: &[TIMES, "Ours is all of culling, view-frustum tests and gathering included; the paper leaves out the view-frustum tests."],
@@ -184,6 +202,9 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "coorg-teller-nodes",
+        method: METHOD,
+        scenes: WALKED,
+        doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Section 4.1: nodes tested for occlusion",
         summary: "kD-tree nodes tested for occlusion a frame, and their share of those in the view frustum",
         notes: &["Low and high are the quartiles over the frames; for the paper, the ends of the range that it states for both models."],
@@ -192,13 +213,58 @@ pub static EXPERIMENTS: &[Experiment] = &[
     },
     Experiment {
         name: "coorg-teller-occluders",
+        method: METHOD,
+        scenes: WALKED,
+        doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Section 5: how many occluders",
         summary: "Polygons drawn and time to cull against the number of occluders, fixed or by their marginal gain",
         notes: &[TIMES, "The paper has 32 occluders and states no figures for others; by marginal gain at most 64 are taken."],
         varies: &["occluders", "marginal-gain"],
         sweep: &occluders::SWEEP,
     },
+    Experiment {
+        name: "georges-box",
+        method: georges::METHOD,
+        scenes: &["generate:box-and-objects"],
+        doi: GEORGES,
+        title: "Georges 1995, Section 5.2: a box that hides a row of objects",
+        summary: "Frames a second with the objects in sight and behind the box, with obscuration culling and without",
+        notes: &[FRAMES, "The paper's system has one processor; its rate behind the box is that of the monitor, about 60 a second."],
+        varies: &[],
+        sweep: &georges::BOX,
+    },
+    Experiment {
+        name: "georges-flight",
+        method: georges::METHOD,
+        scenes: &["generate:machine-room", "generate:building", "generate:city"],
+        doi: GEORGES,
+        title: "Georges 1995, Section 5.2: a hidden dense body",
+        summary: "Time of a frame along a flight, with obscuration culling and without; the paper gains 20 to 30 percent",
+        notes: &[FRAMES, "The paper's 20 to 30 percent are for frames in which the dense body is in the view frustum and hidden."],
+        varies: &[],
+        sweep: &georges::FLIGHT,
+    },
+    Experiment {
+        name: "georges-aliasing",
+        method: georges::METHOD,
+        scenes: &["generate:thin-slabs", "generate:building?polygons=20000"],
+        doi: GEORGES,
+        title: "What samples miss: aliasing of the z-buffer against resolution",
+        summary: "Triangles that a fine image shows and obscuration culling at a coarse one does not draw",
+        notes: &["Fine: 2048 × 2048. What falls between the samples of the coarse image is not drawn; at its own resolution nothing is missed."],
+        varies: &[],
+        sweep: &georges::ALIASING,
+    },
 ];
+
+const COORG_TELLER: &str = "10.1145/253284.253312";
+/// Of Greene, Kass and Miller 1993; the report has none.
+const GEORGES: &str = "10.1145/166117.166147";
+/// What Coorg and Teller's models are likened to.
+const WALKED: &[&str] = &["generate:building", "generate:city"];
+/// How times of whole frames were taken.
+const FRAMES: &str = "Wall-clock times on one thread from the view to the finished image, interleaved; of each frame the median of three flights \
+                      along the scene's own path.";
 
 /// Columns of a terminal that running text takes.
 const TEXT_COLUMNS: usize = 100;
@@ -217,7 +283,7 @@ impl Experiment {
     /// # Errors
     /// As [`Experiment::run`].
     pub fn check(&self, settings: &Settings) -> Result<(), PaperError> {
-        Ok(method::<Solid>(METHOD).knobs(settings).map(drop)?)
+        Ok(method::<Solid>(self.method).knobs(settings).map(drop)?)
     }
 
     /// Runs it on scenes, one after the other.
@@ -241,11 +307,11 @@ impl Experiment {
         }
         let plots = (self.sweep.plots)(&table);
         table.rows.extend((self.sweep.paper)());
-        let knobs = method::<Solid>(METHOD).knobs(&setup.settings)?;
+        let knobs = method::<Solid>(self.method).knobs(&setup.settings)?;
         let fixed = knobs.iter().filter(|(k, _)| !self.varies.contains(&k.name));
         let params = fixed.map(|(k, v): &(_, KnobValue)| (k.name, v.to_string())).collect();
         let (name, title, notes) = (self.name, self.title, self.notes.to_vec());
-        Ok(Report { name, title, table, plots, scenes: measured, params, frames: setup.frames, notes })
+        Ok(Report { name, title, table, plots, scenes: measured, doi: self.doi, params, frames: setup.frames, notes })
     }
 }
 

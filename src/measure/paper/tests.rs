@@ -63,12 +63,15 @@ fn every_experiment_fills_its_table() {
         ("coorg-teller-table-3", 7),
         ("coorg-teller-nodes", 2),
         ("coorg-teller-occluders", 16),
+        ("georges-box", 4),
+        ("georges-flight", 3),
+        ("georges-aliasing", 6),
     ]);
     assert_eq!(rows.len(), EXPERIMENTS.len());
     for (name, count) in rows {
         let report = run(name, &scene, &Setup { check_every: 5, ..setup(10) });
         assert_eq!(report.table.rows.len(), count, "{name}");
-        assert!(report.text().contains(report.title) && report.caption().contains("tree-height 8"));
+        assert!(report.text().contains(report.title) && report.caption().contains("backface-culling false"));
         assert_eq!(report.json()["rows"].as_array().map(Vec::len), Some(count));
         let number = |key: &str| report.table.number(0, key).unwrap_or_else(|| panic!("{name}: {key}"));
         match name {

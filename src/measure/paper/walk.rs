@@ -169,7 +169,7 @@ impl Checked {
 }
 
 /// Says how far the work is, and stops it if nobody wants it any more.
-fn stop_or_go(progress: &dyn Progress, fraction: f32, what: &'static str) -> Result<(), PaperError> {
+pub fn stop_or_go(progress: &dyn Progress, fraction: f32, what: &'static str) -> Result<(), PaperError> {
     progress.report(fraction, what);
     if progress.cancelled() { Err(PaperError::Cancelled) } else { Ok(()) }
 }

@@ -92,7 +92,10 @@ pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims:
     for options in all_options(backface_culling) {
         let mut target = Target::new(view);
         S::draw(&mut target, scene, view, prims, &options);
-        sifted_is_the_same(scene, view, prims, &options, &target, what);
+        // The sieve is the same code on every instruction set.
+        if options.isa == Isa::detect() {
+            sifted_is_the_same(scene, view, prims, &options, &target, what);
+        }
         if let Some(i) =
             (0..target.item.len()).find(|&i| target.item[i] != expected.item[i] || target.depth[i].to_bits() != expected.depth[i].to_bits())
         {

@@ -1,0 +1,87 @@
+//! What the parts of `hierarchical-z` cost: bringing the pyramid up to date, a query, and whole frames, at four image sizes.
+//!
+//! `cargo bench --no-default-features --bench hierarchical_z`. Frames of the walk with obscuration culling are paired and
+//! interleaved with view-frustum culling and drawing of the same views; each line ends with a hash of its result.
+
+use std::hint::black_box;
+
+use cullscope::culling::obscuration::Obscurer;
+use cullscope::culling::{Methods, Settings};
+use cullscope::geometry::{Aabb, NodeId, Solid, View};
+use cullscope::measure::timed;
+use cullscope::measure::timing::{median, paired};
+use cullscope::raster::{Drawable, Options, Target};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, load};
+use glam::Vec3;
+
+const SIZES: [[u32; 2]; 4] = [[256, 256], [512, 512], [1024, 1024], [1920, 1080]];
+const ROUNDS: usize = 9;
+/// Views along the path.
+const VIEWS: usize = 60;
+
+fn hash(values: impl Iterator<Item = u32>) -> u64 {
+    values.fold(0xcbf2_9ce4_8422_2325, |h, v| (h ^ u64::from(v)).wrapping_mul(0x0100_0000_01b3))
+}
+
+fn main() {
+    for source in ["generate:building", "generate:city"] {
+        let AnyScene::Solid(scene) = load(source, &LoadOptions::default(), &Quiet).expect("a generator") else { continue };
+        let path = &scene.paths()[0];
+        let step = (path.views.len() / VIEWS).max(1);
+        let mut frustum = Solid::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
+        let nodes = (0..frustum.hierarchy().node_count() as u32).map(|n| frustum.hierarchy().bounds(NodeId(n)));
+        let boxes: Vec<Aabb<Vec3>> = nodes.collect();
+        for [width, height] in SIZES {
+            let views: Vec<View<Solid>> = path.views.iter().step_by(step).map(|v| View { width, height, ..*v }).collect();
+            let mut occluders = Obscurer::new(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
+            let (mut refresh, mut query, mut answers) = (Vec::new(), Vec::new(), Vec::new());
+            for view in &views {
+                occluders.render(view);
+                occluders.touch_all(view);
+                refresh.push(timed(|| occluders.refresh_all()).1);
+                let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(view, b)).collect::<Vec<_>>());
+                let in_view = all.iter().flatten().count().max(1);
+                query.push(ms * 1e6 / in_view as f64);
+                answers.extend(all.into_iter().map(|a| a.map_or(3, u32::from)));
+            }
+            let hidden = answers.iter().filter(|a| **a == 1).count() as f64 / answers.iter().filter(|a| **a < 3).count().max(1) as f64;
+            println!(
+                "{source} {width}x{height}: pyramid {:.3} ms, query {:.0} ns a box in view ({:.1} % hidden), hash {:016x}",
+                median(refresh),
+                median(query),
+                100.0 * hidden,
+                hash(answers.into_iter())
+            );
+            let mut target = Target::default();
+            let mut drawn = [0usize; 2];
+            let result = paired(
+                ROUNDS,
+                || {
+                    for view in &views {
+                        let list = frustum.cull(view);
+                        target.clear(view);
+                        Solid::draw(&mut target, &scene, view, &list.prims, &Options::default());
+                        drawn[0] = list.prims.len();
+                        black_box(&target);
+                    }
+                },
+                || {
+                    for view in &views {
+                        drawn[1] = occluders.render(view).prims.len();
+                        black_box(occluders.target());
+                    }
+                },
+            );
+            println!(
+                "{source} {width}x{height}: frame {:.2} ms against {:.2} ms culled by frustum: ×{:.3} (quartiles {:.3} to {:.3}), last view {} of {} drawn",
+                result.b_ms / views.len() as f64,
+                result.a_ms / views.len() as f64,
+                result.ratio,
+                result.spread[0],
+                result.spread[1],
+                drawn[1],
+                drawn[0]
+            );
+        }
+    }
+}

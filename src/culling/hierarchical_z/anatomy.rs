@@ -1,0 +1,94 @@
+//! The parts of the method by themselves: an image that is drawn, and boxes and rectangles that are asked for. For figures,
+//! benchmarks and tests, which all look at the very functions that the method runs.
+
+use std::sync::Arc;
+
+use super::buffer::Buffer;
+use super::explain::{Evidence, footprint};
+use super::query::Query;
+use super::space::{FaceImage, Faces};
+use super::{HierarchicalZ, Memory, Params, picture};
+use crate::culling::knobs::Apply;
+use crate::culling::{DrawList, Method, Recorder, SettingError, Settings, Unobserved};
+use crate::drawing::Drawing;
+use crate::geometry::{Aabb, Footprint, NodeId, PixelRect, Projection, View};
+use crate::index::Octree;
+use crate::raster::{DepthScale, Options, Target};
+use crate::scene::{Progress, Scene};
+
+/// Occluders of a scene, to be drawn for a view and then asked about boxes.
+pub struct Obscurer<S: Faces> {
+    scene: Arc<Scene<S>>,
+    index: Octree<S::Vector>,
+    params: Params,
+    memory: Memory<S>,
+    /// Of the view that was drawn last.
+    projection: Option<Projection<S::Vector>>,
+}
+
+impl<S: Faces> Obscurer<S> {
+    /// Builds the octree; `Ok(None)` when cancelled.
+    ///
+    /// # Errors
+    /// A setting that does not fit the method.
+    pub fn new(scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Self>, SettingError> {
+        let mut params = Params::default();
+        let mut apply = Apply { settings, error: None };
+        <HierarchicalZ as Method<S>>::knobs(&mut params, &mut apply);
+        if let Some(error) = apply.error {
+            return Err(error);
+        }
+        let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
+        Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default(), projection: None }))
+    }
+    /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns what was drawn.
+    pub fn render(&mut self, view: &View<S>) -> DrawList {
+        let mut list = DrawList::default();
+        self.projection = Some(view.projection());
+        HierarchicalZ::cull(&self.index, &self.scene, view, &self.params, &mut self.memory, &mut list, &mut Unobserved);
+        list
+    }
+    /// Forgets earlier frames.
+    pub fn forget(&mut self) {
+        self.memory = Memory::default();
+    }
+    /// Whether a box is hidden by what was drawn for this view, by its front faces; `None` if it is out of view.
+    pub fn hides(&mut self, view: &View<S>, bounds: &Aabb<S::Vector>) -> Option<bool> {
+        let projection = self.projection?;
+        match footprint(view, &projection, bounds) {
+            Footprint::Outside => None,
+            Footprint::CrossesNear => Some(false),
+            Footprint::Seen(image) => {
+                let buffer = &mut self.memory.scratch.buffer;
+                Some(Query::new(buffer, NodeId(0), image.nearest, 0, &mut Unobserved).faces(bounds, &image, view).is_hidden)
+            }
+        }
+    }
+    /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
+    pub fn touch_all(&mut self, view: &View<S>) {
+        self.memory.scratch.buffer.touch(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height });
+    }
+    /// Brings the whole pyramid up to date.
+    pub fn refresh_all(&mut self) {
+        self.memory.scratch.buffer.refresh_all();
+    }
+    /// The image that was drawn.
+    pub fn target(&self) -> &Target {
+        self.memory.scratch.buffer.target()
+    }
+}
+
+/// The levels of the pyramid over all of a scene's image, and if a face is given, as a rectangle of pixels and its nearest
+/// depth (world units), the cells that are read for it. Also whether it is hidden.
+pub fn pyramid_picture<S: Faces>(scene: &Scene<S>, view: &View<S>, face: Option<(PixelRect, f32)>, scale: DepthScale) -> (Drawing, bool) {
+    let mut buffer = Buffer::default();
+    buffer.begin(view);
+    buffer.draw(scene, scene.live(), &Options::default());
+    buffer.refresh_all();
+    let mut recorder: Recorder<Evidence<S>> = Recorder::new(usize::MAX);
+    let mut is_hidden = false;
+    if let Some((pixels, depth)) = face {
+        is_hidden = Query::new(&mut buffer, NodeId(0), 1.0 / depth, 0, &mut recorder).face(0, &FaceImage::rectangle(pixels));
+    }
+    (picture::picture(&buffer, view, &recorder.notes, 0, scale), is_hidden)
+}
