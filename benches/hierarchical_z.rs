@@ -53,7 +53,7 @@ fn main() {
                 hash(answers.into_iter())
             );
             let mut target = Target::default();
-            let mut drawn = [0usize; 2];
+            let (mut all, mut kept) = (0, 0);
             let result = paired(
                 ROUNDS,
                 || {
@@ -61,13 +61,13 @@ fn main() {
                         let list = frustum.cull(view);
                         target.clear(view);
                         Solid::draw(&mut target, &scene, view, &list.prims, &Options::default());
-                        drawn[0] = list.prims.len();
+                        all = list.prims.len();
                         black_box(&target);
                     }
                 },
                 || {
                     for view in &views {
-                        drawn[1] = occluders.render(view).prims.len();
+                        kept = occluders.render(view).prims.len();
                         black_box(occluders.target());
                     }
                 },
@@ -79,8 +79,8 @@ fn main() {
                 result.ratio,
                 result.spread[0],
                 result.spread[1],
-                drawn[1],
-                drawn[0]
+                kept,
+                all
             );
         }
     }

@@ -8,9 +8,7 @@ mod regions;
 mod run;
 mod solid;
 
-use crate::drawing::Drawing;
-use crate::figure::Tint;
-use crate::scene::SceneError;
+use crate::figure::builtin::Row;
 
 /// The figures, in the paper's order.
 pub const FIGURES: &[Row] = &[
