@@ -21,8 +21,8 @@ const WIDTH_PT: f32 = 480.0;
 const LABEL_PT: f32 = 7.5;
 /// The least side of a cell in which its value has room.
 const VALUE_ROOM_PT: f32 = 15.0;
-/// Levels with more columns are left out: their cells are smaller than a point.
-const MOST_COLUMNS: u32 = 512;
+/// Levels with more columns or rows are left out: their cells are far smaller than a point.
+const MOST_COLUMNS: u32 = 1024;
 
 /// Draws picture `which`.
 pub fn picture<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], which: usize, scale: DepthScale) -> Drawing {
@@ -153,16 +153,27 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
     let (columns, rows) = buffer.pyramid().size(level);
     let tile = Frame { level, cell: frame.cell * (1u32 << (level - frame.level)) as f32, ..*frame };
     let tile = if frame.end.y - frame.at.y <= STRIP_PT { Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile } } else { tile };
-    for y in 0..rows as u16 {
-        let cell = |x: u32| PyramidCell { level: level as u8, x: x as u16, y };
-        let mut x = 0;
-        while x < columns {
-            let run = (x..columns).take_while(|&x| is_stale(buffer, cell(x))).count() as u32;
-            if run > 0 {
-                let ([a, _], [_, b]) = (tile.rect(cell(x)), tile.rect(cell(x + run - 1)));
-                to.push(Layer::Nodes, Role::Approximated, Subject::None, Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]));
+    // Runs along a row; those of rows below each other that are alike are one rectangle.
+    let mut open: Vec<([u32; 2], u32)> = Vec::new();
+    let mut close = |[x0, x1]: [u32; 2], y0: u32, y1: u32| {
+        let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: x as u16, y: y as u16 };
+        let ([a, _], [_, b]) = (tile.rect(cell(x0, y0)), tile.rect(cell(x1 - 1, y1 - 1)));
+        to.push(Layer::Nodes, Role::Approximated, Subject::None, Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]));
+    };
+    for y in 0..=rows {
+        let mut runs: Vec<[u32; 2]> = Vec::new();
+        for x in (0..columns).filter(|&x| y < rows && is_stale(buffer, PyramidCell { level: level as u8, x: x as u16, y: y as u16 })) {
+            match runs.last_mut().filter(|run| run[1] == x) {
+                Some(run) => run[1] += 1,
+                None => runs.push([x, x + 1]),
             }
-            x += run.max(1);
+        }
+        open.iter().filter(|(run, _)| !runs.contains(run)).for_each(|&(run, from)| close(run, from, y));
+        open.retain(|(run, _)| runs.contains(run));
+        for run in runs {
+            if !open.iter().any(|(o, _)| *o == run) {
+                open.push((run, y));
+            }
         }
     }
 }
