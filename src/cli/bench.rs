@@ -57,6 +57,9 @@ const FINER: u32 = 2;
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Command::Occlusion(args) = command;
+    let mut settings = Settings([("coherence", "false"), ("backface-culling", "true")].map(|(k, v)| (k.to_owned(), v.to_owned())).into());
+    settings.0.extend(methods::settings(&args.set)?.0);
+    methods_check(&settings)?;
     let AnyScene::Solid(mesh) = scene::open(&args.mesh, &LoadOptions::default())? else {
         return Err(CliError::work(&args.mesh, "a flatland scene; occluders must be triangles in space"));
     };
@@ -69,9 +72,6 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
         view(c, place(&c[17..]), &all, args.size).map_err(|why| CliError::work(format!("{} line {}", args.cams.display(), i + 1), why))
     });
     let views = views.collect::<Result<Vec<_>, _>>()?;
-    let mut settings = Settings([("coherence", "false"), ("backface-culling", "true")].map(|(k, v)| (k.to_owned(), v.to_owned())).into());
-    settings.0.extend(methods::settings(&args.set)?.0);
-    methods_check(&settings)?;
     let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else { return Err(CliError::Interrupted) };
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {

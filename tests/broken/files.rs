@@ -153,8 +153,14 @@ fn views_beside_a_model_become_its_paths_or_a_note() {
 #[test]
 fn generators_say_what_they_take() {
     let cases = [
-        ("generate:castle", "generate:castle: there is no generator `castle`; there are: building, city"),
-        ("generate:", "generate:: there is no generator ``; there are: building, city"),
+        (
+            "generate:castle",
+            "generate:castle: there is no generator `castle`; there are: building, city, machine-room, box-and-objects, thin-slabs, seminar-room, cars",
+        ),
+        (
+            "generate:",
+            "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, thin-slabs, seminar-room, cars",
+        ),
         ("generate:building?storeys=3", "generate:building?storeys=3: `building` has no parameter `storeys`; it has: polygons, seed, rooms"),
         ("generate:building?seed", "generate:building?seed: `seed` should read key=value"),
         ("generate:building?polygons=10", "generate:building?polygons=10: `polygons` must be a whole number from 1000 to 8000000, not `10`"),

@@ -1,6 +1,6 @@
 //! The tables and tests of the papers, measured on any scene beside the papers' own figures: Coorg and Teller, "Real-Time
 //! Occlusion Culling for Models with Large Occluders", I3D 1997, <https://doi.org/10.1145/253284.253312>, Section 4; Georges,
-//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2 ([`georges`]).
+//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2.
 //!
 //! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the scene's path
 //! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
