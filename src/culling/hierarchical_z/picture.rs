@@ -109,7 +109,8 @@ fn image<S: Faces>(buffer: &Buffer<S>, view: &View<S>, level: u32, [x0, x1, y0, 
 fn draw_level<S: Faces>(buffer: &Buffer<S>, view: &View<S>, frame: &Frame, scale: DepthScale, to: &mut Drawing) {
     let (columns, rows) = buffer.pyramid().size(frame.level);
     let title = match frame.level {
-        0 => format!("level 0, {columns} × {rows}: the z-buffer"),
+        // Short: with its size it would reach the next level's name.
+        0 => "level 0: the z-buffer".into(),
         l => format!("level {l}, {columns} × {rows}"),
     };
     to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
