@@ -8,8 +8,8 @@ use glam::Vec3;
 
 use super::error::reason;
 use super::{CliError, methods, output, scene};
-use crate::culling::Settings;
 use crate::culling::obscuration::Obscurer;
+use crate::culling::{Methods, Settings};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::raster::{Drawable, Options, Target};
@@ -59,7 +59,8 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Command::Occlusion(args) = command;
     let mut settings = Settings([("coherence", "false"), ("backface-culling", "true")].map(|(k, v)| (k.to_owned(), v.to_owned())).into());
     settings.0.extend(methods::settings(&args.set)?.0);
-    methods_check(&settings)?;
+    // Words that are off are told before files are read.
+    <Solid as Methods>::method(&args.method).map(|m| m.knobs(&settings)).transpose()?;
     let AnyScene::Solid(mesh) = scene::open(&args.mesh, &LoadOptions::default())? else {
         return Err(CliError::work(&args.mesh, "a flatland scene; occluders must be triangles in space"));
     };
@@ -78,13 +79,6 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
         output::write_file(path, |to| to.write_all(&measured.answers).map(|()| true))?;
     }
     output::print((measured.line(mesh.live().len()) + "\n").as_bytes())
-}
-
-/// Unknown parameters are an error, as everywhere.
-fn methods_check(settings: &Settings) -> Result<(), CliError> {
-    let entry =
-        <Solid as crate::culling::Methods>::method("hierarchical-z").ok_or_else(|| CliError::work("hierarchical-z", "there is no such method"))?;
-    Ok(entry.knobs(settings).map(drop)?)
 }
 
 /// Lines of `count` numbers each; empty ones and those that begin with `#` are left out.

@@ -117,7 +117,8 @@ impl<M> Of<M> {
     pub(super) const NEW: Self = Self(PhantomData);
 }
 
-fn params<S: Space, M: Method<S>>(settings: &Settings) -> Result<M::Params, SettingError> {
+/// A method's parameters as these settings give them.
+pub(super) fn params<S: Space, M: Method<S>>(settings: &Settings) -> Result<M::Params, SettingError> {
     let mut params = M::Params::default();
     let known = listed::<S, M>(&params);
     if let Some(key) = settings.0.keys().find(|k| known.iter().all(|(knob, _)| knob.name != k.as_str())) {

@@ -79,7 +79,8 @@ pub(super) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, V
 /// Listens to a run. It cannot answer: nothing is returned and no state is seen, so a watched run and
 /// an unwatched one cannot differ.
 pub trait Observer<Note> {
-    /// Whether anybody hears. Only for leaving the order of work open where nobody does; never for what is decided.
+    /// Whether anybody hears: for leaving out work that only tells, and for leaving the order of work open, where nobody does. Never
+    /// for what is decided.
     const LISTENS: bool = true;
     /// A fact in the shared vocabulary.
     fn event(&mut self, event: Event);

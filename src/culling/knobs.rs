@@ -18,6 +18,13 @@ pub struct Knob {
     pub source: &'static str,
 }
 
+impl Knob {
+    /// A parameter by its name, unit, meaning and source.
+    pub const fn new(name: &'static str, unit: &'static str, meaning: &'static str, source: &'static str) -> Self {
+        Self { name, unit, meaning, source }
+    }
+}
+
 /// Visits a method's parameters.
 pub trait Knobs {
     /// A whole number.

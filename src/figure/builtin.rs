@@ -269,3 +269,22 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
     );
     Ok(page("The truth: an item buffer", caption, &content))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::{Mark, metrics};
+
+    #[test]
+    fn no_text_of_a_papers_figure_sticks_out_or_is_too_small() {
+        for (name, _, make) in coorg_teller::FIGURES.iter().chain(georges::FIGURES) {
+            let page = make(&|_| [0.0; 3]).expect("a figure");
+            for item in &page.items {
+                let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
+                let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);
+                assert!(low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y, "{name}: {text}");
+                assert!(*size_pt > 5.0, "{name}: {text} has {size_pt} pt");
+            }
+        }
+    }
+}

@@ -3,17 +3,17 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, vec2};
+use glam::{Vec2, vec2};
 
 use super::builtin::{Row, eye, film, flat_panel, page};
 use super::page::legend;
 use super::{Entry, Look, Page, Paper, Swatch, Tint, panels};
-use crate::culling::obscuration::pyramid_picture;
+use crate::culling::obscuration::{figure_1, pyramid_picture};
 use crate::culling::{Event, Film, Value, Verdict};
 use crate::drawing::{Drawing, Item, Mark, Role};
-use crate::geometry::{Eye, Flat, PixelRect, Solid, Space, View};
+use crate::geometry::{Flat, PixelRect, Solid, Space, View};
 use crate::raster::DepthScale;
-use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, Scene, SceneError, example, load};
+use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, example, load};
 use crate::trace::Stamps;
 
 /// The figures.
@@ -31,24 +31,6 @@ pub const FIGURES: &[Row] = &[
 const PYRAMID: usize = 0;
 const STACKED: usize = 1;
 const TIMELINE: usize = 3;
-
-/// The depths of the paper's Figure 1, as a square of pixels that deep, and the straight view of it.
-pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
-    let depths = [[4, 9, 8, 8], [4, 5, 1, 3], [6, 2, 2, 4], [2, 2, 2, 4]];
-    let (mut points, mut prims) = (Vec::new(), Vec::new());
-    for (row, depths) in depths.iter().enumerate() {
-        for (column, &depth) in depths.iter().enumerate() {
-            let (x, y) = (column as f32 - 2.0, 2.0 - row as f32);
-            let first = points.len() as u32;
-            // The image is 4 wide at depth 2.
-            points.extend([(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)].map(|(x, y)| Vec3::new(x, y, -2.0) * (depth as f32 / 2.0)));
-            prims.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-        }
-    }
-    let scene = Scene::new(Parts::simple("Figure 1 of Georges 1995", points, prims))?;
-    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 20.0 };
-    Ok((scene, View { eye, width: 4, height: 4 }))
-}
 
 /// Puts drawings below each other.
 fn below(parts: Vec<Drawing>) -> Drawing {
@@ -230,23 +212,4 @@ fn timelines(_: Tint) -> Result<Drawing, SceneError> {
                    processor, and some sit idle; by primitive, every processor asks for every structure; hybrid, structures are dealt finely, so that near \
                    ones go to different processors. At the right the share of the frame in which a unit works.";
     Ok(two_columns("Georges 1995, Section 4.1: three ways to distribute structures", vec![], caption.into(), &below(parts)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::drawing::metrics;
-
-    #[test]
-    fn no_text_sticks_out_or_is_too_small() {
-        for (name, _, make) in FIGURES {
-            let page = make(&|_| [0.0; 3]).expect("a figure");
-            for item in &page.items {
-                let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
-                let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);
-                assert!(low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y, "{name}: {text}");
-                assert!(*size_pt > 5.0, "{name}: {text} has {size_pt} pt");
-            }
-        }
-    }
 }

@@ -3,18 +3,20 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::buffer::Buffer;
-use super::explain::{Evidence, footprint};
+use super::explain::Evidence;
 use super::query::Query;
-use super::space::{FaceImage, Faces};
+use super::space::{FaceImage, Faces, footprint};
 use super::{HierarchicalZ, Memory, Params, picture};
-use crate::culling::knobs::Apply;
+use crate::culling::entry::params;
 use crate::culling::{DrawList, Method, Recorder, SettingError, Settings, Unobserved};
 use crate::drawing::Drawing;
-use crate::geometry::{Aabb, Footprint, NodeId, PixelRect, Projection, View};
+use crate::geometry::{Aabb, Eye, Footprint, NodeId, PixelRect, Projection, Solid, View};
 use crate::index::Octree;
 use crate::raster::{DepthScale, Options, Target};
-use crate::scene::{Progress, Scene};
+use crate::scene::{Parts, Progress, Scene, SceneError};
 
 /// Occluders of a scene, to be drawn for a view and then asked about boxes.
 pub struct Obscurer<S: Faces> {
@@ -32,12 +34,7 @@ impl<S: Faces> Obscurer<S> {
     /// # Errors
     /// A setting that does not fit the method.
     pub fn new(scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Self>, SettingError> {
-        let mut params = Params::default();
-        let mut apply = Apply { settings, error: None };
-        <HierarchicalZ as Method<S>>::knobs(&mut params, &mut apply);
-        if let Some(error) = apply.error {
-            return Err(error);
-        }
+        let params = params::<S, HierarchicalZ>(settings)?;
         let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
         Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default(), projection: None }))
     }
@@ -91,4 +88,25 @@ pub fn pyramid_picture<S: Faces>(scene: &Scene<S>, view: &View<S>, face: Option<
         is_hidden = Query::new(&mut buffer, NodeId(0), 1.0 / depth, 0, &mut recorder).face(0, &FaceImage::rectangle(pixels));
     }
     (picture::picture(&buffer, view, &recorder.notes, 0, scale), is_hidden)
+}
+
+/// The depths of Figure 1 of Georges 1995, each a square of one pixel that deep, and the straight view of them.
+///
+/// # Errors
+/// None; the scene is valid.
+pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
+    let depths = [[4, 9, 8, 8], [4, 5, 1, 3], [6, 2, 2, 4], [2, 2, 2, 4]];
+    let (mut points, mut prims) = (Vec::new(), Vec::new());
+    for (row, depths) in depths.iter().enumerate() {
+        for (column, &depth) in depths.iter().enumerate() {
+            let (x, y) = (column as f32 - 2.0, 2.0 - row as f32);
+            let first = points.len() as u32;
+            // The image is 4 wide at depth 2.
+            points.extend([(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)].map(|(x, y)| Vec3::new(x, y, -2.0) * (depth as f32 / 2.0)));
+            prims.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+    let scene = Scene::new(Parts::simple("Figure 1 of Georges 1995", points, prims))?;
+    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 20.0 };
+    Ok((scene, View { eye, width: 4, height: 4 }))
 }

@@ -8,7 +8,7 @@ use crate::culling::event::Tallied;
 use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
 use crate::culling::{Field, Note, Tally, Value};
 use crate::drawing::{Drawing, Layer, Role, Subject};
-use crate::geometry::{Aabb, Footprint, NodeId, PixelRect, PrimId, Projection, Vector, View, project_box};
+use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::raster::{Extent, Options, PyramidCell};
 use crate::scene::Scene;
 
@@ -478,9 +478,4 @@ impl Check {
             format!("{of}: no check is due before {}.", self.interval)
         }
     }
-}
-
-/// Where a box falls in the image.
-pub fn footprint<S: Faces>(view: &View<S>, projection: &Projection<S::Vector>, bounds: &Aabb<S::Vector>) -> Footprint {
-    project_box(projection, bounds, view.eye.near, view.eye.far, view.width, view.height)
 }

@@ -26,10 +26,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use self::buffer::Buffer;
-use self::explain::{Answered, Check, Evidence, Rasterized, footprint};
+use self::explain::{Answered, Check, Evidence, Rasterized};
 use self::query::{Answer, Held, Query};
 use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
-use self::space::{FaceImage, Faces, project_sphere};
+use self::space::{FaceImage, Faces, footprint, project_sphere};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::knobs::backface_knob;
 use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Unobserved, Verdict};
@@ -184,10 +184,6 @@ const MANY_ADDED: u32 = 4;
 /// The change of the farthest depth, as a factor, from which on the list is checked early ("a rapid shift").
 const RAPID_SHIFT: f32 = 1.5;
 
-fn knob(name: &'static str, unit: &'static str, meaning: &'static str, source: &'static str) -> Knob {
-    Knob { name, unit, meaning, source }
-}
-
 impl<S: Faces> Method<S> for HierarchicalZ {
     type Params = Params;
     type Index = Octree<S::Vector>;
@@ -206,25 +202,29 @@ impl<S: Faces> Method<S> for HierarchicalZ {
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         let source = "Georges 1995, Section 3.3";
-        knobs.switch(knob("coherence", "", "what was visible in the last frame is drawn first, without a test", source), &mut params.coherence);
-        let form = knob(
+        knobs.switch(Knob::new("coherence", "", "what was visible in the last frame is drawn first, without a test", source), &mut params.coherence);
+        let form = Knob::new(
             "form",
             "",
             "incremental: a cube is drawn as soon as it passes its test, as in the paper; two-pass: all cubes are tested against what was visible before, as engines do today",
             source,
         );
         knobs.choice(form, FORMS, &mut params.form);
-        let query = knob(
+        let query = Knob::new(
             "query",
             "",
             "how a cube is asked for: by its front faces as projected, by their screen rectangles, or by the sphere around it",
             "Georges 1995, Sections 3.2 and 5.3",
         );
         knobs.choice(query, QUERIES, &mut params.query);
-        let test =
-            knob("primitive-test", "", "primitives behind their pyramid cells are not drawn either", "Greene, Kass and Miller 1993, Section 3.2");
+        let test = Knob::new(
+            "primitive-test",
+            "",
+            "primitives behind their pyramid cells are not drawn either",
+            "Greene, Kass and Miller 1993, Section 3.2",
+        );
         knobs.switch(test, &mut params.primitive_test);
-        let check = knob(
+        let check = Knob::new(
             "check-interval",
             "frames",
             "how often the visible list is checked against the finished image; 0: every frame, in the parallel form every 30",
@@ -232,13 +232,13 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         );
         knobs.integer(check, 0..=1000, &mut params.check_interval);
         let source = "Georges 1995, Section 3.1";
-        knobs.integer(knob("tree-levels", "levels", "levels of the octree at most", source), 1..=Shape::MOST_LEVELS, &mut params.tree_levels);
+        knobs.integer(Knob::new("tree-levels", "levels", "levels of the octree at most", source), 1..=Shape::MOST_LEVELS, &mut params.tree_levels);
         knobs.integer(
-            knob("leaf-primitives", "", "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments", source),
+            Knob::new("leaf-primitives", "", "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments", source),
             0..=100_000,
             &mut params.leaf_primitives,
         );
-        let crossing = knob(
+        let crossing = Knob::new(
             "redistribution",
             "",
             "where a primitive goes that crosses a cube's dividing planes: hybrid (stays, or if small to all children it overlaps), parent (stays), grown (to one child, whose bounds grow), split (parts to all children)",
@@ -246,7 +246,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         );
         knobs.choice(crossing, &Redistribution::WORDS, &mut params.redistribution);
         knobs.integer(
-            knob("small-percent", "%", "a primitive is small if it is no longer than this part of its cube", source),
+            Knob::new("small-percent", "%", "a primitive is small if it is no longer than this part of its cube", source),
             0..=100,
             &mut params.small_percent,
         );
@@ -350,21 +350,22 @@ fn leaf_prims<S: Space>() -> u32 {
 fn machine_knobs(machine: &mut Machine, knobs: &mut dyn Knobs) {
     let four = "Georges 1995, Section 4.1";
     let five = "Georges 1995, Section 5.1";
-    let processors = knob("processors", "", "graphics processors of a simulated parallel machine; 1: the sequential form, without simulation", five);
+    let processors =
+        Knob::new("processors", "", "graphics processors of a simulated parallel machine; 1: the sequential form, without simulation", five);
     knobs.integer(processors, 1..=256, &mut machine.processors);
     knobs.integer(
-        knob("renderers", "", "renderers of the simulated machine, which share the screen's regions of 128 × 128 pixels", five),
+        Knob::new("renderers", "", "renderers of the simulated machine, which share the screen's regions of 128 × 128 pixels", five),
         1..=256,
         &mut machine.renderers,
     );
-    let distribution = knob(
+    let distribution = Knob::new(
         "distribution",
         "",
         "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts of the scene (structure), or a part of every structure (primitive)",
         four,
     );
     knobs.choice(distribution, DISTRIBUTIONS, &mut machine.distribution);
-    let allocation = knob(
+    let allocation = Knob::new(
         "allocation",
         "",
         "static: every region has its renderer all the time; dynamic: the busiest regions first, the others when a renderer is free",
@@ -372,17 +373,21 @@ fn machine_knobs(machine: &mut Machine, knobs: &mut dyn Knobs) {
     );
     knobs.choice(allocation, ALLOCATIONS, &mut machine.allocation);
     let source = "Georges 1995, Section 5.3";
-    knobs.switch(knob("overlap-queries", "", "a simulated processor goes on while it waits for answers", source), &mut machine.overlap);
+    knobs.switch(Knob::new("overlap-queries", "", "a simulated processor goes on while it waits for answers", source), &mut machine.overlap);
     knobs.switch(
-        knob("farthest-shortcut", "", "a simulated processor first compares a box with the farthest depth of each region", source),
+        Knob::new("farthest-shortcut", "", "a simulated processor first compares a box with the farthest depth of each region", source),
         &mut machine.farthest_first,
     );
     let source = "Georges 1995, Section 4.2";
-    knobs.integer(knob("transform-cost", "ticks", "simulated time to transform a primitive", source), 1..=10_000, &mut machine.transform);
-    knobs.integer(knob("rasterize-cost", "ticks", "simulated time to rasterize a primitive in a region", source), 1..=10_000, &mut machine.rasterize);
-    knobs.integer(knob("answer-cost", "ticks", "simulated time in which a renderer answers for a box", source), 1..=10_000, &mut machine.answer);
+    knobs.integer(Knob::new("transform-cost", "ticks", "simulated time to transform a primitive", source), 1..=10_000, &mut machine.transform);
     knobs.integer(
-        knob("message-cost", "ticks", "simulated time of a message between a processor and a renderer", source),
+        Knob::new("rasterize-cost", "ticks", "simulated time to rasterize a primitive in a region", source),
+        1..=10_000,
+        &mut machine.rasterize,
+    );
+    knobs.integer(Knob::new("answer-cost", "ticks", "simulated time in which a renderer answers for a box", source), 1..=10_000, &mut machine.answer);
+    knobs.integer(
+        Knob::new("message-cost", "ticks", "simulated time of a message between a processor and a renderer", source),
         0..=10_000,
         &mut machine.message,
     );
@@ -686,9 +691,11 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
     }
     /// Takes cubes off the list that the finished image hides.
     fn check(&mut self, id: NodeId, planes: u8) {
+        if !self.listed[id.at()] {
+            return;
+        }
         let node = &self.index.nodes()[id.at()];
         let cutting = match self.frustum.test(&node.bounds, planes) {
-            _ if !self.listed[id.at()] => return,
             FrustumTest::Outside(_) => return,
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,

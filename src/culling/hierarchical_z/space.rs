@@ -1,6 +1,6 @@
 //! What differs between flatland and space: the faces of a box, and what of the image one covers.
 
-use crate::geometry::{Aabb, BoxImage, Flat, Footprint, MARGIN_PX, PixelRect, Solid, Space, Vector, View};
+use crate::geometry::{Aabb, BoxImage, Flat, Footprint, MARGIN_PX, PixelRect, Projection, Solid, Space, Vector, View, project_box};
 use crate::raster::Drawable;
 
 /// Faces of boxes and their images.
@@ -122,6 +122,11 @@ impl Faces for Solid {
         face.has_sides = true;
         face
     }
+}
+
+/// Where a box falls in the image.
+pub fn footprint<S: Faces>(view: &View<S>, projection: &Projection<S::Vector>, bounds: &Aabb<S::Vector>) -> Footprint {
+    project_box(projection, bounds, view.eye.near, view.eye.far, view.width, view.height)
 }
 
 /// The sphere about a box is taken larger by this part, for rounding.

@@ -3,38 +3,20 @@
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
+use super::anatomy::figure_1;
 use super::buffer::Buffer;
 use super::explain::{Evidence, Outcome};
 use super::query::Query;
 use super::space::{FaceImage, Faces};
 use super::*;
 use crate::culling::{Recorder, Unobserved};
-use crate::geometry::{Eye, Flat, Solid};
+use crate::geometry::{Flat, Solid};
 use crate::raster::{Target, render};
 use crate::scene::Parts;
 
-/// A unit square of pixels each `z` deep, as triangles, and the straight view of it: Figure 1 of the paper.
-fn figure_1() -> (Scene<Solid>, View<Solid>) {
-    let z = [[4, 9, 8, 8], [4, 5, 1, 3], [6, 2, 2, 4], [2, 2, 2, 4]];
-    let (mut points, mut prims) = (Vec::new(), Vec::new());
-    for (row, depths) in z.iter().enumerate() {
-        for (column, &depth) in depths.iter().enumerate() {
-            let (x, y, d) = (column as f32 - 2.0, 2.0 - row as f32, depth as f32);
-            let first = points.len() as u32;
-            // The image is 4 wide at depth 2.
-            points.extend([(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)].map(|(x, y)| glam::Vec3::new(x, y, -2.0) * (d / 2.0)));
-            prims.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-        }
-    }
-    let scene = Scene::new(Parts::simple("figure 1", points, prims)).expect("a valid scene");
-    let eye =
-        Eye { position: glam::Vec3::ZERO, target: glam::Vec3::NEG_Z, up: glam::Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 20.0 };
-    (scene, View { eye, width: 4, height: 4 })
-}
-
 /// What a face at depth 6 over some pixels of Figure 1 is told, as level, cell value and outcome.
 fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
-    let (scene, view) = figure_1();
+    let (scene, view) = figure_1().expect("a valid scene");
     let mut buffer = Buffer::default();
     buffer.begin(&view);
     buffer.draw(&scene, scene.live(), &Options::default());
@@ -51,7 +33,7 @@ fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
 
 #[test]
 fn figures_1_and_2_of_georges_1995() {
-    let (scene, view) = figure_1();
+    let (scene, view) = figure_1().expect("a valid scene");
     let image = render(&scene, &view, scene.live());
     let depths: Vec<f32> = image.depth.iter().map(|d| (1.0 / d).round()).collect();
     assert_eq!(depths, [4.0, 9.0, 8.0, 8.0, 4.0, 5.0, 1.0, 3.0, 6.0, 2.0, 2.0, 4.0, 2.0, 2.0, 2.0, 4.0]);

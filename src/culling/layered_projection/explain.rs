@@ -100,6 +100,8 @@ pub struct Seen {
 
 /// Projected cells that are numbered in a picture; the latest ones.
 const NUMBERED: usize = 64;
+/// The least distance of two labels, as a part of the scene's diagonal.
+const LABELS_APART: f32 = 0.06;
 /// Cells of the front that are labeled in a picture of flatland.
 const LABELED: usize = 200;
 
@@ -226,18 +228,29 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     format!("Node {a} hands its solidity on to node {b}: |A| / ρ_max + {part} = {terms}.{star}{before}")
 }
 
-/// Draws the front, the latest projected cells, and the evidence of a note.
-pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
-    let flat = S::Vector::AXES == 2;
-    for (at, (&cell, &solidity)) in seen.front.iter().enumerate() {
-        outline(index, cell, Layer::Nodes, Role::Undecided, to);
-        if flat && at < LABELED {
-            label(to, index.cells.any().center(cell), short(solidity));
+/// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid first, as far as
+/// labels do not meet when the whole scene is shown.
+fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
+    let apart = scene.bounds().diagonal() * LABELS_APART;
+    let projected = seen.projected.iter().enumerate().rev().take(NUMBERED).map(|(at, &cell)| (cell, format!("#{}", at + 1)));
+    let mut front: Vec<_> = seen.front.iter().collect();
+    front.sort_by(|a, b| a.1.total_cmp(b.1).then(a.0.cmp(b.0)));
+    let front = front.into_iter().take(LABELED).map(|(&cell, &solidity)| (cell, short(solidity)));
+    let mut taken: Vec<S::Vector> = Vec::new();
+    for (cell, text) in projected.chain(front) {
+        let at = index.cells.any().center(cell);
+        if taken.iter().all(|&t| (t - at).length() > apart) {
+            taken.push(at);
+            label(to, at, text);
         }
     }
-    let first = seen.projected.len().saturating_sub(NUMBERED);
-    for (at, &cell) in seen.projected.iter().enumerate().skip(first).filter(|_| flat) {
-        label(to, index.cells.any().center(cell), format!("#{}", at + 1));
+}
+
+/// Draws the front, the latest projected cells, and the evidence of a note.
+pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    seen.front.keys().for_each(|&cell| outline(index, cell, Layer::Nodes, Role::Undecided, to));
+    if S::Vector::AXES == 2 {
+        labels(seen, scene, index, to);
     }
     match note {
         Some(Evidence::Tested(n)) => n.draw(view, to),

@@ -127,18 +127,17 @@ impl<S: Cellular> Method<S> for LayeredProjection {
     const KEYFRAME_NOTES: usize = 2048;
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let knob = |name, unit, meaning, source| Knob { name, unit, meaning, source };
-        let cells = knob("tessellation", "", "which cells space is divided into", section!("4.3"));
+        let cells = Knob::new("tessellation", "", "which cells space is divided into", section!("4.3"));
         knobs.choice(cells, Params::TESSELLATIONS, &mut params.tessellation);
-        let budget = knob("budget", "primitives", "how many primitives are drawn: a number, or a share of the scene such as 10%", section!("3"));
+        let budget = Knob::new("budget", "primitives", "how many primitives are drawn: a number, or a share of the scene such as 10%", section!("3"));
         knobs.budget(budget, &mut params.budget);
-        let leaf = knob("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
+        let leaf = Knob::new("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
         knobs.integer(leaf, 1..=100, &mut params.leaf_size);
         let meaning = "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
-        knobs.choice(knob("transfer", "", meaning, section!("3.2")), Params::TRANSFERS, &mut params.transfer);
+        knobs.choice(Knob::new("transfer", "", meaning, section!("3.2")), Params::TRANSFERS, &mut params.transfer);
         let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by";
-        knobs.integer(knob("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
-        let seed = knob("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));
+        knobs.integer(Knob::new("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
+        let seed = Knob::new("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));
         knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
         backface_knob(knobs, &mut params.backface_culling);
     }

@@ -227,13 +227,9 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Says of every cell and primitive that was not reached why not: it is out of view, or the budget was spent. Only if
     /// someone listens; it changes nothing.
     fn tell_the_rest(&mut self, spent: bool) {
-        let mut heard = false;
         let (cells, left) = (self.rank, self.left as u32);
-        self.watch.note(|| {
-            heard = true;
-            Evidence::Ended(Ended { cells, left, spent })
-        });
-        if !heard {
+        self.watch.note(|| Evidence::Ended(Ended { cells, left, spent }));
+        if !O::LISTENS {
             return;
         }
         let index = self.index;

@@ -24,22 +24,3 @@ pub const FIGURES: &[Row] = &[
     ("large-occluders-11", "The area-angle, its parameters, and the true solid angle", chart::area_angle),
     ("large-occluders-12", "Detail objects and the occluders near them", run::detail_objects),
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::drawing::{Mark, metrics};
-
-    #[test]
-    fn no_text_sticks_out_or_is_too_small() {
-        for (name, _, make) in FIGURES {
-            let page = make(&|_| [0.0; 3]).expect("a figure");
-            for item in &page.items {
-                let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
-                let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);
-                assert!(low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y, "{name}: {text}");
-                assert!(*size_pt > 5.0, "{name}: {text} has {size_pt} pt");
-            }
-        }
-    }
-}
