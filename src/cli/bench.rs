@@ -129,7 +129,7 @@ fn measure(occluders: &mut Obscurer<Solid>, mesh: &Arc<Scene<Solid>>, views: &[V
         let mut answers = Vec::new();
         for _ in 0..repeat {
             render.push(timed(|| occluders.render(view)).1);
-            let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(view, b)).collect::<Vec<_>>());
+            let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(b)).collect::<Vec<_>>());
             query.push(ms);
             answers = all;
         }

@@ -5,6 +5,7 @@
 //! To add a method: make a folder, implement [`Method`], add a `mod` line and a line in each list below.
 
 mod baseline;
+mod depth;
 mod entry;
 #[cfg(test)]
 mod entry_tests;

@@ -5,15 +5,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::buffer::Buffer;
-use super::explain::Evidence;
-use super::query::Query;
-use super::space::{FaceImage, Faces, footprint};
+use super::explain::{Asked, Evidence};
 use super::{HierarchicalZ, Memory, Params, picture};
+use crate::culling::depth::{Buffer, FaceImage, Faces, Nobody, Query, hides};
 use crate::culling::entry::params;
 use crate::culling::{DrawList, Method, Recorder, SettingError, Settings, Unobserved};
 use crate::drawing::Drawing;
-use crate::geometry::{Aabb, Eye, Footprint, NodeId, PixelRect, Projection, Solid, View};
+use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
 use crate::index::Octree;
 use crate::raster::{DepthScale, Options, Target};
 use crate::scene::{Parts, Progress, Scene, SceneError};
@@ -24,8 +22,6 @@ pub struct Obscurer<S: Faces> {
     index: Octree<S::Vector>,
     params: Params,
     memory: Memory<S>,
-    /// Of the view that was drawn last.
-    projection: Option<Projection<S::Vector>>,
 }
 
 impl<S: Faces> Obscurer<S> {
@@ -36,12 +32,11 @@ impl<S: Faces> Obscurer<S> {
     pub fn new(scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Self>, SettingError> {
         let params = params::<S, HierarchicalZ>(settings)?;
         let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
-        Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default(), projection: None }))
+        Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default() }))
     }
     /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns what was drawn.
     pub fn render(&mut self, view: &View<S>) -> DrawList {
         let mut list = DrawList::default();
-        self.projection = Some(view.projection());
         HierarchicalZ::cull(&self.index, &self.scene, view, &self.params, &mut self.memory, &mut list, &mut Unobserved);
         list
     }
@@ -49,17 +44,9 @@ impl<S: Faces> Obscurer<S> {
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }
-    /// Whether a box is hidden by what was drawn for this view, by its front faces; `None` if it is out of view.
-    pub fn hides(&mut self, view: &View<S>, bounds: &Aabb<S::Vector>) -> Option<bool> {
-        let projection = self.projection?;
-        match footprint(view, &projection, bounds) {
-            Footprint::Outside => None,
-            Footprint::CrossesNear => Some(false),
-            Footprint::Seen(image) => {
-                let buffer = &mut self.memory.scratch.buffer;
-                Some(Query::new(buffer, NodeId(0), image.nearest, 0, &mut Unobserved).faces(bounds, &image, view).is_hidden)
-            }
-        }
+    /// Whether a box is hidden by what was drawn last, by its front faces; `None` if it is out of view.
+    pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {
+        hides(&mut self.memory.scratch.buffer, bounds, Nobody).map(|answer| answer.is_hidden)
     }
     /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
     pub fn touch_all(&mut self, view: &View<S>) {
@@ -85,7 +72,7 @@ pub fn pyramid_picture<S: Faces>(scene: &Scene<S>, view: &View<S>, face: Option<
     let mut recorder: Recorder<Evidence<S>> = Recorder::new(usize::MAX);
     let mut is_hidden = false;
     if let Some((pixels, depth)) = face {
-        is_hidden = Query::new(&mut buffer, NodeId(0), 1.0 / depth, 0, &mut recorder).face(0, &FaceImage::rectangle(pixels));
+        is_hidden = Query::new(&mut buffer, 1.0 / depth, Asked::new(NodeId(0), 0, &mut recorder)).face(0, &FaceImage::rectangle(pixels));
     }
     (picture::picture(&buffer, view, &recorder.notes, 0, scale), is_hidden)
 }

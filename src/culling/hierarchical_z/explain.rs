@@ -1,12 +1,12 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
-use super::buffer::Buffer;
-use super::query::Answer;
+use std::marker::PhantomData;
+
 use super::simulation::{Job, Unit, Worked};
-use super::space::Faces;
+use crate::culling::depth::{Answer, Buffer, Faces, Listener, Read};
 use crate::culling::event::Tallied;
 use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
-use crate::culling::{Field, Note, Tally, Value};
+use crate::culling::{Event, Field, Note, Observer, Tally, Value};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::raster::{Extent, Options, PyramidCell};
@@ -21,8 +21,8 @@ pub enum Evidence<S: Faces> {
     Unlisted(NodeId),
     /// A box against the frustum.
     Tested(Tested<S>),
-    /// A cell of the pyramid was compared with a face.
-    Read(Read),
+    /// A cell of the pyramid was compared with a face of a cube's box.
+    Read(NodeId, Read),
     /// A tile of the pyramid was brought up to date.
     Refreshed(PyramidCell),
     /// The tiles under a rectangle were brought up to date, unless more were stale than the number says.
@@ -59,31 +59,31 @@ pub struct Check {
     pub is_due: bool,
 }
 
-/// How a cell compared with a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// The face lies behind all that is drawn in the cell.
-    Behind,
-    /// It may not; the cells below are asked.
-    Descends,
-    /// A pixel that the face covers shows nothing nearer.
-    Shows,
+/// Whose box is asked for, at which line of the pseudocode, and who is told of what the query reads.
+pub struct Asked<'a, S, O> {
+    node: NodeId,
+    line: u8,
+    watch: &'a mut O,
+    space: PhantomData<S>,
 }
 
-/// A cell of the pyramid was read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Read {
-    /// Whose box was asked for.
-    pub node: NodeId,
-    /// Number of the face among those that face the eye.
-    pub face: u8,
-    /// The cell.
-    pub cell: PyramidCell,
-    /// Its farthest depth and the box's nearest, `1/w`.
-    pub held: f32,
-    pub nearest: f32,
-    /// What followed.
-    pub outcome: Outcome,
+impl<'a, S: Faces, O: Observer<Evidence<S>>> Asked<'a, S, O> {
+    pub fn new(node: NodeId, line: u8, watch: &'a mut O) -> Self {
+        Self { node, line, watch, space: PhantomData }
+    }
+}
+
+impl<S: Faces, O: Observer<Evidence<S>>> Listener for Asked<'_, S, O> {
+    #[inline]
+    fn refreshes(&mut self, cell: PyramidCell) {
+        self.watch.note(|| Evidence::Refreshed(cell));
+    }
+    #[inline]
+    fn reads(&mut self, read: Read) {
+        let node = self.node;
+        self.watch.event(Event::Line(self.line));
+        self.watch.note(move || Evidence::Read(node, read));
+    }
 }
 
 /// A box was asked for, and this was the answer.
@@ -146,7 +146,7 @@ impl<S: Faces> Evidence<S> {
                 }
             }
             Self::SharedUnseen(prim, _) => outline(scene, *prim, to),
-            Self::Read(n) => {
+            Self::Read(_, n) => {
                 let size = (view.width, view.height);
                 behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
             }
@@ -257,7 +257,7 @@ impl<S: Faces> Tallied for Evidence<S> {
             Self::Listed(_, is_drawn) => tally.add("cubes_drawn_from_list", (*is_drawn).into()),
             Self::Unlisted(_) => tally.add("cubes_unlisted", 1),
             Self::Tested(n) => n.tally(tally),
-            Self::Read(_) => tally.add("cells_read", 1),
+            Self::Read(..) => tally.add("cells_read", 1),
             Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
             Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
             Self::Answered(_) => tally.add("queries", 1),
@@ -276,7 +276,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Listed(..) => "CubeListed",
             Self::Unlisted(_) => "CubeUnlisted",
             Self::Tested(n) => n.kind(),
-            Self::Read(_) => "CellRead",
+            Self::Read(..) => "CellRead",
             Self::Refreshed(_) => "TileRefreshed",
             Self::RefreshedUnder(..) => "TilesRefreshed",
             Self::RefreshedAll => "PyramidRefreshed",
@@ -298,8 +298,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Listed(n, _) | Self::Unlisted(n) => vec![integer("node", n.0)],
             Self::Tested(n) => n.fields(),
-            Self::Read(n) => {
-                let mut fields = vec![integer("node", n.node.0), integer("face", n.face.into())];
+            Self::Read(node, n) => {
+                let mut fields = vec![integer("node", node.0), integer("face", n.face.into())];
                 fields.extend(cell_fields(n.cell));
                 fields.push(number("face_depth_units", units(n.nearest).into()));
                 fields.push(number("held_depth_units", units(n.held).into()));
@@ -340,7 +340,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Listed(n, false) => format!("Node {n} is on the visible list: it was drawn at the start of the frame, without a test."),
             Self::Unlisted(n) => format!("Node {n} cannot be seen in the finished image; it leaves the visible list with all below it."),
             Self::Tested(n) => n.sentence(),
-            Self::Read(n) => n.sentence(),
+            Self::Read(node, n) => format!("Face {} of node {node} against {}: {}.", n.face + 1, place(n.cell), n.comparison()),
             Self::Refreshed(cell) => {
                 format!("Something was drawn under {} since it was read: its tile is brought up to date, with all values above.", place(*cell))
             }
@@ -355,31 +355,6 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Checked(n) => n.sentence(),
             Self::Worked(n) => n.sentence(),
         }
-    }
-}
-
-impl Outcome {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Behind => "behind",
-            Self::Descends => "descend",
-            Self::Shows => "visible",
-        }
-    }
-}
-
-impl Read {
-    /// The comparison as it is written beside a cell, such as `face 6, cell 9: not behind, descend`.
-    pub fn comparison(&self) -> String {
-        let then = match self.outcome {
-            Outcome::Behind => "behind",
-            Outcome::Descends => "not behind, descend",
-            Outcome::Shows => "not behind: visible",
-        };
-        format!("face {}, cell {}: {then}", short(units(self.nearest)), short(units(self.held)))
-    }
-    fn sentence(&self) -> String {
-        format!("Face {} of node {} against {}: {}.", self.face + 1, self.node, place(self.cell), self.comparison())
     }
 }
 

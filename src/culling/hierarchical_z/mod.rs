@@ -3,7 +3,7 @@
 //! Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, <https://doi.org/10.1145/166117.166147>, as
 //! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, describes it (Section 3), and Georges'
 //! parallel form (Sections 4 and 5, [`simulation`]). The cubes that were visible in the last frame are drawn first, which
-//! almost completes the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`query`]); in the end
+//! almost completes the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`crate::culling::depth`]); in the end
 //! those that cannot be seen leave the list of visible ones.
 //!
 //! Departures: the test asks for the bounds of what a cube holds, not for the cube; the pyramid is brought up to date where it
@@ -12,12 +12,9 @@
 //! Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
 
 pub mod anatomy;
-mod buffer;
 mod explain;
 mod picture;
-mod query;
 mod simulation;
-mod space;
 #[cfg(test)]
 mod tests;
 
@@ -25,14 +22,12 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use self::buffer::Buffer;
-use self::explain::{Answered, Check, Evidence, Rasterized};
-use self::query::{Answer, Held, Query};
+use self::explain::{Answered, Asked, Check, Evidence, Rasterized};
 use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
-use self::space::{FaceImage, Faces, footprint, project_sphere};
+use crate::culling::depth::{Answer, Buffer, FaceImage, Faces, Held, Listener, Nobody, Query, footprint, project_sphere};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Unobserved, Verdict};
+use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View, nearest_depth};
 use crate::index::{Octree, OctreeNode, Redistribution, Shape};
@@ -468,11 +463,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             let node = &index.nodes()[id.at()];
             match question(node, view, projection, params) {
                 Question::Decided { crosses_near } => !crosses_near,
-                Question::Open(image, nearest) => {
-                    let mut nobody = Unobserved;
-                    let query = Query::new(buffer, id, nearest, line::BEHIND, &mut nobody);
-                    ask(query, params, &node.bounds, &image, view).is_hidden
-                }
+                Question::Open(image, nearest) => ask(Query::new(buffer, nearest, Nobody), params, &node.bounds, &image, view).is_hidden,
             }
         };
         let ask = |&(id, planes): &(NodeId, u8)| match frustum.test(&index.nodes()[id.at()].bounds, planes) {
@@ -645,7 +636,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
                 self.answered(node, &bounds, crosses_near)
             }
             Question::Open(image, nearest) => {
-                let query = Query::new(&mut *self.buffer, node, nearest, line::BEHIND, &mut *self.watch);
+                let query = Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
                 let answer = ask(query, self.params, &bounds, &image, self.view);
                 self.watch.note(move || Evidence::Answered(Answered { node, bounds, pixels: image.pixels, answer, crosses_near: false }));
                 answer.is_hidden
@@ -733,8 +724,8 @@ fn question<S: Faces>(node: &OctreeNode<S::Vector>, view: &View<S>, projection: 
 }
 
 /// Asks for a box in the way that the parameters say.
-fn ask<S: Faces, B: Held<S>, W: Observer<Evidence<S>>>(
-    mut query: Query<'_, S, B, W>,
+fn ask<S: Faces, B: Held<S>, L: Listener>(
+    mut query: Query<S, B, L>,
     params: &Params,
     bounds: &Aabb<S::Vector>,
     image: &BoxImage,

@@ -4,10 +4,9 @@
 
 use glam::{Vec2, vec2};
 
-use super::buffer::Buffer;
-use super::explain::{Evidence, Outcome, Read, place, units};
+use super::explain::{Evidence, place, units};
 use super::simulation::{Job, Unit, Worked};
-use super::space::Faces;
+use crate::culling::depth::{Buffer, Faces, Outcome, Read};
 use crate::culling::evidence::short;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
 use crate::geometry::{NodeId, View};
@@ -36,10 +35,13 @@ pub fn picture<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S
 
 /// The reads of the query that the last note belongs to.
 fn reads<S: Faces>(notes: &[Evidence<S>]) -> Vec<Read> {
-    let mut reads: Vec<Read> = Vec::new();
+    let (mut reads, mut whose): (Vec<Read>, _) = (Vec::new(), None);
     for note in notes.iter().rev() {
         match note {
-            Evidence::Read(r) if reads.last().is_none_or(|last| last.node == r.node) => reads.push(*r),
+            Evidence::Read(node, r) if whose.is_none_or(|n| n == *node) => {
+                reads.push(*r);
+                whose = Some(*node);
+            }
             Evidence::Refreshed(_) => {}
             Evidence::Answered(_) if reads.is_empty() => {}
             _ => break,

@@ -18,11 +18,9 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
-use super::buffer::Buffer;
-use super::explain::{Answered, Evidence, Rasterized};
-use super::query::{Answer, Query};
-use super::space::{Faces, footprint};
+use super::explain::{Answered, Asked, Evidence, Rasterized};
 use super::{Params, line};
+use crate::culling::depth::{Answer, Buffer, Faces, Query, footprint};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::{DrawList, Event, Observer, Verdict};
 use crate::drawing::Subject;
@@ -570,7 +568,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
                     let q = &self.state.questions[question];
                     (q.image, q.bounds, q.node, q.nearest)
                 };
-                let query = Query::new(&mut *self.buffer, node, nearest, line::BEHIND, &mut *self.watch);
+                let query = Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
                 let answer = query.faces_in(&bounds, &image, self.view, window);
                 self.note_work(Worked {
                     unit,
@@ -654,7 +652,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             let n = &self.index.nodes()[at];
             let Footprint::Seen(image) = footprint(self.view, &self.projection, &n.held) else { continue };
             let nearest = nearest_depth(&self.projection, &n.held_whole, self.view.eye.near);
-            let query = Query::new(&mut *self.buffer, NodeId(at as u32), nearest, line::UNLIST, &mut *self.watch);
+            let query = Query::new(&mut *self.buffer, nearest, Asked::new(NodeId(at as u32), line::UNLIST, &mut *self.watch));
             if query.faces(&n.held, &image, self.view).is_hidden {
                 self.lists.visible.iter_mut().for_each(|v| v[at] = false);
                 self.watch.note(|| Evidence::Unlisted(NodeId(at as u32)));

@@ -4,11 +4,9 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 use super::anatomy::figure_1;
-use super::buffer::Buffer;
-use super::explain::{Evidence, Outcome};
-use super::query::Query;
-use super::space::{FaceImage, Faces};
+use super::explain::Evidence;
 use super::*;
+use crate::culling::depth::Outcome;
 use crate::culling::{Recorder, Unobserved};
 use crate::geometry::{Flat, Solid};
 use crate::raster::{Target, render};
@@ -21,11 +19,11 @@ fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
     buffer.begin(&view);
     buffer.draw(&scene, scene.live(), &Options::default());
     buffer.refresh_all();
-    let mut recorder = Recorder::new(1000);
-    let mut query = Query::new(&mut buffer, NodeId(0), 1.0 / 6.0, 0, &mut recorder);
+    let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
+    let mut query = Query::new(&mut buffer, 1.0 / 6.0, Asked::new(NodeId(0), 0, &mut recorder));
     let is_hidden = query.face(0, &FaceImage::rectangle(pixels));
     let reads = recorder.notes.iter().filter_map(|n| match n {
-        Evidence::Read(r) => Some((r.cell.level, (1.0 / r.held).round(), r.outcome)),
+        Evidence::Read(_, r) => Some((r.cell.level, (1.0 / r.held).round(), r.outcome)),
         _ => None,
     });
     (is_hidden, reads.collect())
@@ -94,10 +92,9 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             S::draw(&mut with, &outside, &view, outside.live(), &Options::default());
             // Ties go to the lower id, so a tie may show as well; both count as a change.
             let changed = |t: &Target| (0..t.depth.len()).any(|i| t.depth[i] != drawn.depth[i] || t.item[i] != drawn.item[i]);
-            let answer = Query::new(&mut buffer, NodeId(0), image.nearest, 0, &mut Unobserved).faces(&bounds, &image, &view);
+            let answer = Query::new(&mut buffer, image.nearest, Nobody).faces(&bounds, &image, &view);
             assert!(!answer.is_hidden || !changed(&with), "{bounds:?} is called hidden and shows");
-            let mut nobody = Unobserved;
-            let mut query = Query::new(&mut buffer, NodeId(0), image.nearest, 0, &mut nobody);
+            let mut query = Query::new(&mut buffer, image.nearest, Nobody);
             let by_rectangle = query.face(0, &FaceImage::rectangle(image.pixels));
             assert!(!by_rectangle || answer.is_hidden, "what the rectangle hides, the faces do");
             if let Footprint::Seen(sphere) = project_sphere(&view, &bounds) {

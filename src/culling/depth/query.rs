@@ -14,11 +14,9 @@
 //! equal count as visible, since ids then decide.
 //! Cost: a few cells where coarse levels decide; at worst the pixels along the face's outline.
 
-use super::buffer::Buffer;
-use super::explain::{Evidence, Outcome, Read};
-use super::space::{FaceImage, Faces};
-use crate::culling::{Event, Observer};
-use crate::geometry::{Aabb, BoxImage, NodeId, PixelRect, View};
+use super::{Buffer, FaceImage, Faces, footprint};
+use crate::culling::evidence::short;
+use crate::geometry::{Aabb, BoxImage, Footprint, PixelRect, View};
 use crate::raster::PyramidCell;
 
 /// How a query ended.
@@ -48,6 +46,73 @@ impl Answer {
             self.decisive = other.decisive;
         }
     }
+}
+
+/// How a cell compared with a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// The face lies behind all that is drawn in the cell.
+    Behind,
+    /// It may not; the cells below are asked.
+    Descends,
+    /// A pixel that the face covers shows nothing nearer.
+    Shows,
+}
+
+impl Outcome {
+    /// One word for tables.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Behind => "behind",
+            Self::Descends => "descend",
+            Self::Shows => "visible",
+        }
+    }
+}
+
+/// A cell of the pyramid was read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Read {
+    /// Number of the face among those that face the eye.
+    pub face: u8,
+    /// The cell.
+    pub cell: PyramidCell,
+    /// Its farthest depth and the box's nearest, `1/w`.
+    pub held: f32,
+    pub nearest: f32,
+    /// What followed.
+    pub outcome: Outcome,
+}
+
+impl Read {
+    /// The comparison as it is written beside a cell, such as `face 6, cell 9: not behind, descend`.
+    pub fn comparison(&self) -> String {
+        let then = match self.outcome {
+            Outcome::Behind => "behind",
+            Outcome::Descends => "not behind, descend",
+            Outcome::Shows => "not behind: visible",
+        };
+        format!("face {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
+    }
+}
+
+/// Who hears what a query reads, in order. It cannot answer, so a query that is heard and one that is not are the same.
+pub trait Listener {
+    /// The tile of a cell was out of date and is being brought up to date.
+    fn refreshes(&mut self, cell: PyramidCell);
+    /// A cell was compared with a face.
+    fn reads(&mut self, read: Read);
+}
+
+/// Nobody listens; compiles to nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nobody;
+
+impl Listener for Nobody {
+    #[inline(always)]
+    fn refreshes(&mut self, _: PyramidCell) {}
+    #[inline(always)]
+    fn reads(&mut self, _: Read) {}
 }
 
 /// What is drawn so far, to be read and perhaps to be brought up to date.
@@ -82,23 +147,31 @@ impl<S: Faces> Held<S> for &Buffer<S> {
     fn refresh(&mut self, _: PyramidCell) {}
 }
 
+/// Whether a box is hidden by what is drawn for the buffer's view, by its front faces; `None` if it lies outside the view. A box
+/// that reaches the near plane is not hidden.
+pub fn hides<S: Faces>(buffer: impl Held<S>, bounds: &Aabb<S::Vector>, listener: impl Listener) -> Option<Answer> {
+    let (view, projection) = *buffer.buffer().view()?;
+    match footprint(&view, &projection, bounds) {
+        Footprint::Outside => None,
+        Footprint::CrossesNear => Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None }),
+        Footprint::Seen(image) => Some(Query::new(buffer, image.nearest, listener).faces(bounds, &image, &view)),
+    }
+}
+
 /// One query.
-pub struct Query<'a, S: Faces, B: Held<S>, O> {
+pub struct Query<S: Faces, B: Held<S>, L> {
     /// What is drawn so far.
     pub buffer: B,
-    /// Whose box it is.
-    pub node: NodeId,
     /// Who listens.
-    pub watch: &'a mut O,
-    /// Line of the pseudocode at which cells are compared.
-    pub line: u8,
+    pub listener: L,
     pub answer: Answer,
     space: std::marker::PhantomData<S>,
 }
 
-impl<'a, S: Faces, B: Held<S>, O: Observer<Evidence<S>>> Query<'a, S, B, O> {
-    pub fn new(buffer: B, node: NodeId, nearest: f32, line: u8, watch: &'a mut O) -> Self {
-        Self { buffer, node, watch, line, answer: Answer { is_hidden: true, nearest, reads: 0, decisive: None }, space: std::marker::PhantomData }
+impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
+    pub fn new(buffer: B, nearest: f32, listener: L) -> Self {
+        let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
+        Self { buffer, listener, answer, space: std::marker::PhantomData }
     }
 
     /// Asks for a box by its front faces, each as it is projected.
@@ -132,7 +205,7 @@ impl<'a, S: Faces, B: Held<S>, O: Observer<Evidence<S>>> Query<'a, S, B, O> {
         let nearest = self.answer.nearest;
         let mut held = self.buffer.buffer().farthest(cell);
         if nearest >= held && self.buffer.would_refresh(cell) {
-            self.watch.note(|| Evidence::Refreshed(cell));
+            self.listener.refreshes(cell);
             self.buffer.refresh(cell);
             held = self.buffer.buffer().farthest(cell);
         }
@@ -145,9 +218,7 @@ impl<'a, S: Faces, B: Held<S>, O: Observer<Evidence<S>>> Query<'a, S, B, O> {
         } else {
             Outcome::Descends
         };
-        let node = self.node;
-        self.watch.event(Event::Line(self.line));
-        self.watch.note(move || Evidence::Read(Read { node, face: number, cell, held, nearest, outcome }));
+        self.listener.reads(Read { face: number, cell, held, nearest, outcome });
         match outcome {
             Outcome::Behind => {
                 if self.answer.decisive.is_none_or(|(_, least)| held < least) {

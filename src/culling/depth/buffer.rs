@@ -1,13 +1,13 @@
 //! The z-buffer of a frame with its z-pyramid: the large state that a run changes and a film replays.
 
-use crate::geometry::{PixelRect, PrimId, View};
+use crate::geometry::{PixelRect, PrimId, Projection, View};
 use crate::raster::{Drawable, Extent, Options, Pyramid, PyramidCell, Sieve, Target};
 use crate::scene::Scene;
 
 /// A depth image, its pyramid, and the view it is for.
 #[derive(Clone, Debug)]
 pub struct Buffer<S: Drawable> {
-    view: Option<View<S>>,
+    view: Option<(View<S>, Projection<S::Vector>)>,
     target: Target,
     pyramid: Pyramid,
     hidden: Vec<PrimId>,
@@ -20,9 +20,14 @@ impl<S: Drawable> Default for Buffer<S> {
 }
 
 impl<S: Drawable> Buffer<S> {
+    /// The view it is for and its projection, once there is one.
+    #[inline]
+    pub fn view(&self) -> Option<&(View<S>, Projection<S::Vector>)> {
+        self.view.as_ref()
+    }
     /// Empties it for a view.
     pub fn begin(&mut self, view: &View<S>) {
-        self.view = Some(*view);
+        self.view = Some((*view, view.projection()));
         self.target.clear(view);
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }
@@ -30,7 +35,7 @@ impl<S: Drawable> Buffer<S> {
     /// pyramid grows stale where something was drawn.
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) -> &[PrimId] {
         self.hidden.clear();
-        if let Some(view) = &self.view {
+        if let Some((view, _)) = &self.view {
             let sieve = Sieve { pyramid: &mut self.pyramid, hidden: &mut self.hidden };
             S::sift(&mut self.target, sieve, scene, view, prims, options);
         }
@@ -38,7 +43,7 @@ impl<S: Drawable> Buffer<S> {
     }
     /// Draws primitives without asking the pyramid, which grows stale all over.
     pub fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
-        if let Some(view) = &self.view {
+        if let Some((view, _)) = &self.view {
             S::draw(&mut self.target, scene, view, prims, options);
             self.pyramid.touch(options.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height }));
         }
@@ -46,7 +51,7 @@ impl<S: Drawable> Buffer<S> {
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid holds for it. The same
     /// before and after it was drawn: only refreshing changes what the pyramid holds.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
-        let extent = S::extent(scene, self.view.as_ref()?, prim, options)?;
+        let extent = S::extent(scene, &self.view.as_ref()?.0, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
     /// Makes a part of the pyramid stale.
