@@ -80,7 +80,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let mut text = String::new();
         for experiment in EXPERIMENTS {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{:<24} {}", experiment.name, experiment.summary);
+            let _ = writeln!(text, "{:<28} {}", experiment.name, experiment.summary);
         }
         return output::print(text.as_bytes());
     }

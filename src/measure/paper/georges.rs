@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use super::flight::{about, path};
 use super::walk::{ROUNDS, stop_or_go};
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part};
 use crate::culling::{Run, Settings};
@@ -18,28 +19,6 @@ use crate::scene::{Part, Progress, Scene};
 use crate::truth::Truth;
 
 pub const METHOD: &str = "hierarchical-z";
-
-/// The scene's first path, or views around it, resampled to about `frames` views.
-fn path<S: World>(scene: &Scene<S>, setup: &Setup) -> ViewPath<S> {
-    let own = scene.paths().first().cloned();
-    let mut path = own.unwrap_or_else(|| crate::scene::figure_eight_path(scene, setup.frames));
-    let between = (setup.frames / path.views.len().max(1)).saturating_sub(1);
-    if between > 0 {
-        path = path.smoothed(between);
-    } else if path.views.len() > setup.frames {
-        let n = path.views.len();
-        path.views = (0..setup.frames).map(|i| path.views[i * n / setup.frames]).collect();
-    }
-    if let Some([width, height]) = setup.size_px {
-        let height = if S::CORNERS == 2 { 1 } else { height };
-        path.views.iter_mut().for_each(|v| (v.width, v.height) = (width, height));
-    }
-    path
-}
-
-fn about<S: World>(scene: &Scene<S>, path: &ViewPath<S>) -> Measured {
-    Measured { name: scene.name().into(), source: scene.source().into(), prims: scene.live().len(), prim: S::PRIM, path: path.name.clone() }
-}
 
 fn ready<S: World>(key: &str, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Box<dyn Run<S>>, PaperError> {
     let entry = method::<S>(key);

@@ -1,13 +1,18 @@
 //! The tables and tests of the papers, measured on any scene beside the papers' own figures: Coorg and Teller, "Real-Time
 //! Occlusion Culling for Models with Large Occluders", I3D 1997, <https://doi.org/10.1145/253284.253312>, Section 4; Georges,
-//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2.
+//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2; Klosowski and Silva, "The
+//! Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG 6(2), 2000,
+//! <https://doi.org/10.1109/2945.856993>, Section 5.
 //!
 //! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the scene's path
 //! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
 //! models and machines are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the
-//! answers are checked: the triangles that an item buffer shows and the method did not draw are counted (0 expected).
+//! answers of a method that promises to draw all that is visible are checked: the triangles that an item buffer shows and the
+//! method did not draw are counted (0 expected).
 
+mod flight;
 mod georges;
+mod klosowski_silva;
 mod nodes;
 mod occluders;
 mod table_1;
@@ -123,7 +128,16 @@ impl Report {
                 None => lines.push(word.to_owned()),
             }
         }
-        format!("{}\n\n{}\n{}\n", self.title, self.table.text(), lines.join("\n"))
+        // Single frames are for charts and for other programs.
+        let frame = self.table.columns.iter().position(|c| c.key == FRAME);
+        let is_frame = |row: &[Cell]| frame.is_some_and(|at| matches!(row[at], Cell::Number(_)));
+        let left_out = self.table.rows.iter().filter(|r| is_frame(r)).count();
+        let rows = self.table.rows.iter().filter(|r| !is_frame(r)).cloned().collect();
+        let table = Table { columns: self.table.columns.clone(), rows };
+        if left_out > 0 {
+            lines.push(format!("{left_out} rows of single frames are in the formats csv and json, and in the charts."));
+        }
+        format!("{}\n\n{}\n{}\n", self.title, table.text(), lines.join("\n"))
     }
     /// Everything, with every digit.
     pub fn json(&self) -> Json {
@@ -255,11 +269,97 @@ pub static EXPERIMENTS: &[Experiment] = &[
         varies: &[],
         sweep: &georges::ALIASING,
     },
+    Experiment {
+        name: "klosowski-silva-table-1",
+        method: klosowski_silva::METHOD,
+        scenes: LARGE,
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Table 1: visible coverage ratio",
+        summary: "Share of the visible triangles that a budget finds, by cells and by centroid, and the worst frame's wrong pixels",
+        notes: &[COVERED, "The paper's most wrong pixels are stated without a budget; they are shown at the largest."],
+        varies: &["tessellation", "budget"],
+        sweep: &klosowski_silva::TABLE_1,
+    },
+    Experiment {
+        name: "klosowski-silva-frames",
+        method: klosowski_silva::METHOD,
+        scenes: LARGE,
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Figures 10 and 11: what budgets find, frame by frame",
+        summary: "Visible triangles found and time of a frame at budgets of 1, 2, 5 and 10 percent, frame by frame",
+        notes: &[
+            COVERED,
+            FRAMES,
+            "The paper's frames are 4 times faster at 5 percent (City) and 10 times at 1 percent (5 Car Body/Engine) than with everything drawn.",
+        ],
+        varies: &["budget"],
+        sweep: &klosowski_silva::FRAMES,
+    },
+    Experiment {
+        name: "klosowski-silva-comparison",
+        method: klosowski_silva::METHOD,
+        scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Figures 12 and 15: cells and centroid compared",
+        summary: "Visible triangles found, wrong pixels and time of a frame by Delaunay, octree, kD-tree and centroid, frame by frame",
+        notes: &[COVERED, FRAMES, "The paper's centroid order has 7 to 40 percent of the pixels wrong; its Delaunay cells find over 90 percent."],
+        varies: &["tessellation"],
+        sweep: &klosowski_silva::COMPARISON,
+    },
+    Experiment {
+        name: "klosowski-silva-stability",
+        method: klosowski_silva::METHOD,
+        scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Section 7: is the visible set stable?",
+        summary: "What pops between views a step apart: triangles and pixels that change though the exact image does not",
+        notes: &[
+            "Between two views a walker's step apart (4.7 cm), means over the pairs. A triangle pops that is visible in both views and drawn in one of \
+             them; a pixel pops that shows the same triangle in both exact images and is right in one view and wrong in the other. A set changes \
+             by its share of those that are in either view's set and not in both. The paper says that nothing major pops, without figures.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &klosowski_silva::STABILITY,
+    },
+    Experiment {
+        name: "klosowski-silva-preprocess",
+        method: klosowski_silva::METHOD,
+        scenes: &["generate:city?polygons=500000", "generate:cars", "generate:city?polygons=1000000"],
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Section 5.1: preprocess",
+        summary: "Time of the preprocess by stage, cells, references a triangle, and memory",
+        notes: &[
+            "Medians of three builds in turn, one thread. A reference takes 4 bytes; cells are all the rest of the index, neighbors and normals included; the \
+             scene is all that we keep of it. Overhead: cells and references against the scene; in the paper, against its triangles.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &klosowski_silva::PREPROCESS,
+    },
+    Experiment {
+        name: "klosowski-silva-overhead",
+        method: klosowski_silva::METHOD,
+        scenes: LARGE,
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Section 5.2.3: overhead over view-frustum culling",
+        summary: "Time of the traversal beside view-frustum culling, by cells and budget, alone and as a share of a frame",
+        notes: &[
+            FRAMES,
+            "View-frustum culling walks a kD-tree; a frame of it is culled and everything in view drawn. At 100 percent both draw what is in view.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &klosowski_silva::OVERHEAD,
+    },
 ];
 
 const COORG_TELLER: &str = "10.1145/253284.253312";
 /// Of Greene, Kass and Miller 1993; the report has none.
 const GEORGES: &str = "10.1145/166117.166147";
+const KLOSOWSKI_SILVA: &str = "10.1109/2945.856993";
+/// What Klosowski and Silva's large models are likened to.
+const LARGE: &[&str] = &["generate:city?polygons=500000", "generate:cars"];
+/// How what is found was measured.
+const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each frame the share of it that was drawn, then the \
+                       mean over the frames. A pixel is wrong if its color differs from the exact image's.";
 /// What Coorg and Teller's models are likened to.
 const WALKED: &[&str] = &["generate:building", "generate:city"];
 /// How times of whole frames were taken.
@@ -298,10 +398,16 @@ impl Experiment {
         for (i, scene) in scenes.iter().enumerate() {
             let n = scenes.len() as f32;
             let part = Part { whole: progress, start: i as f32 / n, length: 1.0 / n };
-            let (rows, about) = match scene {
+            let (mut rows, mut about) = match scene {
                 AnyScene::Flat(scene) => (self.sweep.flat)(scene, &setup, &part)?,
                 AnyScene::Solid(scene) => (self.sweep.solid)(scene, &setup, &part)?,
             };
+            // Rows are told apart by the scene's name.
+            if measured.iter().any(|m: &Measured| m.name == about.name) {
+                about.name += &format!(", {}", grouped(about.prims as f64, 0));
+                let at = table.columns.iter().position(|c| c.key == SCENE.key);
+                rows.iter_mut().filter_map(|r| r.get_mut(at?)).for_each(|cell| *cell = about.name.as_str().into());
+            }
             table.rows.extend(rows);
             measured.push(about);
         }
@@ -340,6 +446,8 @@ type On<S> = fn(&Arc<Scene<S>>, &Setup, &dyn Progress) -> Result<(Vec<Vec<Cell>>
 const SOURCE: Column = Column { key: "source", title: "source", unit: "", decimals: 0 };
 const SCENE: Column = Column { key: "scene", title: "scene", unit: "", decimals: 0 };
 const MISSED: Column = Column { key: "missed_triangles", title: "missed", unit: "triangles", decimals: 0 };
+/// Key of the column of tables that have a row for each frame.
+const FRAME: &str = "frame";
 const CHECKED: Column = Column { key: "checked_views", title: "checked", unit: "views", decimals: 0 };
 
 const fn column(key: &'static str, title: &'static str, unit: &'static str, decimals: usize) -> Column {

@@ -66,6 +66,12 @@ fn every_experiment_fills_its_table() {
         ("georges-box", 4),
         ("georges-flight", 3),
         ("georges-aliasing", 6),
+        ("klosowski-silva-table-1", 5),
+        ("klosowski-silva-frames", 11),
+        ("klosowski-silva-comparison", 54),
+        ("klosowski-silva-stability", 12),
+        ("klosowski-silva-preprocess", 5),
+        ("klosowski-silva-overhead", 16),
     ]);
     assert_eq!(rows.len(), EXPERIMENTS.len());
     for (name, count) in rows {
