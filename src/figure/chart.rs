@@ -25,6 +25,8 @@ const WIDEST_PT: f32 = 34.0;
 /// Radius of the points of lines, and of one that stands alone.
 const DOT_PT: f32 = 1.8;
 const ALONE_PT: f32 = 3.0;
+/// A line through more points than this has no dots: they would hide it.
+const DOTS: usize = 40;
 
 /// Charts on a page over two columns; the legend names each series once.
 pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
@@ -131,7 +133,7 @@ fn lines(to: &mut Drawing, plot: &Plot, logarithmic: bool, ticks: &[f64], place:
         if points.len() > 1 {
             to.line(Layer::Evidence, series.role, Subject::None, points.clone());
         }
-        for at in points {
+        for at in points.iter().copied().filter(|_| points.len() <= DOTS) {
             to.push(Layer::Emphasis, series.role, Subject::None, Mark::Dot { at, radius_pt });
         }
     }

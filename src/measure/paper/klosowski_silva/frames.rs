@@ -41,7 +41,7 @@ const FOUND: [(&str, &str, Role); 6] = [
     ("visible_triangles", "exact", Role::Ink),
     ("found_10_triangles", "10 %", Role::Visible),
     ("found_5_triangles", "5 %", Role::Hidden),
-    ("found_2_triangles", "2 %", Role::Occluder),
+    ("found_2_triangles", "2 %", Role::Partial),
     ("found_1_triangles", "1 %", Role::Approximated),
     ("centroid_10_triangles", "centroid, 10 %", Role::Outside),
 ];
@@ -49,7 +49,7 @@ const TIMES: [(&str, &str, Role); 5] = [
     ("frustum_ms", "all in the view frustum", Role::Ink),
     ("budget_10_ms", "10 %", Role::Visible),
     ("budget_5_ms", "5 %", Role::Hidden),
-    ("budget_2_ms", "2 %", Role::Occluder),
+    ("budget_2_ms", "2 %", Role::Partial),
     ("budget_1_ms", "1 %", Role::Approximated),
 ];
 

@@ -56,7 +56,7 @@ struct Way {
 
 const DELAUNAY: Way = Way { label: "Delaunay", tessellation: Some("delaunay"), role: Role::Visible };
 const OCTREE: Way = Way { label: "octree", tessellation: Some("octree"), role: Role::Hidden };
-const KD_TREE: Way = Way { label: "kD-tree", tessellation: Some("kd-tree"), role: Role::Occluder };
+const KD_TREE: Way = Way { label: "kD-tree", tessellation: Some("kd-tree"), role: Role::Partial };
 const BY_CENTROID: Way = Way { label: "centroid", tessellation: None, role: Role::Outside };
 
 /// How many primitives may be drawn.

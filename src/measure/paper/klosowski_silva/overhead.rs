@@ -68,7 +68,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             Some(w) => row.extend([WAYS[w / EACH].label.into(), [1.0, 2.0, 5.0, 10.0, 100.0][w % EACH].into()]),
         }
         row.extend([drawn[w] as f64 / n as f64, cull, draw, 100.0 * cull / (cull + draw)].map(Cell::from));
-        let over = (w > 0).then(|| cull - base_cull);
+        let over = (w > 0).then_some(cull - base_cull);
         row.extend([over.into(), over.map(|o| 100.0 * o / (base_cull + base_draw)).into()]);
         row
     };

@@ -98,7 +98,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             runs[w] = Some(run);
         }
     }
-    let row = |(w, run): (usize, &Box<dyn Run<S>>)| {
+    let row = |(w, run): (usize, &dyn Run<S>)| {
         let index = run.hierarchy();
         let cells = index.node_count() - 1;
         let references: usize = (1..=cells as u32).map(|n| index.held(NodeId(n))).sum();
@@ -122,7 +122,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             (100.0 * index_mb / scene_mb).into(),
         ]
     };
-    Ok((runs.iter().enumerate().filter_map(|(w, r)| Some((w, r.as_ref()?))).map(row).collect(), about))
+    Ok((runs.iter().enumerate().filter_map(|(w, r)| Some((w, r.as_deref()?))).map(row).collect(), about))
 }
 
 /// Scene, triangles, cells, references a triangle, seconds, MB of cells, of references and of triangles, per cent.
