@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use super::page::{Entry, Page, Paper, Swatch, legend};
 use super::{Look, Panel, Picture, observer_above, panels, world};
-use super::{coorg_teller, georges};
+use super::{coorg_teller, georges, klosowski_silva};
 use crate::culling::{Film, Methods, Settings, Value, Verdict};
 use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
 use crate::geometry::{Aabb, Flat, NodeId, Solid, View};
@@ -72,6 +72,12 @@ pub static BUILTIN: &[Builtin] = &[
     Builtin::of_paper(georges::FIGURES, 4),
     Builtin::of_paper(georges::FIGURES, 5),
     Builtin::of_paper(georges::FIGURES, 6),
+    Builtin::of_paper(klosowski_silva::FIGURES, 0),
+    Builtin::of_paper(klosowski_silva::FIGURES, 1),
+    Builtin::of_paper(klosowski_silva::FIGURES, 2),
+    Builtin::of_paper(klosowski_silva::FIGURES, 3),
+    Builtin::of_paper(klosowski_silva::FIGURES, 4),
+    Builtin::of_paper(klosowski_silva::FIGURES, 5),
 ];
 
 /// Width of a figure over two columns, inside its margins.
@@ -277,7 +283,7 @@ mod tests {
 
     #[test]
     fn no_text_of_a_papers_figure_sticks_out_or_is_too_small() {
-        for (name, _, make) in coorg_teller::FIGURES.iter().chain(georges::FIGURES) {
+        for (name, _, make) in coorg_teller::FIGURES.iter().chain(georges::FIGURES).chain(klosowski_silva::FIGURES) {
             let page = make(&|_| [0.0; 3]).expect("a figure");
             for item in &page.items {
                 let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };

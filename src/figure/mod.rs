@@ -10,6 +10,7 @@ mod chart;
 mod clip;
 mod coorg_teller;
 mod georges;
+mod klosowski_silva;
 mod look;
 pub mod page;
 mod panels;

@@ -22,6 +22,8 @@ pub enum Picture {
     Space(Drawing<Vec3>, View<Solid>),
     /// Pixels.
     Pixels(crate::drawing::Pixels),
+    /// A drawing of space over an image that this observer sees too.
+    Over(crate::drawing::Pixels, Drawing<Vec3>, View<Solid>),
 }
 
 impl Picture {
@@ -29,16 +31,21 @@ impl Picture {
     fn proportion(&self) -> f32 {
         match self {
             Self::Flat(_, bounds) => bounds.size().y / bounds.size().x.max(1e-6),
-            Self::Space(_, view) => view.height as f32 / view.width as f32,
+            Self::Space(_, view) | Self::Over(_, _, view) => view.height as f32 / view.width as f32,
             Self::Pixels(p) => p.height as f32 / p.width as f32,
         }
     }
     fn draw(&self, min: Vec2, max: Vec2) -> Drawing {
         let mut paper = Drawing::default();
+        let image = |pixels: &crate::drawing::Pixels| Mark::Image { corners: [min, max], pixels: pixels.clone() };
         match self {
             Self::Flat(world, bounds) => Sheet::fit(bounds, min, max).place(world, &mut paper),
             Self::Space(world, observer) => project(world, observer, min, max, &mut paper),
-            Self::Pixels(pixels) => paper.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners: [min, max], pixels: pixels.clone() }),
+            Self::Pixels(pixels) => paper.push(Layer::Scene, Role::Scene, Subject::None, image(pixels)),
+            Self::Over(pixels, world, observer) => {
+                paper.push(Layer::Ground, Role::Scene, Subject::None, image(pixels));
+                project(world, observer, min, max, &mut paper);
+            }
         }
         clip(&mut paper, min, max);
         plate_labels(&mut paper, min, max);

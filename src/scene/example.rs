@@ -13,6 +13,7 @@ const EXAMPLES: &[(&str, &str, &[u8])] = &[
     ("connected_occluders", "scenes2d/connected_occluders.json", include_bytes!("../../scenes2d/connected_occluders.json")),
     ("silhouette_edge", "scenes2d/silhouette_edge.json", include_bytes!("../../scenes2d/silhouette_edge.json")),
     ("two_viewpoints", "scenes2d/two_viewpoints.json", include_bytes!("../../scenes2d/two_viewpoints.json")),
+    ("bottleneck", "scenes2d/bottleneck.json", include_bytes!("../../scenes2d/bottleneck.json")),
     ("detail_objects", "scenes2d/detail_objects.json", include_bytes!("../../scenes2d/detail_objects.json")),
 ];
 

@@ -12,48 +12,48 @@ use crate::geometry::{Aabb, Eye, Flat, PrimId, Solid, View};
 use crate::scene::{Scene, SceneError, example};
 
 /// Width of a picture in one column and over two, inside the margins.
-pub(super) const COLUMN_PT: f32 = 232.0;
-pub(super) const TWO_COLUMNS_PT: f32 = 490.0;
+pub(in crate::figure) const COLUMN_PT: f32 = 232.0;
+pub(in crate::figure) const TWO_COLUMNS_PT: f32 = 490.0;
 /// Sizes of labels.
-pub(super) const NAME_PT: f32 = 10.0;
-pub(super) const LABEL_PT: f32 = 8.0;
+pub(in crate::figure) const NAME_PT: f32 = 10.0;
+pub(in crate::figure) const LABEL_PT: f32 = 8.0;
 
 /// An entry of a legend.
-pub(super) fn entry(role: Role, swatch: Swatch, label: &str) -> Entry {
+pub(in crate::figure) fn entry(role: Role, swatch: Swatch, label: &str) -> Entry {
     Entry { role, label: label.into(), swatch }
 }
 
 /// A page around a picture.
-pub(super) fn page(paper: Paper, title: &str, legend: Vec<Entry>, caption: impl Into<String>, content: &Drawing) -> Drawing {
+pub(in crate::figure) fn page(paper: Paper, title: &str, legend: Vec<Entry>, caption: impl Into<String>, content: &Drawing) -> Drawing {
     Page { paper, title: title.into(), legend, caption: caption.into() }.compose(content)
 }
 
 /// A flatland picture in world coordinates whose scale on paper is known, so that labels can be set on plates.
-pub(super) struct Plan {
-    pub(super) world: Drawing<Vec2>,
-    pub(super) frame: Aabb<Vec2>,
+pub(in crate::figure) struct Plan {
+    pub(in crate::figure) world: Drawing<Vec2>,
+    pub(in crate::figure) frame: Aabb<Vec2>,
     /// World units a point.
-    pub(super) unit: f32,
+    pub(in crate::figure) unit: f32,
 }
 
 impl Plan {
-    pub(super) fn new(frame: Aabb<Vec2>, width_pt: f32) -> Self {
+    pub(in crate::figure) fn new(frame: Aabb<Vec2>, width_pt: f32) -> Self {
         Self { world: Drawing::default(), frame, unit: frame.size().x / width_pt }
     }
-    pub(super) fn wide(&self) -> Aabb<DVec2> {
+    pub(in crate::figure) fn wide(&self) -> Aabb<DVec2> {
         Aabb { min: self.frame.min.as_dvec2(), max: self.frame.max.as_dvec2() }
     }
-    pub(super) fn area(&mut self, role: Role, points: &[DVec2]) {
+    pub(in crate::figure) fn area(&mut self, role: Role, points: &[DVec2]) {
         self.world.push(Layer::Areas, role, Subject::None, Mark::Area(points.iter().map(|p| p.as_vec2()).collect()));
     }
-    pub(super) fn line(&mut self, role: Role, a: Vec2, b: Vec2) {
+    pub(in crate::figure) fn line(&mut self, role: Role, a: Vec2, b: Vec2) {
         self.world.line(Layer::Evidence, role, Subject::None, [a, b]);
     }
-    pub(super) fn dot(&mut self, role: Role, at: Vec2, radius_pt: f32) {
+    pub(in crate::figure) fn dot(&mut self, role: Role, at: Vec2, radius_pt: f32) {
         self.world.push(Layer::Eye, role, Subject::None, Mark::Dot { at, radius_pt });
     }
     /// A label whose middle is `at`, on a piece of paper.
-    pub(super) fn plate(&mut self, at: Vec2, size_pt: f32, font: Font, text: &str) {
+    pub(in crate::figure) fn plate(&mut self, at: Vec2, size_pt: f32, font: Font, text: &str) {
         let half = Vec2::new(metrics::width_pt(text, font, size_pt) * 0.5 + 1.5, size_pt * 0.58) * self.unit;
         let at = at.clamp(self.frame.min + half, self.frame.max - half);
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| at + Vec2::from(c) * half);
@@ -61,38 +61,38 @@ impl Plan {
         self.label(at, size_pt, font, text);
     }
     /// A label whose middle is `at`.
-    pub(super) fn label(&mut self, at: Vec2, size_pt: f32, font: Font, text: &str) {
+    pub(in crate::figure) fn label(&mut self, at: Vec2, size_pt: f32, font: Font, text: &str) {
         let at = at - Vec2::new(0.0, size_pt * 0.35 * self.unit);
         let mark = Mark::Text { at, text: text.into(), size_pt, anchor: Anchor::Middle, font };
         self.world.push(Layer::Labels, Role::Ink, Subject::None, mark);
     }
     /// A viewpoint with its name.
-    pub(super) fn viewpoint(&mut self, at: Vec2, name: &str) {
+    pub(in crate::figure) fn viewpoint(&mut self, at: Vec2, name: &str) {
         self.dot(Role::Eye, at, 3.5);
         let half = metrics::width_pt(name, Font::Bold, NAME_PT) * 0.5;
         self.plate(at + Vec2::new(half + 6.5, -2.0) * self.unit, NAME_PT, Font::Bold, name);
     }
-    pub(super) fn panel(self, label: impl Into<String>) -> Panel {
+    pub(in crate::figure) fn panel(self, label: impl Into<String>) -> Panel {
         Panel { label: label.into(), picture: Picture::Flat(self.world, self.frame) }
     }
 }
 
 /// The middle of the largest of some cells.
-pub(super) fn largest<'a>(cells: impl Iterator<Item = &'a Vec<DVec2>>) -> Option<Vec2> {
+pub(in crate::figure) fn largest<'a>(cells: impl Iterator<Item = &'a Vec<DVec2>>) -> Option<Vec2> {
     cells.max_by(|a, b| area(a).total_cmp(&area(b))).map(|c| middle(c).as_vec2())
 }
 
 /// The occluders A, B, … and the box T of a flatland scene.
-pub(super) struct Cast {
-    pub(super) scene: Arc<Scene<Flat>>,
-    pub(super) blockers: Blockers<Flat>,
+pub(in crate::figure) struct Cast {
+    pub(in crate::figure) scene: Arc<Scene<Flat>>,
+    pub(in crate::figure) blockers: Blockers<Flat>,
     /// Name and ends of each occluder.
-    pub(super) occluders: Vec<(String, [Vec2; 2])>,
-    pub(super) target: Aabb<Vec2>,
+    pub(in crate::figure) occluders: Vec<(String, [Vec2; 2])>,
+    pub(in crate::figure) target: Aabb<Vec2>,
 }
 
 impl Cast {
-    pub(super) fn of(scene: &str) -> Result<Self, SceneError> {
+    pub(in crate::figure) fn of(scene: &str) -> Result<Self, SceneError> {
         let scene = example(scene)?;
         let name = |p: PrimId| scene.objects()[scene.object_of(p).at()].name.as_str();
         let (targets, blocking): (Vec<PrimId>, Vec<PrimId>) = scene.live().iter().partition(|&&p| name(p) == "T");
@@ -102,11 +102,11 @@ impl Cast {
         let occluders = blocking.iter().map(|&p| (name(p).to_owned(), [ends(p)[0], ends(p)[1]])).collect();
         Ok(Self { blockers: Blockers::new(scene.points(), &polygons), occluders, target, scene })
     }
-    pub(super) fn eye(&self, number: usize) -> Vec2 {
+    pub(in crate::figure) fn eye(&self, number: usize) -> Vec2 {
         self.scene.paths()[0].views[number].eye.position
     }
     /// The tangents through each end of an occluder: supporting, separating.
-    pub(super) fn tangents(&self, id: usize) -> Vec<[Tangent<Vec2>; 2]> {
+    pub(in crate::figure) fn tangents(&self, id: usize) -> Vec<[Tangent<Vec2>; 2]> {
         let [a, b] = self.occluders[id].1;
         // A point on each side of the occluder; the lines depend on no more than the side.
         let aside = [1.0, -1.0].map(|s| (a + b) * 0.5 + (b - a).perp() * s);
@@ -123,7 +123,7 @@ impl Cast {
         all
     }
     /// Draws the occluders and the box with their names; `sides`: 1 for a name before an occluder, −1 behind it.
-    pub(super) fn draw(&self, plan: &mut Plan, sides: &[f32]) {
+    pub(in crate::figure) fn draw(&self, plan: &mut Plan, sides: &[f32]) {
         let target = self.target;
         plan.world.bounds(Layer::Emphasis, Role::Ink, Subject::None, &target);
         plan.label(target.center(), NAME_PT, Font::Bold, "T");
@@ -136,7 +136,7 @@ impl Cast {
 }
 
 /// A tangent through an end of an occluder, from behind the box to far on the viewer's side.
-pub(super) fn draw_tangent(plan: &mut Plan, role: Role, tangent: &Tangent<Vec2>) {
+pub(in crate::figure) fn draw_tangent(plan: &mut Plan, role: Role, tangent: &Tangent<Vec2>) {
     let (end, vertex) = (tangent.edge[0], tangent.vertex);
     let along = (end - vertex).normalize();
     let reach = plan.frame.diagonal();
@@ -145,13 +145,13 @@ pub(super) fn draw_tangent(plan: &mut Plan, role: Role, tangent: &Tangent<Vec2>)
 }
 
 /// A view in space.
-pub(super) fn view(position: Vec3, target: Vec3, fov_degrees: f32, [width, height]: [u32; 2]) -> View<Solid> {
+pub(in crate::figure) fn view(position: Vec3, target: Vec3, fov_degrees: f32, [width, height]: [u32; 2]) -> View<Solid> {
     let eye = Eye { position, target, up: Vec3::Y, fov: fov_degrees.to_radians(), near: 0.05, far: 1000.0 };
     View { eye, width, height }
 }
 
 /// Sets a name into a picture of space.
-pub(super) fn name(world: &mut Drawing<Vec3>, at: Vec3, text: &str) {
+pub(in crate::figure) fn name(world: &mut Drawing<Vec3>, at: Vec3, text: &str) {
     let mark = Mark::Text { at, text: text.into(), size_pt: NAME_PT, anchor: Anchor::Middle, font: Font::Bold };
     world.push(Layer::Labels, Role::Ink, Subject::None, mark);
 }

@@ -3,7 +3,7 @@
 
 mod chart;
 mod flat;
-mod kit;
+pub(super) mod kit;
 mod regions;
 mod run;
 mod solid;
