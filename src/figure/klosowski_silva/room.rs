@@ -79,14 +79,16 @@ fn key([a, b]: [Vec3; 2]) -> [[u32; 3]; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
 
-/// How far a cell may reach out of the room to be shown, m: the outermost ones reach the corners of a far larger cube.
-const OUTSIDE_M: f32 = 0.7;
+/// How far a cell may reach out of the room to be shown, sideways and up or down, m: the outermost ones reach the corners of
+/// a far larger cube.
+const OUTSIDE_M: [f32; 2] = [0.7, 1.75];
 
-/// Whether a cell does not reach far out of the room sideways.
+/// Whether a cell does not reach far out of the room.
 fn is_inside(film: &dyn Film<Solid>, cell: NodeId) -> bool {
     let (room, cell) = (film.scene().bounds(), film.hierarchy().bounds(cell));
     let out = (room.min - cell.min).max(cell.max - room.max);
-    out.x <= OUTSIDE_M && out.z <= OUTSIDE_M
+    let [sideways, upright] = OUTSIDE_M;
+    out.x <= sideways && out.z <= sideways && out.y <= upright
 }
 
 /// Cells that are shown: projected, and in view but not projected, both only where something is in them.

@@ -344,7 +344,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
         summary: "Time of the traversal beside view-frustum culling, by cells and budget, alone and as a share of a frame",
         notes: &[
             FRAMES,
-            "View-frustum culling walks a kD-tree; a frame of it is culled and everything in view drawn. At 100 percent both draw what is in view.",
+            "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all that was kept is drawn. At 100 percent all that is in \
+             view is drawn, triangle by triangle.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::OVERHEAD,
