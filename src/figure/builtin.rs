@@ -78,6 +78,7 @@ pub static BUILTIN: &[Builtin] = &[
     Builtin::of_paper(klosowski_silva::FIGURES, 3),
     Builtin::of_paper(klosowski_silva::FIGURES, 4),
     Builtin::of_paper(klosowski_silva::FIGURES, 5),
+    Builtin::of_paper(klosowski_silva::FIGURES, 6),
 ];
 
 /// Width of a figure over two columns, inside its margins.

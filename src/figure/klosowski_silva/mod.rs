@@ -3,6 +3,7 @@
 
 mod cells;
 mod missed;
+mod model;
 mod room;
 mod transfer;
 mod walked;
@@ -13,6 +14,7 @@ use crate::figure::builtin::Row;
 pub const FIGURES: &[Row] = &[
     ("layered-projection-2", "Cells that were projected and cells that were not, in a seminar room", room::snapshots),
     ("layered-projection-3", "Quadtree over the vertices, centers of its leaves, their triangulation", cells::tessellation),
+    ("layered-projection-3-space", "Octree over a car's vertices and its tetrahedra, cut open", model::tessellation),
     ("layered-projection-6", "How solidity is handed on from a cell to its neighbors", transfer::solidity),
     ("layered-projection-7", "Four moments of the traversal, past a bottleneck", walked::moments),
     ("layered-projection-9", "Neighbors across levels of a quadtree, in both directions", cells::neighbors),

@@ -148,16 +148,19 @@ fn snapshot(tint: Tint, film: &dyn Film<Solid>, name: &str) -> Panel {
     panel(label, shade(&image, &**scene, &observer, tint(Role::Paper)), world, &observer)
 }
 
-/// Where a horizontal plane cuts a cell, around the cut; less than three points where it does not.
-fn cut(film: &dyn Film<Solid>, cell: NodeId, height: f32) -> Vec<Vec3> {
+/// Where the plane at a height along an axis cuts a cell, given by its edges, around the cut; less than three points where it
+/// does not.
+pub fn cut(edges: &[[Vec3; 2]], axis: Vec3, height: f32) -> Vec<Vec3> {
     let mut points = Vec::new();
-    for [a, b] in edges(film, cell) {
-        if (a.y < height) != (b.y < height) {
-            points.push(a.lerp(b, (height - a.y) / (b.y - a.y)));
+    for &[a, b] in edges {
+        let (low, high) = (a.dot(axis), b.dot(axis));
+        if (low < height) != (high < height) {
+            points.push(a.lerp(b, (height - low) / (high - low)));
         }
     }
     let middle = points.iter().sum::<Vec3>() / points.len().max(1) as f32;
-    let angle = |p: &Vec3| (p.z - middle.z).atan2(p.x - middle.x);
+    let (across, along) = axis.any_orthonormal_pair();
+    let angle = |p: &Vec3| (*p - middle).dot(along).atan2((*p - middle).dot(across));
     points.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
     points
 }
@@ -183,7 +186,7 @@ fn plan(tint: Tint, film: &dyn Film<Solid>, name: &str) -> Panel {
             State::Decided(Verdict::OverBudget) => Role::Approximated,
             _ => continue,
         };
-        let points = cut(film, id, height);
+        let points = cut(&edges(film, id), Vec3::Y, height);
         if points.len() > 2 && is_inside(film, id) {
             world.push(Layer::Areas, role, Subject::Node(id), Mark::Area(points));
         }
@@ -228,6 +231,18 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cut_through_a_cube_runs_around_it() {
+        let cube = crate::geometry::Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+        let corner = |i: usize| cube.corner(i);
+        let edges: Vec<[Vec3; 2]> =
+            (0..8usize).flat_map(|i| [1, 2, 4].into_iter().filter(move |b| i & b == 0).map(move |b| [corner(i), corner(i | b)])).collect();
+        let points = cut(&edges, Vec3::Y, 0.25);
+        assert!(points.len() == 4 && points.iter().all(|p| p.y == 0.25), "{points:?}");
+        assert!((0..4).all(|i| points[i].distance(points[(i + 1) % 4]) == 1.0), "{points:?}");
+        assert!(cut(&edges, Vec3::Y, 2.0).is_empty());
+    }
 
     #[test]
     fn lines_are_cut_where_something_is_before_them() {
