@@ -15,6 +15,8 @@ use super::stage::Recorded;
 use super::tables;
 use crate::culling::{Methods, Run, Settings};
 use crate::geometry::{Flat, Solid, View};
+use crate::measure::deadline::paced;
+use crate::raster::Drawable;
 use crate::scene::{AnyPath, AnyScene, Progress, Scene};
 use crate::trace::{Moves, Stamps};
 
@@ -220,7 +222,13 @@ impl Bench {
     }
 }
 
-fn record<S: Methods>(ready: &mut Option<Ready<S>>, request: Request<S>, serial: u64, ticket: &Ticket, wrap: fn(Recorded<S>) -> AnyRecorded) -> Done {
+fn record<S: Methods + Drawable>(
+    ready: &mut Option<Ready<S>>,
+    request: Request<S>,
+    serial: u64,
+    ticket: &Ticket,
+    wrap: fn(Recorded<S>) -> AnyRecorded,
+) -> Done {
     let fits = |r: &Ready<S>| r.scene_serial == request.scene_serial && r.method == request.method && r.settings == request.settings;
     if !ready.as_ref().is_some_and(fits) {
         *ready = None;
@@ -231,6 +239,10 @@ fn record<S: Methods>(ready: &mut Option<Ready<S>>, request: Request<S>, serial:
             Err(error) => return Done::RecordFailed(error.to_string()),
             Ok(None) => return Done::Cancelled,
             Ok(Some(run)) => {
+                let run = match paced(run, &request.scene) {
+                    Ok(run) => run,
+                    Err(error) => return Done::RecordFailed(error.to_string()),
+                };
                 *ready = Some(Ready { scene_serial: request.scene_serial, method: request.method, settings: request.settings, run });
             }
         }

@@ -101,7 +101,7 @@ fn param(knob: &Knob, value: &KnobValue) -> Param {
     let (r#type, range) = match value {
         KnobValue::Integer(_, range) => ("integer", json!([range.start(), range.end()])),
         KnobValue::Switch(_) => ("switch", json!([false, true])),
-        KnobValue::Budget(_) => ("budget", json!(["0", "4294967295", "0%", "100%"])),
+        KnobValue::Budget(_) => ("budget", json!(["0", "4294967295", "0%", "100%", "0.001ms", "3600000ms"])),
         KnobValue::Choice(_, options) => ("choice", json!(options)),
     };
     Param { name: knob.name, r#type, unit: knob.unit, range, default: knob_json(value), meaning: knob.meaning, source: knob.source }

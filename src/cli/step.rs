@@ -8,6 +8,7 @@ use serde_json::{Map, Value as Json};
 use super::methods::params_json;
 use super::task::{Ready, Task};
 use super::{CliError, World, output};
+use crate::culling::{Budget, KnobValue};
 use crate::geometry::ViewPath;
 use crate::scene::{AnyScene, Progress, Scene, write_views};
 use crate::trace::Detail;
@@ -46,6 +47,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let Ready { mut run, path, bar, .. } = args.task.ready(scene)?;
+    if let Some((_, time)) = run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_)))) {
+        let why = "what fits into a time differs from run to run, and a trace must not";
+        return Err(CliError::words(&format!("--set budget={time}"), why)
+            .with_help("give a number of primitives; `cullscope cull` prints how many were drawn"));
+    }
     let (detail, name) = match args.detail {
         Fineness::Coarse => (Detail::Coarse, "coarse"),
         Fineness::Full => (Detail::Full, "full"),

@@ -12,6 +12,7 @@ use super::view::ViewArgs;
 use super::{CliError, World, output};
 use crate::culling::{RestoreError, Run};
 use crate::geometry::ViewPath;
+use crate::measure::deadline::paced;
 use crate::measure::timed;
 use crate::scene::{AnyScene, Scene};
 
@@ -54,7 +55,7 @@ impl Task {
             Some(bytes) => entry.restore(scene, &settings, bytes, &bar).map_err(|e| self.refused(&e)),
             None => entry.ready(scene, &settings, &bar).map_err(CliError::from),
         });
-        let run = run?.ok_or(CliError::Interrupted)?;
+        let run = paced(run?.ok_or(CliError::Interrupted)?, scene)?;
         if let (Some(path), None) = (&self.preprocess, saved) {
             let Some(bytes) = run.save() else {
                 return Err(CliError::words("--preprocess", format!("the method `{}` has nothing that takes long to build", run.card().key)));

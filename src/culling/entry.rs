@@ -3,8 +3,10 @@
 use std::marker::PhantomData;
 use std::sync::{Arc, Mutex};
 
-use super::knobs::{Apply, Collect};
-use super::{Card, DrawList, Event, Field, Knob, KnobValue, Knobs, Method, Note, Recorder, SettingError, Settings, Tally, Unobserved, Verdict};
+use super::knobs::{Apply, Collect, SetBudget};
+use super::{
+    Budget, Card, DrawList, Event, Field, Knob, KnobValue, Knobs, Limit, Method, Note, Recorder, SettingError, Settings, Tally, Unobserved, Verdict,
+};
 use crate::drawing::Drawing;
 use crate::geometry::{Space, View};
 use crate::index::Hierarchy;
@@ -69,6 +71,10 @@ pub trait Run<S: Space>: Send {
     fn save(&self) -> Option<Vec<u8>>;
     /// Whether earlier frames can matter at all.
     fn remembers(&self) -> bool;
+    /// Sets what ends the frames to come early, until it is set anew or everything is forgotten; whether the method asks it.
+    fn limit(&mut self, limit: Option<Limit>) -> bool;
+    /// Sets the budget, if the method has one; the index stays.
+    fn set_budget(&mut self, budget: Budget);
 }
 
 /// A recorded frame.
@@ -215,7 +221,13 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
         M::save(&self.index)
     }
     fn remembers(&self) -> bool {
-        size_of::<M::Memory>() > 0
+        M::REMEMBERS
+    }
+    fn limit(&mut self, limit: Option<Limit>) -> bool {
+        M::limit(&mut self.memory, limit)
+    }
+    fn set_budget(&mut self, budget: Budget) {
+        M::knobs(&mut self.params, &mut SetBudget(budget));
     }
 }
 

@@ -44,14 +44,17 @@ pub enum Budget {
     Count(u32),
     /// A share of the scene's primitives, 0 to 100.
     Percent(f32),
+    /// Until so much time has passed since the frame began, above 0. The one who runs the method keeps it, by a [`super::Limit`].
+    Milliseconds(f32),
 }
 
 impl Budget {
-    /// The number of primitives it allows of `total`: a share is rounded up.
+    /// The number of primitives it allows of `total`: a share is rounded up; a time allows all.
     pub fn of(self, total: usize) -> usize {
         match self {
             Self::Count(n) => n as usize,
             Self::Percent(p) => (f64::from(p) * total as f64 / 100.0).ceil() as usize,
+            Self::Milliseconds(_) => total,
         }
     }
 }
@@ -61,6 +64,7 @@ impl fmt::Display for Budget {
         match self {
             Self::Count(n) => write!(f, "{n}"),
             Self::Percent(p) => write!(f, "{p}%"),
+            Self::Milliseconds(ms) => write!(f, "{ms}ms"),
         }
     }
 }
@@ -68,7 +72,10 @@ impl fmt::Display for Budget {
 impl FromStr for Budget {
     type Err = &'static str;
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let expected = "a number of primitives such as 2000, or a share such as 10%";
+        let expected = "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms";
+        if let Some(time) = text.strip_suffix("ms") {
+            return time.trim().parse().ok().filter(|t: &f32| *t > 0.0 && t.is_finite()).map(Self::Milliseconds).ok_or(expected);
+        }
         match text.strip_suffix('%') {
             Some(share) => share.trim().parse().ok().filter(|p| (0.0..=100.0).contains(p)).map(Self::Percent).ok_or(expected),
             None => text.parse().map(Self::Count).map_err(|_| expected),
@@ -167,6 +174,18 @@ impl Knobs for Collect {
     }
 }
 
+/// Sets the budget, where there is one.
+pub(super) struct SetBudget(pub Budget);
+
+impl Knobs for SetBudget {
+    fn integer(&mut self, _: Knob, _: RangeInclusive<u32>, _: &mut u32) {}
+    fn switch(&mut self, _: Knob, _: &mut bool) {}
+    fn budget(&mut self, _: Knob, value: &mut Budget) {
+        *value = self.0;
+    }
+    fn choice(&mut self, _: Knob, _: &'static [&'static str], _: &mut usize) {}
+}
+
 /// Sets parameters from text.
 pub(super) struct Apply<'a> {
     pub settings: &'a Settings,
@@ -195,7 +214,7 @@ impl Knobs for Apply<'_> {
         self.set(knob, || "true or false".into(), |_| true, value);
     }
     fn budget(&mut self, knob: Knob, value: &mut Budget) {
-        self.set(knob, || "a number of primitives such as 2000, or a share such as 10%".into(), |_| true, value);
+        self.set(knob, || "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms".into(), |_| true, value);
     }
     fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
         let mut word = options[*value].to_owned();

@@ -53,6 +53,10 @@ impl DrawList {
     }
 }
 
+/// Ends a frame from outside, such as at a deadline: told the primitives drawn since it was told last, it says whether that
+/// is enough.
+pub type Limit = Arc<dyn Fn(&[PrimId]) -> bool + Send + Sync>;
+
 /// A value of a note's field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
@@ -128,6 +132,12 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
         out: &mut DrawList,
         watch: &mut O,
     );
+    /// Whether what it keeps can change a later frame.
+    const REMEMBERS: bool = size_of::<Self::Memory>() > 0;
+    /// Sets what ends a frame from outside; whether the method asks it at all.
+    fn limit(_: &mut Self::Memory, _: Option<Limit>) -> bool {
+        false
+    }
     /// Large state before the first event of a frame.
     fn dense(scene: &Scene<S>, view: &View<S>) -> Self::Dense;
     /// The only way large state changes: `cull` calls it as it works and a film calls it again, so

@@ -22,7 +22,7 @@ pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use hierarchical_z::anatomy as obscuration;
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
 pub use large_occluders::anatomy;
-pub use method::{Card, CodeLine, DrawList, Field, Method, Note, Value};
+pub use method::{Card, CodeLine, DrawList, Field, Limit, Method, Note, Value};
 
 use crate::geometry::{Flat, Solid, Space};
 

@@ -95,16 +95,28 @@ fn budget(
                 let response = ui.add(egui::Slider::new(&mut n, 0..=most).logarithmic(true));
                 (Budget::Count(n), response)
             }
+            Budget::Milliseconds(mut ms) => {
+                let response = ui.add(egui::Slider::new(&mut ms, 0.1..=1000.0).logarithmic(true).suffix(" ms").max_decimals(1));
+                (Budget::Milliseconds(ms), response)
+            }
         };
         let response = response.labelled_by(label.id).on_hover_text(help);
         if response.drag_started() || (response.changed() && !response.dragged()) {
             cache.gesture += 1;
         }
-        let is_share = matches!(now, Budget::Percent(_));
-        if ui.selectable_label(is_share, "%").on_hover_text("A share of the scene, or a number").clicked() {
-            let drawn = now.of(most as usize) as u32;
-            next = if is_share { Budget::Count(drawn) } else { Budget::Percent((drawn as f32 * 100.0 / most.max(1) as f32 * 10.0).round() / 10.0) };
-            cache.gesture += 1;
+        let drawn = now.of(most as usize) as u32;
+        let share = Budget::Percent((drawn as f32 * 100.0 / most.max(1) as f32 * 10.0).round() / 10.0);
+        let kinds = [
+            ("%", "A share of the scene", share),
+            ("n", "A number", Budget::Count(drawn)),
+            ("ms", "A time to cull and draw", Budget::Milliseconds(5.0)),
+        ];
+        for (name, meaning, start) in kinds {
+            let is_now = std::mem::discriminant(&start) == std::mem::discriminant(&now);
+            if ui.selectable_label(is_now, name).on_hover_text(meaning).clicked() && !is_now {
+                next = start;
+                cache.gesture += 1;
+            }
         }
         if next != now {
             answers.push(set(next.to_string(), cache.gesture));

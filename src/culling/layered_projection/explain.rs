@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::index::{Index, cell_of, node_of};
+use crate::culling::depth::Answer;
 use crate::culling::event::Tallied;
 use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, short};
 use crate::culling::{Field, Note, Tally, Value};
@@ -24,6 +25,10 @@ pub enum Evidence<S: Cellular> {
     Transferred(Transferred<S::Vector>),
     /// A cell was projected.
     Projected(Projected),
+    /// The budget is spent, and a cell's box was compared with the z-buffer.
+    Asked(Asked),
+    /// The budget is spent, and what the rest could still change was found.
+    Bounded(Bounded),
     /// The traversal ended.
     Ended(Ended),
 }
@@ -34,8 +39,20 @@ pub struct Seeded {
     pub cell: CellId,
     /// From the Eye, world units; 0 if the cell holds it.
     pub distance: f32,
-    /// The front had run dry.
-    pub again: bool,
+    pub origin: Origin,
+}
+
+/// Why a front begins at a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It holds the Eye.
+    Eye,
+    /// It is the nearest to the Eye, which is outside of all cells.
+    Nearest,
+    /// It is the first that holds something on a ray from the Eye.
+    Ray,
+    /// The front had run dry, and it is the nearest that was not reached.
+    Again,
 }
 
 /// The operands of Figure 5.
@@ -46,6 +63,8 @@ pub struct Transferred<V> {
     /// |A| and ρ_max.
     pub held: u32,
     pub most: u32,
+    /// What A adds: |A| / ρ_max, or the part of it that faces the Eye.
+    pub share: f32,
     /// v, unit vector from the Eye to the center of B.
     pub sight: V,
     /// n(B), unit normal of the shared face toward B.
@@ -59,16 +78,25 @@ pub struct Transferred<V> {
     pub solidity: f32,
     /// What B had in the front.
     pub before: Option<f32>,
+    /// Whether B keeps that.
+    pub keeps: bool,
+}
+
+impl Origin {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Eye => "eye",
+            Self::Nearest => "nearest",
+            Self::Ray => "ray",
+            Self::Again => "again",
+        }
+    }
 }
 
 impl<V> Transferred<V> {
-    /// |A| / ρ_max.
-    fn share(&self) -> f32 {
-        self.held as f32 / self.most.max(1) as f32
-    }
     /// ρ(B) before the penalty.
     fn sum(&self) -> f32 {
-        self.share() + self.along * self.of_a
+        self.share + self.along * self.of_a
     }
 }
 
@@ -83,6 +111,24 @@ pub struct Projected {
     pub left: u32,
 }
 
+/// A cell that the budget left out was compared with what is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    pub cell: CellId,
+    pub solidity: f32,
+    pub answer: Answer,
+}
+
+/// How much of the image the rest could still change.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounded {
+    /// Of the image, and how much is allowed.
+    pub share: f32,
+    pub most: f32,
+    /// Primitives drawn so far.
+    pub drawn: u32,
+}
+
 /// The front is empty or the budget spent.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended {
@@ -94,8 +140,35 @@ pub struct Ended {
 /// The method's private state at a step: the front with the solidity of each cell, and what was projected last.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
-    front: BTreeMap<CellId, f32>,
+    front: BTreeMap<CellId, Queued>,
     projected: Vec<CellId>,
+    turns: u32,
+}
+
+/// A cell in the front.
+#[derive(Clone, Copy, Debug)]
+pub struct Queued {
+    pub solidity: f32,
+    /// When it was put in.
+    turn: u32,
+    pub is_star_shaped: bool,
+}
+
+impl Seen {
+    fn put(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
+        self.turns += 1;
+        self.front.insert(cell, Queued { solidity, turn: self.turns, is_star_shaped });
+    }
+    /// The front in the order in which it is taken.
+    pub fn in_order(&self) -> Vec<(CellId, Queued)> {
+        let mut all: Vec<_> = self.front.iter().map(|(cell, queued)| (*cell, *queued)).collect();
+        all.sort_by(|(_, a), (_, b)| a.solidity.total_cmp(&b.solidity).then(a.turn.cmp(&b.turn)));
+        all
+    }
+    /// The cells that were projected, in order.
+    pub fn projected(&self) -> &[CellId] {
+        &self.projected
+    }
 }
 
 /// Projected cells that are numbered in a picture; the latest ones.
@@ -109,12 +182,14 @@ impl<S: Cellular> Evidence<S> {
     /// Changes the private state.
     pub fn apply(&self, seen: &mut Seen) {
         match self {
-            Self::Seeded(n) => _ = seen.front.insert(n.cell, 0.0),
-            Self::Transferred(n) => _ = seen.front.insert(n.b, n.solidity),
+            Self::Seeded(n) => seen.put(n.cell, 0.0, true),
+            Self::Transferred(n) if n.keeps => {}
+            Self::Transferred(n) => seen.put(n.b, n.solidity, n.star_shaped),
             Self::Projected(n) => {
                 seen.front.remove(&n.cell);
                 seen.projected.push(n.cell);
             }
+            Self::Asked(n) if n.answer.is_hidden => _ = seen.front.remove(&n.cell),
             _ => {}
         }
     }
@@ -129,12 +204,17 @@ impl<S: Cellular> Tallied for Evidence<S> {
             Self::Transferred(n) => {
                 tally.add("solidities_updated", 1);
                 tally.add("penalties", (!n.star_shaped).into());
-                tally.add("cells_requeued", n.before.is_some().into());
+                tally.add("cells_requeued", (n.before.is_some() && !n.keeps).into());
             }
             Self::Projected(n) => {
                 tally.add("cells_projected", 1);
                 tally.add("empty_cells_projected", (n.held == 0).into());
             }
+            Self::Asked(n) => {
+                tally.add("cells_asked", 1);
+                tally.add("cells_hidden", n.answer.is_hidden.into());
+            }
+            Self::Bounded(_) => tally.add("bounds_found", 1),
             Self::Ended(_) => {}
         }
     }
@@ -148,13 +228,16 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
             Self::Transferred(_) => "SolidityTransferred",
             Self::Projected(_) => "CellProjected",
+            Self::Asked(_) => "CellAsked",
+            Self::Bounded(_) => "DoubtBounded",
             Self::Ended(_) => "TraversalEnded",
         }
     }
     fn fields(&self) -> Vec<Field> {
+        let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
-            Self::Seeded(n) => vec![integer("node", node_of(n.cell).0), number("distance_units", n.distance.into()), switch("again", n.again)],
+            Self::Seeded(n) => vec![integer("node", node_of(n.cell).0), number("distance_units", n.distance.into()), word("origin", n.origin.word())],
             Self::Tested(n) => n.fields(),
             Self::Facing(n) => n.fields(),
             Self::Transferred(n) => vec![
@@ -162,6 +245,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("node", node_of(n.b).0),
                 integer("held", n.held),
                 integer("rho_max", n.most),
+                number("share", n.share.into()),
                 Field { name: "view_direction", value: axes(n.sight) },
                 Field { name: "normal", value: axes(n.normal) },
                 number("alignment", n.along.into()),
@@ -169,6 +253,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 number("transferred", n.sum().into()),
                 switch("star_shaped", n.star_shaped),
                 number("solidity", n.solidity.into()),
+                switch("keeps", n.keeps),
             ],
             Self::Projected(n) => vec![
                 integer("node", node_of(n.cell).0),
@@ -178,22 +263,22 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("drawn", n.drawn),
                 integer("budget_left", n.left),
             ],
+            Self::Asked(n) => vec![
+                integer("node", node_of(n.cell).0),
+                number("solidity", n.solidity.into()),
+                number("nearest", n.answer.nearest.into()),
+                number("held", n.answer.decisive.map_or(0.0, |(_, held)| held.into())),
+                integer("reads", n.answer.reads),
+                switch("hidden", n.answer.is_hidden),
+            ],
+            Self::Bounded(n) => vec![number("share", n.share.into()), number("allowed", n.most.into()), integer("drawn", n.drawn)],
             Self::Ended(n) => vec![integer("cells", n.cells), integer("budget_left", n.left), switch("spent", n.spent)],
         }
     }
     fn sentence(&self, _: &Scene<S>) -> String {
         let prims = S::PRIM;
         match self {
-            Self::Seeded(n) if n.again => {
-                format!(
-                    "The front is empty and budget is left: the nearest cell in view that was not reached, node {}, starts a new one.",
-                    node_of(n.cell)
-                )
-            }
-            Self::Seeded(n) if n.distance > 0.0 => {
-                format!("The Eye is outside of all cells; the nearest cell in view is node {}, {} units away.", node_of(n.cell), short(n.distance))
-            }
-            Self::Seeded(n) => format!("The Eye is in the cell of node {}: the front begins there.", node_of(n.cell)),
+            Self::Seeded(n) => seed_sentence(n),
             Self::Tested(n) => n.sentence(),
             Self::Facing(n) => n.sentence::<S>(),
             Self::Transferred(n) => transfer_sentence::<S>(n),
@@ -206,26 +291,81 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 n.held,
                 n.left
             ),
+            Self::Asked(n) => asked_sentence(n),
+            Self::Bounded(n) => format!(
+                "After {} {prims}s what is left could still change {} % of the image; {} % are allowed: {}.",
+                n.drawn,
+                short(100.0 * n.share),
+                short(100.0 * n.most),
+                if n.share > n.most { "the budget grows by half" } else { "that is enough" }
+            ),
             Self::Ended(n) if n.spent => format!("The budget is spent after {} cells.", n.cells),
             Self::Ended(n) => format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left),
         }
     }
 }
 
+fn seed_sentence(n: &Seeded) -> String {
+    let (node, distance) = (node_of(n.cell), short(n.distance));
+    match n.origin {
+        Origin::Eye => format!("The Eye is in the cell of node {node}: the front begins there."),
+        Origin::Nearest => format!("The Eye is outside of all cells; the nearest cell in view is node {node}, {distance} units away."),
+        Origin::Ray => {
+            format!("On a ray from the Eye, {distance} units away, node {node} is the first that holds something: the front begins there too.")
+        }
+        Origin::Again => {
+            format!("The front is empty and budget is left: the nearest cell in view that was not reached, node {node}, starts a new one.")
+        }
+    }
+}
+
+fn asked_sentence(n: &Asked) -> String {
+    let node = node_of(n.cell);
+    let depth = |v: f32| short(1.0 / v);
+    match (n.answer.is_hidden, n.answer.decisive) {
+        (true, Some((_, held))) => {
+            format!(
+                "Node {node} begins at depth {}, behind {}, the farthest that is drawn where it would show: it is hidden.",
+                depth(n.answer.nearest),
+                depth(held)
+            )
+        }
+        (true, None) => format!("Node {node} covers no pixel's center: it is hidden."),
+        (false, Some((_, held))) => {
+            format!(
+                "Node {node} begins at depth {}, and where it would show nothing nearer than {} is drawn: it is projected.",
+                depth(n.answer.nearest),
+                depth(held)
+            )
+        }
+        (false, None) => format!("Node {node} reaches the near plane: it is projected."),
+    }
+}
+
 fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let (a, b) = (node_of(n.a), node_of(n.b));
     let part = if n.along == 1.0 { "ρ(A)" } else { "(v · n) ρ(A)" };
-    let terms = format!("{} / {} + {} × {} = {}", n.held, n.most, short(n.along), short(n.of_a), short(n.sum()));
+    let (name, share) = if n.share == n.held as f32 / n.most.max(1) as f32 {
+        ("|A| / ρ_max", format!("{} / {}", n.held, n.most))
+    } else {
+        ("what of A faces the Eye, of ρ_max", short(n.share))
+    };
+    let product = if n.along == 1.0 { short(n.of_a) } else { format!("{} × {}", short(n.along), short(n.of_a)) };
+    let terms = format!("{share} + {product} = {}", short(n.sum()));
     let star = if n.star_shaped {
         String::new()
     } else {
         format!(
-            " The ray from its center to the Eye does not leave through that face: it is not star-shaped, and the penalty makes {} of it.",
+            " The way from its center to the Eye does not leave through that face: it is not star-shaped, and with the penalty it has {}.",
             short(n.solidity)
         )
     };
-    let before = n.before.map_or(String::new(), |v| format!(" It had {} in the front.", short(v)));
-    format!("Node {a} hands its solidity on to node {b}: |A| / ρ_max + {part} = {terms}.{star}{before}")
+    let before = match n.before {
+        Some(v) if n.keeps => format!(" It keeps the {} that it has in the front.", short(v)),
+        Some(v) => format!(" It had {} in the front.", short(v)),
+        None => String::new(),
+    };
+    format!("Node {a} hands its solidity on to node {b}: {name} + {part} = {terms}.{star}{before}")
 }
 
 /// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid first, as far as
@@ -233,9 +373,7 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
 fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
     let apart = scene.bounds().diagonal() * LABELS_APART;
     let projected = seen.projected.iter().enumerate().rev().take(NUMBERED).map(|(at, &cell)| (cell, format!("#{}", at + 1)));
-    let mut front: Vec<_> = seen.front.iter().collect();
-    front.sort_by(|a, b| a.1.total_cmp(b.1).then(a.0.cmp(b.0)));
-    let front = front.into_iter().take(LABELED).map(|(&cell, &solidity)| (cell, short(solidity)));
+    let front = seen.in_order().into_iter().take(LABELED).map(|(cell, queued)| (cell, short(queued.solidity)));
     let mut taken: Vec<S::Vector> = Vec::new();
     for (cell, text) in projected.chain(front) {
         let at = index.cells.any().center(cell);
@@ -260,8 +398,12 @@ pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: 
             to.line(Layer::Evidence, Role::Evidence, Subject::Node(node_of(n.cell)), [view.eye.position, index.cells.any().center(n.cell)]);
         }
         Some(Evidence::Projected(n)) => outline(index, n.cell, Layer::Emphasis, Role::Current, to),
+        Some(Evidence::Asked(n)) => {
+            let role = if n.answer.is_hidden { Role::Hidden } else { Role::Current };
+            outline(index, n.cell, Layer::Emphasis, role, to);
+        }
         Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),
-        Some(Evidence::Ended(_)) | None => {}
+        Some(Evidence::Bounded(_) | Evidence::Ended(_)) | None => {}
     }
 }
 

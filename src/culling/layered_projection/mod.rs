@@ -9,13 +9,19 @@
 //! near the rim of a wide view; a transfer against the view direction counts as none, not as negative; where a cell is cut
 //! by the view volume, its primitives are tested one by one, as the paper's baseline does; where the front runs dry before
 //! the budget does, the nearest cell in view that was not reached starts a new one, so that with an unlimited budget
-//! nothing is missed. A parameter hands on the whole solidity in place of its part v · n: through the oblique faces of
-//! tetrahedra that part shrinks from cell to cell, and what lies far behind walls is soon as good as what is seen.
+//! nothing is missed. The penalty is added: the paper leaves it open, and a factor leaves the solidity 0 of empty space as it
+//! is, through which the front flows around everything and takes what is behind for as good as what is seen. Two parameters
+//! go beyond the paper by default, for they find more (`cullscope paper klosowski-silva-table-1`): `transfer=whole` hands on
+//! all solidity in place of its part v · n, for through the oblique faces of tetrahedra that part shrinks from cell to cell;
+//! `update=star-shaped` lets the value stand that came through the face toward the Eye, where in the paper the latest one
+//! replaces it. `transfer=aligned`, `update=latest` is the paper's arithmetic.
 //! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod explain;
 mod front;
 mod index;
+mod picture;
+mod rest;
 mod saved;
 #[cfg(test)]
 mod tests;
@@ -26,11 +32,13 @@ use std::sync::Arc;
 use self::explain::{Evidence, Seen};
 use self::index::Index;
 use self::walk::Walk;
+use crate::culling::depth::Faces;
 use crate::culling::knobs::backface_knob;
-use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer};
+use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Limit, Method, Observer};
 use crate::drawing::Drawing;
 use crate::geometry::View;
 use crate::index::tessellation::Cellular;
+use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
 
 /// The method.
@@ -46,8 +54,16 @@ pub struct Params {
     leaf_size: u32,
     /// Which of [`Params::TRANSFERS`].
     transfer: usize,
-    /// Per cent that are added to the solidity of a cell that is not star-shaped.
+    /// Added to the solidity of a cell that is not star-shaped, per cent of a cell that holds ρ_max primitives.
     penalty: u32,
+    /// Which of [`Params::UPDATES`].
+    update: usize,
+    /// Which of [`Params::OCCUPANCIES`].
+    occupancy: usize,
+    seeds: u32,
+    queries: bool,
+    /// Per cent of the pixels; 0: the budget holds.
+    quality: u32,
     seed: u32,
     backface_culling: bool,
 }
@@ -58,6 +74,10 @@ impl Params {
     const KD_TREE: usize = 2;
     const TRANSFERS: &'static [&'static str] = &["aligned", "whole"];
     const WHOLE: usize = 1;
+    const UPDATES: &'static [&'static str] = &["latest", "star-shaped"];
+    const STAR_SHAPED: usize = 1;
+    const OCCUPANCIES: &'static [&'static str] = &["count", "front-facing"];
+    const FRONT_FACING: usize = 1;
 }
 
 impl Default for Params {
@@ -66,8 +86,13 @@ impl Default for Params {
             tessellation: Self::DELAUNAY,
             budget: Budget::Percent(10.0),
             leaf_size: 5,
-            transfer: 0,
-            penalty: 100,
+            transfer: Self::WHOLE,
+            penalty: 30,
+            update: Self::STAR_SHAPED,
+            occupancy: 0,
+            seeds: 1,
+            queries: false,
+            quality: 0,
             seed: 1,
             backface_culling: false,
         }
@@ -87,8 +112,9 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "RenderingLoop:10", text: "    enqueue n with ρ" },
     CodeLine { label: "UpdateSolidity:1", text: "ρ(B) := |A| / ρ_max + (v · n(B)) ρ(A)" },
     CodeLine { label: "UpdateSolidity:2", text: "if B is not star-shaped toward the eye" },
-    CodeLine { label: "UpdateSolidity:3", text: "  ρ(B) := ρ(B) with the penalty" },
+    CodeLine { label: "UpdateSolidity:3", text: "  ρ(B) := ρ(B) + penalty" },
     CodeLine { label: "UpdateSolidity:4", text: "return ρ(B)" },
+    CodeLine { label: "Section 6", text: "after the budget: project c unless the z-buffer hides it" },
 ];
 
 /// Numbers of the lines that events refer to.
@@ -99,6 +125,7 @@ mod line {
     pub const SKIP: u8 = 7;
     pub const ENQUEUE: u8 = 9;
     pub const PENALTY: u8 = 12;
+    pub const ASK: u8 = 14;
 }
 
 /// The paper, of which a parameter names the section.
@@ -108,10 +135,12 @@ macro_rules! section {
     };
 }
 
-impl<S: Cellular> Method<S> for LayeredProjection {
+impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     type Params = Params;
     type Index = Index<S>;
-    type Memory = ();
+    /// What ends a frame from outside.
+    type Memory = Option<Limit>;
+    const REMEMBERS: bool = false;
     type Note = Evidence<S>;
     type Dense = Seen;
     const CARD: Card = Card {
@@ -129,14 +158,29 @@ impl<S: Cellular> Method<S> for LayeredProjection {
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         let cells = Knob::new("tessellation", "", "which cells space is divided into", section!("4.3"));
         knobs.choice(cells, Params::TESSELLATIONS, &mut params.tessellation);
-        let budget = Knob::new("budget", "primitives", "how many primitives are drawn: a number, or a share of the scene such as 10%", section!("3"));
+        let budget = Knob::new(
+            "budget",
+            "primitives",
+            "how much is drawn: a number of primitives, a share of the scene such as 10%, or what fits into a time such as 5ms",
+            section!("3"),
+        );
         knobs.budget(budget, &mut params.budget);
         let leaf = Knob::new("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
         knobs.integer(leaf, 1..=100, &mut params.leaf_size);
         let meaning = "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
         knobs.choice(Knob::new("transfer", "", meaning, section!("3.2")), Params::TRANSFERS, &mut params.transfer);
-        let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by";
+        let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by; 100 is a full cell";
         knobs.integer(Knob::new("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
+        let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from the face the eye sees it through";
+        knobs.choice(Knob::new("update", "", meaning, section!("3.2")), Params::UPDATES, &mut params.update);
+        let meaning = "how a cell's primitives count: each as one, as in the paper, or by the cosine toward the eye of those that face it";
+        knobs.choice(Knob::new("occupancy", "", meaning, section!("6")), Params::OCCUPANCIES, &mut params.occupancy);
+        let meaning = "cells from which the front grows: that of the eye, and the first with primitives on rays into the view";
+        knobs.integer(Knob::new("seeds", "", meaning, section!("6")), 1..=10_000, &mut params.seeds);
+        let meaning = "after the budget each cell left is asked against the z-buffer and drawn unless hidden, so that nothing visible is missed";
+        knobs.switch(Knob::new("queries", "", meaning, section!("6")), &mut params.queries);
+        let meaning = "the budget grows until at least so many of the pixels can no longer change; 0: it does not grow";
+        knobs.integer(Knob::new("quality", "%", meaning, section!("6")), 0..=100, &mut params.quality);
         let seed = Knob::new("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));
         knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
         backface_knob(knobs, &mut params.backface_culling);
@@ -155,18 +199,26 @@ impl<S: Cellular> Method<S> for LayeredProjection {
         scene: &Scene<S>,
         view: &View<S>,
         params: &Params,
-        (): &mut (),
+        limit: &mut Option<Limit>,
         out: &mut DrawList,
         watch: &mut O,
     ) {
         watch.event(Event::FrameBegan);
-        Walk::new(index, scene, view, params, out, watch).run();
+        Walk::new(index, scene, view, params, limit.as_ref(), out, watch).run();
+    }
+    fn limit(memory: &mut Option<Limit>, limit: Option<Limit>) -> bool {
+        *memory = limit;
+        true
     }
     fn dense(_: &Scene<S>, _: &View<S>) -> Seen {
         Seen::default()
     }
     fn apply(seen: &mut Seen, _: &Scene<S>, note: &Evidence<S>) {
         note.apply(seen);
+    }
+    const PICTURES: &'static [&'static str] = picture::PICTURES;
+    fn picture(seen: &Seen, _: &View<S>, notes: &[Evidence<S>], which: usize, _: DepthScale) -> Drawing {
+        picture::picture(seen, notes, which)
     }
     fn explain(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
         explain::draw(seen, scene, index, view, note, to);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::explain::Evidence;
 use super::index::node_of;
 use super::{LayeredProjection, Params};
+use crate::culling::evidence::prim_faces_away;
 use crate::culling::{Budget, DrawList, Event, Field, Method, Methods, Recorder, Run, Settings, Value, Verdict};
 use crate::geometry::{CellId, Flat, PrimId, Solid, View};
 use crate::index::tessellation::Cellular;
@@ -119,8 +120,16 @@ fn with_an_unlimited_budget_the_image_is_the_z_buffers() {
 }
 
 fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    hands_it_on(scene, kind, "aligned", "latest");
+    hands_it_on(scene, kind, "whole", "star-shaped");
+}
+
+fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &str, update: &str) {
     let view = views(scene)[4];
-    let film = run(scene, &[("tessellation", kind), ("penalty", "50"), ("budget", "100%")]).record(&view, usize::MAX).film;
+    let (mut settled, mut front, mut kept) = (std::collections::BTreeSet::new(), std::collections::BTreeMap::<u32, f64>::new(), 0);
+    let film = run(scene, &[("tessellation", kind), ("penalty", "50"), ("budget", "100%"), ("transfer", transfer), ("update", update)])
+        .record(&view, usize::MAX)
+        .film;
     let (mut solidity, mut penalties, mut count) = (std::collections::BTreeMap::new(), 0, 0);
     for at in 0..film.events().len() {
         let (what, fields) = film.fields(at);
@@ -131,10 +140,21 @@ fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
                 assert_eq!(solidity[&(v("from_node") as u32)], v("from_solidity"));
                 let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
                 assert!((sum - v("transferred")).abs() <= 1e-6 * sum && (0.0..=1.00001).contains(&v("alignment")));
-                let want = v("transferred") * if v("star_shaped") == 1.0 { 1.0 } else { 1.5 };
+                assert!(transfer == "aligned" || v("alignment") == 1.0);
+                let (node, star) = (v("node") as u32, v("star_shaped") == 1.0);
+                let want = v("transferred") + if star { 0.0 } else { 0.5 };
                 assert!((want - v("solidity")).abs() <= 1e-6 * want, "{want}");
-                let queued = film.events()[at..].iter().find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
-                assert_eq!(queued, Some((v("node") as u32, v("solidity") as f32)));
+                let stays = update == "star-shaped" && !star && (settled.contains(&node) || front.get(&node).is_some_and(|s| *s <= v("solidity")));
+                assert_eq!(v("keeps") == 1.0, stays, "{kind}");
+                if star {
+                    settled.insert(node);
+                }
+                kept += usize::from(stays);
+                if !stays {
+                    front.insert(node, v("solidity"));
+                    let queued = film.events()[at..].iter().find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
+                    assert_eq!(queued, Some((node, v("solidity") as f32)));
+                }
                 penalties += usize::from(v("star_shaped") == 0.0);
                 count += 1;
             }
@@ -142,6 +162,7 @@ fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
         }
     }
     assert!(penalties > 5 && penalties < count, "{kind}: {penalties} of {count}");
+    assert_eq!(kept > 5, update == "star-shaped", "{kind}: {kept} of {count}");
 }
 
 #[test]
@@ -164,7 +185,7 @@ fn figure_6_written_out() {
     view.eye.target = view.eye.position + glam::Vec2::X;
     (view.eye.near, view.eye.fov) = (0.01, 3.0);
     let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
-    LayeredProjection::cull(&built, &scene, &view, &params, &mut (), &mut list, &mut recorder);
+    LayeredProjection::cull(&built, &scene, &view, &params, &mut None, &mut list, &mut recorder);
     let handed = recorder.notes.iter().filter_map(|n| if let Evidence::Transferred(t) = n { Some(t) } else { None });
     let first: Vec<_> = handed.take_while(|t| t.a == index(0)).collect();
     assert!(!first.is_empty());
@@ -247,6 +268,95 @@ fn a_hole_in_the_front_is_no_hole_in_the_picture() {
     for kind in KINDS {
         sees_all(&scene, kind);
     }
+}
+
+fn is_ended_from_outside<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let mut run = run(scene, &[("tessellation", kind), ("budget", "100%")]);
+    for view in views(scene) {
+        let all = run.cull(&view).prims;
+        for most in [1, all.len() / 2, all.len() + 1] {
+            let told = Arc::new(std::sync::Mutex::new(Vec::new()));
+            let listener = told.clone();
+            let limit = move |prims: &[PrimId]| {
+                let mut told = listener.lock().expect("nobody panics");
+                told.extend_from_slice(prims);
+                told.len() >= most
+            };
+            assert!(run.limit(Some(Arc::new(limit))));
+            let part = run.cull(&view).prims;
+            assert!(run.limit(None));
+            assert_eq!(part, all[..part.len()], "{kind}");
+            assert!(part.len() >= most.min(all.len()), "{kind}: {} of {most}", part.len());
+            assert_eq!(*told.lock().expect("nobody panics"), part, "{kind}: all that was drawn was told, once");
+        }
+    }
+    assert!(!run.remembers());
+}
+
+#[test]
+fn a_frame_can_be_ended_from_outside() {
+    both(is_ended_from_outside, is_ended_from_outside);
+}
+
+fn grows_from_several_seeds<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let view = views(scene)[0];
+    let film = run(scene, &[("tessellation", kind), ("seeds", "20"), ("budget", "100%")]).record(&view, usize::MAX).film;
+    let seeds = (0..film.events().len()).filter(|&at| film.fields(at).0 == "CellSeeded").count();
+    assert!(seeds > 5, "{kind}: {seeds}");
+    for kind_of in [("occupancy", "front-facing"), ("seeds", "20"), ("update", "latest")] {
+        let drawn = run(scene, &[("tessellation", kind), ("budget", "100%"), kind_of]).cull(&view).prims;
+        assert_eq!(render(scene, &view, &drawn).item, render(scene, &view, scene.live()).item, "{kind}, {kind_of:?}");
+    }
+}
+
+#[test]
+fn extensions_change_the_order_and_lose_nothing() {
+    both(grows_from_several_seeds, grows_from_several_seeds);
+}
+
+fn is_exact_with_queries<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let mut hidden = 0;
+    for budget in ["0", "10", "20%", "100%"] {
+        for culled in ["false", "true"] {
+            let mut run = run(scene, &[("tessellation", kind), ("budget", budget), ("queries", "true"), ("backface-culling", culled)]);
+            for view in views(scene) {
+                let (list, tally) = run.count(&view);
+                hidden += tally.named().get("cells_hidden").copied().unwrap_or(0);
+                let facing: Vec<PrimId> =
+                    scene.live().iter().copied().filter(|p| culled == "false" || !prim_faces_away(scene, view.eye.position, *p)).collect();
+                assert_eq!(render(scene, &view, &list.prims).item, render(scene, &view, &facing).item, "{kind}, budget {budget}");
+                let mut once = list.ascending();
+                once.dedup();
+                assert_eq!(once.len(), list.prims.len(), "{kind}: drawn once");
+            }
+        }
+    }
+    assert!(hidden > 3, "{kind}: {hidden} cells hidden");
+}
+
+#[test]
+fn queries_for_the_rest_make_it_exact() {
+    both(is_exact_with_queries, is_exact_with_queries);
+}
+
+fn keeps_its_promise<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    let mut less = 0;
+    for quality in ["50", "80", "95", "100"] {
+        let mut run = run(scene, &[("tessellation", kind), ("budget", "1"), ("quality", quality)]);
+        for view in views(scene) {
+            let drawn = run.cull(&view).prims;
+            let (image, truth) = (render(scene, &view, &drawn), render(scene, &view, scene.live()));
+            let wrong = truth.wrong_pixels(&image) as f64 / truth.item.len() as f64;
+            assert!(wrong <= 1.0 - quality.parse::<f64>().expect("a number") / 100.0, "{kind}, {quality}: {wrong}");
+            less += usize::from(wrong > 0.0);
+        }
+    }
+    assert!(less > 0, "{kind}: some stopped early");
+}
+
+#[test]
+fn no_more_pixels_are_wrong_than_the_quality_allows() {
+    both(keeps_its_promise, keeps_its_promise);
 }
 
 #[test]

@@ -1,15 +1,24 @@
 //! The traversal: Figures 4 and 5, once for both spaces and all tessellations.
 
-use super::explain::{Ended, Evidence, Projected, Seeded, Transferred};
+use super::explain::{Asked, Bounded, Ended, Evidence, Origin, Projected, Seeded, Transferred};
 use super::front::Front;
 use super::index::{Index, node_of};
+use super::rest::Rest;
 use super::{Params, line};
+use crate::culling::depth::Faces;
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::{DrawList, Event, Observer, Verdict};
+use crate::culling::{DrawList, Event, Limit, Observer, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
-use crate::index::tessellation::{Cellular, Neighbor, Tessellation};
+use crate::index::Hierarchy;
+use crate::index::tessellation::{Cellular, Exit, Neighbor, Tessellation};
 use crate::scene::Scene;
+
+/// Primitives that are drawn between two questions whether it is enough.
+const CHUNK: usize = 256;
+
+/// A budget that grows grows by half, and by so many primitives at least.
+const LEAST_GROWTH: usize = 16;
 
 /// Where a cell lies in regard to the view volume.
 #[derive(Clone, Copy, PartialEq)]
@@ -20,8 +29,28 @@ enum Sight {
     In(u8),
 }
 
+/// A cell as it is seen in this frame; found out once, when the front reaches it.
+#[derive(Clone, Copy)]
+struct Aspect<V> {
+    sight: Sight,
+    /// How the way from its center to the Eye leaves it.
+    exit: Exit,
+    /// v: unit vector from the Eye to its center.
+    toward: V,
+    /// Whether its solidity came through that exit.
+    is_settled: bool,
+}
+
+/// A cell that was just projected.
+struct Source {
+    cell: CellId,
+    solidity: f32,
+    /// What it adds, of ρ_max.
+    share: f32,
+}
+
 /// One frame.
-pub struct Walk<'a, S: Cellular, O> {
+pub struct Walk<'a, S: Cellular + Faces, O> {
     index: &'a Index<S>,
     cells: &'a dyn Tessellation<S>,
     scene: &'a Scene<S>,
@@ -29,18 +58,35 @@ pub struct Walk<'a, S: Cellular, O> {
     frustum: Frustum<S::Vector>,
     params: &'a Params,
     front: Front,
-    sights: Vec<Sight>,
+    aspects: Vec<Aspect<S::Vector>>,
     /// Which shared primitives are decided.
     marks: Vec<bool>,
     left: usize,
+    limit: Option<&'a Limit>,
+    /// Primitives that `limit` knows of, and whether it ended the frame.
+    told: usize,
+    ended: bool,
     /// Cells projected so far.
     rank: u32,
+    /// What is drawn as a z-buffer, where somebody asks it.
+    rest: Option<Rest<S>>,
+    /// Whether the budget is spent and the rest is asked for.
+    asks: bool,
     out: &'a mut DrawList,
     watch: &'a mut O,
 }
 
-impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
-    pub fn new(index: &'a Index<S>, scene: &'a Scene<S>, view: &'a View<S>, params: &'a Params, out: &'a mut DrawList, watch: &'a mut O) -> Self {
+impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
+    pub fn new(
+        index: &'a Index<S>,
+        scene: &'a Scene<S>,
+        view: &'a View<S>,
+        params: &'a Params,
+        limit: Option<&'a Limit>,
+        out: &'a mut DrawList,
+        watch: &'a mut O,
+    ) -> Self {
+        let unseen = Aspect { sight: Sight::Unknown, exit: Exit::Out, toward: S::Vector::default(), is_settled: false };
         Self {
             index,
             cells: index.cells.any(),
@@ -49,10 +95,15 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             frustum: view.frustum(),
             params,
             front: Front::new(index.count()),
-            sights: vec![Sight::Unknown; index.count()],
+            aspects: vec![unseen; index.count()],
             marks: vec![false; index.assignment.all_shared().len()],
             left: params.budget.of(scene.live().len()),
+            limit,
+            told: 0,
+            ended: false,
             rank: 0,
+            rest: (params.queries || params.quality > 0).then(|| Rest::new(view)),
+            asks: false,
             out,
             watch,
         }
@@ -62,12 +113,16 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     pub fn run(mut self) {
         self.watch.event(Event::Entered(NodeId(0)));
         let mut seed = self.seed();
+        self.seeds_ahead();
         while let Some(cell) = seed {
             self.enqueue(cell, 0.0);
             if self.spread() {
                 break;
             }
             seed = self.nearest_unreached();
+        }
+        if self.asks {
+            self.draw_the_shared_rest();
         }
         self.tell_the_rest(seed.is_some());
         self.watch.event(Event::DecidedNode(NodeId(0), Verdict::Partial));
@@ -79,27 +134,101 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let cells = self.cells;
         while let Some((cell, solidity)) = self.front.take() {
             self.watch.event(Event::Line(line::TAKE));
-            self.project(cell, solidity);
-            if self.left == 0 {
+            if !self.asks || !self.is_hidden(cell, solidity) {
+                self.project(cell, solidity);
+            }
+            if self.left == 0 && !self.goes_on() {
                 self.watch.event(Event::Line(line::SPENT));
                 return true;
             }
+            let source = Source { cell, solidity, share: self.share(cell) };
             for there in cells.neighbors(cell) {
-                if self.front.is_projected(there.cell) || self.sight(there.cell) == Sight::Outside {
+                if self.front.is_projected(there.cell) || self.look(there.cell).sight == Sight::Outside {
                     self.watch.event(Event::Line(line::SKIP));
-                    continue;
+                } else if let Some(updated) = self.update_solidity(there, &source) {
+                    self.enqueue(there.cell, updated);
                 }
-                let updated = self.update_solidity(there, cell, solidity);
-                self.enqueue(there.cell, updated);
             }
         }
         false
     }
 
+    /// Section 6, with the budget spent: whether something else says when it is enough.
+    fn goes_on(&mut self) -> bool {
+        let Some(mut rest) = self.rest.take_if(|_| !self.ended) else { return false };
+        rest.catch_up(self.scene, &self.out.prims);
+        if self.params.queries {
+            (self.asks, self.left) = (true, usize::MAX);
+        } else {
+            let most = 1.0 - self.params.quality as f32 / 100.0;
+            let share = self.doubt(&mut rest);
+            let drawn = self.out.prims.len() as u32;
+            self.watch.note(|| Evidence::Bounded(Bounded { share, most, drawn }));
+            self.left = if share > most { (self.out.prims.len() / 2).max(LEAST_GROWTH) } else { 0 };
+        }
+        self.rest = Some(rest);
+        self.left > 0
+    }
+    /// The share of the image that what is in view and not drawn could still change.
+    fn doubt(&mut self, rest: &mut Rest<S>) -> f32 {
+        let (index, scene, eye) = (self.index, self.scene, self.view.eye.position);
+        let mut doubt = rest.doubt(self.view);
+        for cell in (0..index.count() as u32).map(CellId).filter(|c| !index.assignment.own(*c).is_empty()) {
+            if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside {
+                doubt.of_box(&self.cells.bounds(cell));
+            }
+        }
+        for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
+            if !self.marks[number] && !(self.params.backface_culling && prim_faces_away(scene, eye, prim)) {
+                doubt.of_prim(scene, prim);
+            }
+        }
+        doubt.share()
+    }
+    /// Whether all of a cell is hidden by what is drawn; says so.
+    fn is_hidden(&mut self, cell: CellId, solidity: f32) -> bool {
+        let (node, bounds) = (node_of(cell), self.cells.bounds(cell));
+        let Some(rest) = self.rest.as_mut().filter(|_| self.index.assignment.held(cell) > 0) else { return false };
+        rest.catch_up(self.scene, &self.out.prims);
+        let Some(answer) = rest.hides(&bounds) else { return false };
+        self.watch.event(Event::Line(line::ASK));
+        self.watch.event(Event::Entered(node));
+        self.watch.note(|| Evidence::Asked(Asked { cell, solidity, answer }));
+        if answer.is_hidden {
+            self.rank += 1;
+            self.watch.event(Event::DecidedNode(node, Verdict::Hidden));
+        }
+        self.watch.event(Event::Left(node));
+        answer.is_hidden
+    }
+    /// Draws those of the shared primitives in view that no cell drew and that are not hidden themselves.
+    fn draw_the_shared_rest(&mut self) {
+        let shared = self.index.assignment.all_shared();
+        let mut open = Vec::new();
+        for number in (0..shared.len()).filter(|n| !self.marks[*n]).collect::<Vec<_>>() {
+            self.marks[number] = true;
+            match self.outside(shared[number], Frustum::<S::Vector>::ALL) {
+                Some(verdict) => self.watch.event(Event::DecidedPrim(shared[number], verdict)),
+                None => open.push(shared[number]),
+            }
+        }
+        let Some(rest) = &mut self.rest else { return };
+        rest.catch_up(self.scene, &self.out.prims);
+        // Both are in the same order.
+        let mut hidden = rest.draw(self.scene, &open).iter().peekable();
+        for prim in open {
+            let verdict = if hidden.next_if_eq(&&prim).is_some() { Verdict::Hidden } else { Verdict::Visible };
+            if verdict == Verdict::Visible {
+                self.out.prims.push(prim);
+            }
+            self.watch.event(Event::DecidedPrim(prim, verdict));
+        }
+    }
+
     /// Section 4.2: the cell that holds the Eye, or else the nearest one that is in view.
     fn seed(&mut self) -> Option<CellId> {
         let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else { return self.nearest_unreached() };
-        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: 0.0, again: false }));
+        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: 0.0, origin: Origin::Eye }));
         Some(cell)
     }
     /// The nearest cell in view that holds something and was not projected. Where the front grows over faces and no number
@@ -114,14 +243,43 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let bounds = self.cells.bounds(cell);
             let away = eye - eye.max(bounds.min).min(bounds.max);
             let squared = away.dot(away);
-            if best.is_none_or(|(least, _)| squared < least) && self.sight(cell) != Sight::Outside {
+            if best.is_none_or(|(least, _)| squared < least) && self.look(cell).sight != Sight::Outside {
                 best = Some((squared, cell));
             }
         }
         let (squared, cell) = best?;
-        let again = self.rank > 0;
-        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: squared.sqrt(), again }));
+        let origin = if self.rank > 0 { Origin::Again } else { Origin::Nearest };
+        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: squared.sqrt(), origin }));
         Some(cell)
+    }
+    /// Section 6, several seeds: on rays through points spread over the image, the first cells that hold something.
+    fn seeds_ahead(&mut self) {
+        let rows = self.view.projection().rows;
+        let forward = rows[S::Vector::AXES - 1];
+        for number in 1..self.params.seeds {
+            let ray = (0..S::Vector::AXES - 1).fold(forward, |ray, axis| {
+                let row = rows[axis];
+                ray + row * ((2.0 * spread_out(number, axis) - 1.0) / row.dot(row))
+            });
+            if let Some((cell, distance)) = self.first_along(ray) {
+                self.watch.note(|| Evidence::Seeded(Seeded { cell, distance, origin: Origin::Ray }));
+                self.enqueue(cell, 0.0);
+            }
+        }
+    }
+    /// The first cell with primitives that steps along a ray from the Eye meet, and how far away they do.
+    fn first_along(&self, ray: S::Vector) -> Option<(CellId, f32)> {
+        let (mut depth, mut near) = (self.view.eye.near, CellId(0));
+        let coarse = self.index.bounds(NodeId(0)).diagonal() / 64.0;
+        while depth < self.view.eye.far {
+            let at = self.cells.locate(self.view.eye.position + ray * depth, near);
+            if let Some(cell) = at.filter(|c| self.index.assignment.held(*c) > 0) {
+                return Some((cell, depth * ray.length()));
+            }
+            near = at.unwrap_or(near);
+            depth += at.map_or(coarse, |cell| 0.25 * self.cells.bounds(cell).diagonal()) / ray.length();
+        }
+        None
     }
 
     fn enqueue(&mut self, cell: CellId, solidity: f32) {
@@ -130,43 +288,79 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Queued(node_of(cell), solidity));
     }
 
-    /// Whether a cell is in view; tested once a frame.
-    fn sight(&mut self, cell: CellId) -> Sight {
-        if self.sights[cell.at()] == Sight::Unknown {
-            let bounds = self.cells.bounds(cell);
-            let planes = Frustum::<S::Vector>::ALL;
-            let test = self.frustum.test(&bounds, planes);
-            let frustum = &self.frustum;
-            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), frustum, &bounds, planes, test)));
-            self.sights[cell.at()] = match test {
-                FrustumTest::Outside(_) => Sight::Outside,
-                FrustumTest::Partial(cutting) => Sight::In(cutting),
-                FrustumTest::Inside => Sight::In(0),
-            };
-            if self.sights[cell.at()] == Sight::Outside {
-                self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
-            }
+    /// How a cell is seen; found out once a frame.
+    #[inline]
+    fn look(&mut self, cell: CellId) -> Aspect<S::Vector> {
+        if self.aspects[cell.at()].sight == Sight::Unknown {
+            self.aspects[cell.at()] = self.aspect(cell);
         }
-        self.sights[cell.at()]
+        self.aspects[cell.at()]
+    }
+    fn aspect(&mut self, cell: CellId) -> Aspect<S::Vector> {
+        let bounds = self.cells.bounds(cell);
+        let planes = Frustum::<S::Vector>::ALL;
+        let test = self.frustum.test(&bounds, planes);
+        let frustum = &self.frustum;
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), frustum, &bounds, planes, test)));
+        let sight = match test {
+            FrustumTest::Outside(_) => {
+                self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
+                Sight::Outside
+            }
+            FrustumTest::Partial(cutting) => Sight::In(cutting),
+            FrustumTest::Inside => Sight::In(0),
+        };
+        let eye = self.view.eye.position;
+        let way = self.cells.center(cell) - eye;
+        let exit = if sight == Sight::Outside { Exit::Out } else { self.cells.exit(cell, eye) };
+        Aspect { sight, exit, toward: way * (1.0 / way.length().max(f32::MIN_POSITIVE)), is_settled: false }
     }
 
-    /// Figure 5: hands the solidity of cell A on to its neighbor B.
-    fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: CellId, of_a: f32) -> f32 {
+    /// |A| / ρ_max, or the part of it that faces the Eye (Section 6).
+    fn share(&self, cell: CellId) -> f32 {
         let assignment = &self.index.assignment;
-        let (held, most) = (assignment.held(a), assignment.most());
-        let toward = self.cells.center(b.cell) - self.view.eye.position;
-        let sight = toward * (1.0 / toward.length().max(f32::MIN_POSITIVE));
-        let along = if self.params.transfer == Params::WHOLE { 1.0 } else { sight.dot(b.normal).max(0.0) };
-        let sum = held as f32 / most.max(1) as f32 + along * of_a;
-        let star_shaped = self.cells.leaves_into(b.cell, a, self.view.eye.position);
-        let solidity = if star_shaped { sum } else { sum * (1.0 + self.params.penalty as f32 / 100.0) };
+        let most = assignment.most().max(1) as f32;
+        if self.params.occupancy != Params::FRONT_FACING {
+            return assignment.held(cell) as f32 / most;
+        }
+        let shared = assignment.shared(cell).iter().map(|n| assignment.all_shared()[*n as usize]);
+        assignment.own(cell).iter().copied().chain(shared).map(|prim| self.facing(prim)).sum::<f32>() / most
+    }
+    /// The cosine of the angle between a primitive's normal and the way to the Eye, 0 if it faces away.
+    fn facing(&self, prim: PrimId) -> f32 {
+        let mut corners = [S::Vector::default(); 3];
+        for (to, from) in corners.iter_mut().zip(self.scene.prim_points(prim)) {
+            *to = from;
+        }
+        let (normal, way) = (S::normal(&corners[..S::CORNERS]), self.view.eye.position - corners[0]);
+        (normal.dot(way) / (normal.length() * way.length()).max(f32::MIN_POSITIVE)).max(0.0)
+    }
+
+    /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
+    fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<f32> {
+        let seen = self.aspects[b.cell.at()];
+        let along = if self.params.transfer == Params::WHOLE { 1.0 } else { seen.toward.dot(b.normal).max(0.0) };
+        let sum = a.share + along * a.solidity;
+        let star_shaped = seen.exit == Exit::Ends || seen.exit == Exit::Into(a.cell);
+        let solidity = if star_shaped { sum } else { sum + self.params.penalty as f32 / 100.0 };
         let before = self.front.solidity(b.cell);
-        let (cell, normal) = (b.cell, b.normal);
-        self.watch.note(|| Evidence::Transferred(Transferred { a, b: cell, held, most, sight, normal, along, of_a, star_shaped, solidity, before }));
+        let keeps = self.params.update == Params::STAR_SHAPED && !star_shaped && (seen.is_settled || before.is_some_and(|v| v <= solidity));
+        self.aspects[b.cell.at()].is_settled |= star_shaped;
+        let (held, most) = (self.index.assignment.held(a.cell), self.index.assignment.most());
+        let (cell, normal, sight) = (b.cell, b.normal, seen.toward);
+        let (a, share, of_a) = (a.cell, a.share, a.solidity);
+        self.watch.note(|| {
+            Evidence::Transferred(Transferred { a, b: cell, held, most, share, sight, normal, along, of_a, star_shaped, solidity, before, keeps })
+        });
         if !star_shaped {
             self.watch.event(Event::Line(line::PENALTY));
         }
-        solidity
+        (!keeps).then_some(solidity)
+    }
+
+    /// What is left of the budget, for people: no more than there is.
+    fn budget_left(&self) -> u32 {
+        self.left.min(self.scene.live().len() - self.out.prims.len()) as u32
     }
 
     /// Draws what is in a cell and not drawn yet, as far as the budget goes.
@@ -174,8 +368,8 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (index, node) = (self.index, node_of(cell));
         self.watch.event(Event::Line(line::PROJECT));
         self.watch.event(Event::Entered(node));
-        let sight = self.sight(cell);
-        let (drawn, left, rank) = (self.out.prims.len(), self.left, self.rank);
+        let sight = self.look(cell).sight;
+        let (drawn, rank) = (self.out.prims.len(), self.rank);
         if let Sight::In(cutting) = sight {
             for &prim in index.assignment.own(cell) {
                 if let Some(verdict) = self.fate(prim, cutting) {
@@ -191,17 +385,44 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 }
             }
         }
+        self.ask();
         self.rank += 1;
-        let (drawn, held) = ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell));
-        self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left: (left - drawn as usize) as u32 }));
+        let (drawn, held, left) = ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
+        self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left }));
         if sight != Sight::Outside {
             self.watch.event(Event::DecidedNode(node, Verdict::Visible));
         }
         self.watch.event(Event::Left(node));
     }
 
-    /// Draws a primitive of a cell that these planes cut, or says why not.
+    /// Tells whoever limits the frame from outside what was drawn since he was told last; he may end it.
+    fn ask(&mut self) {
+        let Some(limit) = self.limit else { return };
+        if self.told < self.out.prims.len() && limit(&self.out.prims[self.told..]) {
+            (self.left, self.ended) = (0, true);
+        }
+        self.told = self.out.prims.len();
+    }
+
+    /// Draws a primitive of a cell that these planes cut, or says why not. Where the rest is asked for, the cell in which the
+    /// budget ends is drawn whole.
     fn fate(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
+        let outside = self.outside(prim, cutting);
+        if outside.is_some() {
+            return outside;
+        }
+        if self.left == 0 && self.rest.is_none() {
+            return Some(Verdict::OverBudget);
+        }
+        self.left = self.left.saturating_sub(1);
+        self.out.prims.push(prim);
+        if self.out.prims.len() - self.told == CHUNK {
+            self.ask();
+        }
+        None
+    }
+    /// Whether a primitive lies beyond one of these planes or faces away.
+    fn outside(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
         let (scene, view) = (self.scene, self.view);
         if cutting != 0 {
             let bounds: Aabb<S::Vector> = scene.prim_bounds(prim);
@@ -216,18 +437,13 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
             return Some(Verdict::Outside);
         }
-        if self.left == 0 {
-            return Some(Verdict::OverBudget);
-        }
-        self.left -= 1;
-        self.out.prims.push(prim);
         None
     }
 
     /// Says of every cell and primitive that was not reached why not: it is out of view, or the budget was spent. Only if
     /// someone listens; it changes nothing.
     fn tell_the_rest(&mut self, spent: bool) {
-        let (cells, left) = (self.rank, self.left as u32);
+        let (cells, left) = (self.rank, self.budget_left());
         self.watch.note(|| Evidence::Ended(Ended { cells, left, spent }));
         if !O::LISTENS {
             return;
@@ -236,7 +452,7 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let count = index.count() as u32;
         for cell in (0..count).map(CellId) {
             // Of what the front did not reach without the need to stop, all in view is empty.
-            if !self.front.is_projected(cell) && self.sight(cell) != Sight::Outside && spent {
+            if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside && spent {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
             }
         }
@@ -259,4 +475,16 @@ impl<'a, S: Cellular, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though no plane says so.
         if spent { Verdict::OverBudget } else { Verdict::Hidden }
     }
+}
+
+/// The radical inverse of a number, base 2 or 3 by axis (Halton): points spread evenly over 0 to 1.
+fn spread_out(mut number: u32, axis: usize) -> f32 {
+    let base = axis as u32 + 2;
+    let (mut sum, mut part) = (0.0, 1.0);
+    while number > 0 {
+        part /= base as f32;
+        sum += part * (number % base) as f32;
+        number /= base;
+    }
+    sum
 }

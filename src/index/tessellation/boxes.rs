@@ -4,7 +4,7 @@
 //! are found by descending both sides of every dividing plane together (in place of the paper's walk up and down the octree,
 //! Section 4.3 and Figure 9): O(pairs of neighbors + nodes).
 
-use super::{Adjacency, Cellular, Neighbor, Tessellation};
+use super::{Adjacency, Cellular, Exit, Neighbor, Tessellation};
 use crate::geometry::{Aabb, CellId, Vector};
 
 /// Deeper than this no tree divides, so that recursion stays shallow.
@@ -186,24 +186,27 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
         }
         Some(CellId(node.link))
     }
-    fn leaves_into(&self, from: CellId, into: CellId, point: S::Vector) -> bool {
-        let (cell, next) = (self.cell(from), self.cell(into));
+    fn exit(&self, from: CellId, point: S::Vector) -> Exit {
+        let cell = self.cell(from);
         let center = cell.center();
         let way = point - center;
-        let exit = |a: usize| match way.get(a) {
+        let at = |a: usize| match way.get(a) {
             0.0 => f32::INFINITY,
             w if w > 0.0 => (cell.max.get(a) - center.get(a)) / w,
             w => (cell.min.get(a) - center.get(a)) / w,
         };
-        let first = (0..S::Vector::AXES).map(exit).fold(f32::INFINITY, f32::min);
-        if first >= 1.0 {
-            return true;
-        }
-        // Through an edge of the cell it leaves through both faces.
-        let faces = |a: usize| if way.get(a) > 0.0 { cell.max.get(a) == next.min.get(a) } else { cell.min.get(a) == next.max.get(a) };
-        let reaches = |a: usize| (next.min.get(a)..=next.max.get(a)).contains(&(center.get(a) + way.get(a) * first));
         let axes = 0..S::Vector::AXES;
-        axes.clone().any(|a| exit(a) == first && faces(a) && axes.clone().all(|k| k == a || reaches(k)))
+        let first = axes.clone().map(at).fold(f32::INFINITY, f32::min);
+        if first >= 1.0 {
+            return Exit::Ends;
+        }
+        let leads_into = |next: &Aabb<S::Vector>, a: usize| {
+            let faces = if way.get(a) > 0.0 { cell.max.get(a) == next.min.get(a) } else { cell.min.get(a) == next.max.get(a) };
+            let reaches = |k: usize| (next.min.get(k)..=next.max.get(k)).contains(&(center.get(k) + way.get(k) * first));
+            faces && axes.clone().all(|k| k == a || reaches(k))
+        };
+        let through = |n: &&Neighbor<S::Vector>| axes.clone().any(|a| at(a) == first && leads_into(self.cell(n.cell), a));
+        self.adjacency.of(from).iter().find(through).map_or(Exit::Out, |n| Exit::Into(n.cell))
     }
     fn meeting(&self, prim: &[S::Vector], _: CellId, to: &mut Vec<CellId>) {
         let bounds = Aabb::of(prim.iter().copied());

@@ -34,6 +34,17 @@ pub struct Neighbor<V> {
     pub normal: V,
 }
 
+/// How a straight way leaves a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// It does not: it ends inside.
+    Ends,
+    /// Through the face that the cell shares with this one.
+    Into(CellId),
+    /// Out of the region.
+    Out,
+}
+
 /// Convex cells that tile a region.
 pub trait Tessellation<S: Space>: Send + Sync {
     /// Number of cells, at least 1.
@@ -48,9 +59,9 @@ pub trait Tessellation<S: Space>: Send + Sync {
     fn neighbors(&self, cell: CellId) -> &[Neighbor<S::Vector>];
     /// A cell that contains a point, searched from the cell `near`; `None` outside of all.
     fn locate(&self, point: S::Vector, near: CellId) -> Option<CellId>;
-    /// Whether the straight way from the center of `from` to a point leaves `from` through the face that it shares with `into`.
-    /// Also true if the point lies in `from`, so that there is nothing to leave.
-    fn leaves_into(&self, from: CellId, into: CellId, point: S::Vector) -> bool;
+    /// How the straight way from the center of a cell to a point leaves the cell. Through an edge it leaves into one of the
+    /// neighbors there, always the same.
+    fn exit(&self, from: CellId, point: S::Vector) -> Exit;
     /// Adds the cells that a primitive meets, at least one, searched from the cell `near`. The primitive lies in the region.
     fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>);
     /// The edges of a cell; those of a triangle run around it.

@@ -7,7 +7,7 @@
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::{Adjacency, BoxCells, Cellular, Neighbor, Tessellation};
+use super::{Adjacency, BoxCells, Cellular, Exit, Neighbor, Tessellation};
 use crate::geometry::{Aabb, CellId, Vector};
 
 /// No neighbor.
@@ -146,19 +146,26 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
         }
         None
     }
-    fn leaves_into(&self, from: CellId, into: CellId, point: S::Vector) -> bool {
+    fn exit(&self, from: CellId, point: S::Vector) -> Exit {
         let simplex = &self.cells[from.at()];
         let center = Tessellation::<S>::center(self, from);
         let way = point - center;
         // When the way meets the plane of each face; parts of 1.
-        let exit = |face: usize| {
+        let (mut first, mut through) = (f32::INFINITY, NONE);
+        for face in 0..Self::CORNERS {
             let corners = self.face(simplex, face);
             let inward = S::normal(&corners[..S::CORNERS]);
             let speed = -inward.dot(way);
-            if speed > 0.0 { inward.dot(center - corners[0]) / speed } else { f32::INFINITY }
-        };
-        let first = (0..Self::CORNERS).map(exit).fold(f32::INFINITY, f32::min);
-        first >= 1.0 || (0..Self::CORNERS).any(|face| simplex.neighbors[face] == into.0 && exit(face) == first)
+            let at = if speed > 0.0 { inward.dot(center - corners[0]) / speed } else { f32::INFINITY };
+            if at < first {
+                (first, through) = (at, simplex.neighbors[face]);
+            }
+        }
+        match through {
+            _ if first >= 1.0 => Exit::Ends,
+            NONE => Exit::Out,
+            cell => Exit::Into(CellId(cell)),
+        }
     }
     fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>) {
         let start = to.len();

@@ -4,7 +4,7 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use std::sync::Arc;
 
-use super::{Assignment, BoxCells, Cellular, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree};
+use super::{Assignment, BoxCells, Cellular, Exit, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree};
 use crate::geometry::{Aabb, CellId, Flat, PrimId, Solid, Space, Vector};
 use crate::scene::{Quiet, Scene, samples};
 
@@ -150,12 +150,12 @@ fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S
     let mut left = 0;
     for _ in 0..400 {
         let (cell, point) = (CellId(random.below(cells.count())), random.point(scene));
-        let named: Vec<_> = cells.neighbors(cell).iter().map(|n| n.cell).filter(|n| cells.leaves_into(cell, *n, point)).collect();
+        let exit = cells.exit(cell, point);
         let (center, way) = (cells.center(cell), point - cells.center(cell));
         // Where it leaves, by halving.
         let (mut inside, mut outside) = (0.0f32, 1.0f32);
         if cells.contains(cell, point) {
-            assert_eq!(named.len(), cells.neighbors(cell).len(), "{name}: there is nothing to leave");
+            assert_eq!(exit, Exit::Ends, "{name}: there is nothing to leave");
             continue;
         }
         while outside - inside > 1e-6 {
@@ -164,11 +164,13 @@ fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S
         }
         let behind = cells.locate(center + way * (outside + 1e-5), cell).expect("the way stays in the region");
         if cells.neighbors(cell).iter().any(|n| n.cell == behind) {
-            assert_eq!(named, [behind], "{name}");
+            assert_eq!(exit, Exit::Into(behind), "{name}");
             left += 1;
         }
     }
     assert!(left > 250, "{name}: {left}");
+    let beyond = scene.bounds().center() + scene.bounds().size() * 100.0;
+    assert!(all(cells.count()).any(|c| cells.exit(c, beyond) == Exit::Out), "{name}: a way leads out of the region");
 }
 
 #[test]

@@ -350,6 +350,28 @@ pub static EXPERIMENTS: &[Experiment] = &[
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::OVERHEAD,
     },
+    Experiment {
+        name: "klosowski-silva-extensions",
+        method: klosowski_silva::METHOD,
+        scenes: LARGE,
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Section 6: extensions",
+        summary: "What each extension finds and costs: other solidities, several seeds, a wanted quality, queries for the rest",
+        notes: &[COVERED, "With a quality or queries the budget is where they begin."],
+        varies: &["budget", "transfer", "update", "occupancy", "seeds", "quality", "queries"],
+        sweep: &klosowski_silva::EXTENSIONS,
+    },
+    Experiment {
+        name: "klosowski-silva-deadline",
+        method: klosowski_silva::METHOD,
+        scenes: LARGE,
+        doi: KLOSOWSKI_SILVA,
+        title: "Klosowski and Silva 2000, Section 3: time-critical frames",
+        summary: "How long frames take that end at a deadline, on an idle and on a loaded machine, and how far they overshoot",
+        notes: &["Loaded: two more busy threads for each core. A frame is culled and drawn on one thread."],
+        varies: &["budget"],
+        sweep: &klosowski_silva::DEADLINE,
+    },
 ];
 
 const COORG_TELLER: &str = "10.1145/253284.253312";

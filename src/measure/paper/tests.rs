@@ -72,6 +72,8 @@ fn every_experiment_fills_its_table() {
         ("klosowski-silva-stability", 12),
         ("klosowski-silva-preprocess", 5),
         ("klosowski-silva-overhead", 16),
+        ("klosowski-silva-extensions", 18),
+        ("klosowski-silva-deadline", 8),
     ]);
     assert_eq!(rows.len(), EXPERIMENTS.len());
     for (name, count) in rows {

@@ -30,11 +30,12 @@ const MIDDLE: DVec3 = DVec3::new(3.0, 0.6, 2.7);
 fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
     let polygons = values.get("polygons");
     let each = polygons.saturating_sub(2) / PLACES.len() as u64;
-    // The parts inside are half of a car; the body gets the rest.
+    // The parts inside are most of a car; the body gets the rest. The paper finds 44 % of what is visible with 1 % of the
+    // triangles, so that at most one in 44 of them is visible there.
     let one = Frame { origin: DVec3::ZERO, right: DVec3::X, away: DVec3::Z };
     let inner = |sink: &mut Sink, detail: u32| car(sink, &one, detail, 0, "");
-    // One step below what would be more than half.
-    let detail = detail_for(each / 2, source, progress, inner)?.max(2) - 1;
+    // One step below what would be more.
+    let detail = detail_for(each * 19 / 20, source, progress, inner)?.max(2) - 1;
     let mut count = Sink::counting();
     inner(&mut count, detail);
     let skin = each.saturating_sub(count.triangles);

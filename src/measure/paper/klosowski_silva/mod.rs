@@ -5,6 +5,8 @@
 //! shown bytes differ from those of the exact image. Cost: O(frames · ways) images of the scene.
 
 mod comparison;
+mod deadline;
+mod extensions;
 mod frames;
 mod overhead;
 mod preprocess;
@@ -12,6 +14,8 @@ mod stability;
 mod table_1;
 
 pub use comparison::SWEEP as COMPARISON;
+pub use deadline::SWEEP as DEADLINE;
+pub use extensions::SWEEP as EXTENSIONS;
 pub use frames::SWEEP as FRAMES;
 pub use overhead::SWEEP as OVERHEAD;
 pub use preprocess::SWEEP as PREPROCESS;

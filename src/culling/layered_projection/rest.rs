@@ -1,0 +1,103 @@
+//! What the budget leaves, asked against the z-buffer of what it drew (Section 6): PLP first, then queries for the rest, which
+//! make the result exact; and how much of the image the rest could still change, which tells when a budget is enough.
+//!
+//! A cell is hidden if its box is; then the primitives that meet it alone are. Of those that meet several cells each is compared
+//! by itself, since its fragments may reach over a cell's boundary by the rasterizer's rounding.
+
+use crate::culling::depth::{Answer, Buffer, Faces, Nobody, footprint, hides};
+use crate::geometry::{Aabb, Footprint, PixelRect, PrimId, View};
+use crate::raster::{Options, PyramidCell};
+use crate::scene::Scene;
+
+/// The z-buffer of a frame.
+pub struct Rest<S: Faces> {
+    buffer: Buffer<S>,
+    /// How many of the frame's primitives it holds.
+    drawn: usize,
+}
+
+impl<S: Faces> Rest<S> {
+    pub fn new(view: &View<S>) -> Self {
+        let mut buffer = Buffer::default();
+        buffer.begin(view);
+        Self { buffer, drawn: 0 }
+    }
+    /// Draws what was added to the frame's primitives.
+    pub fn catch_up(&mut self, scene: &Scene<S>, prims: &[PrimId]) {
+        self.buffer.draw(scene, &prims[self.drawn..], &Options::default());
+        self.drawn = prims.len();
+    }
+    /// Whether a box is hidden; `None` if it is out of view.
+    pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
+        hides(&mut self.buffer, bounds, Nobody)
+    }
+    /// Draws these primitives, not yet among the frame's, and returns the hidden ones of them.
+    pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId]) -> &[PrimId] {
+        self.buffer.refresh_all();
+        self.buffer.draw(scene, prims, &Options::default())
+    }
+    /// Begins to find out what part of the image can still change.
+    pub fn doubt(&mut self, view: &View<S>) -> Doubt<'_, S> {
+        self.buffer.refresh_all();
+        let (columns, rows) = self.buffer.pyramid().size(Doubt::<S>::LEVEL);
+        Doubt { buffer: &self.buffer, view: *view, columns, marks: vec![false; (columns * rows) as usize], is_all: false }
+    }
+}
+
+/// The blocks of pixels that something not drawn yet could change.
+pub struct Doubt<'a, S: Faces> {
+    buffer: &'a Buffer<S>,
+    view: View<S>,
+    columns: u32,
+    marks: Vec<bool>,
+    is_all: bool,
+}
+
+impl<S: Faces> Doubt<'_, S> {
+    /// Level of the pyramid whose cells are marked: blocks of 4 × 4 pixels, or as large as the pyramid's top.
+    const LEVEL: u32 = 2;
+
+    /// Marks what the contents of a box could change.
+    pub fn of_box(&mut self, bounds: &Aabb<S::Vector>) {
+        let Some((view, projection)) = self.buffer.view() else { return };
+        match footprint(view, projection, bounds) {
+            Footprint::Outside => {}
+            Footprint::CrossesNear => self.is_all = true,
+            Footprint::Seen(image) => self.mark(image.pixels, image.nearest),
+        }
+    }
+    /// Marks what a primitive could change.
+    pub fn of_prim(&mut self, scene: &Scene<S>, prim: PrimId) {
+        match self.buffer.operands(scene, prim, &Options::default()) {
+            Some((extent, _)) => self.mark(extent.pixels, extent.nearest),
+            // It covers no pixel, or it is cut by the view volume and its box says enough.
+            None => self.of_box(&scene.prim_bounds(prim)),
+        }
+    }
+    fn mark(&mut self, r: PixelRect, nearest: f32) {
+        if r.is_empty() || self.is_all {
+            return;
+        }
+        for y in r.y0 >> Self::LEVEL..=(r.y1 - 1) >> Self::LEVEL {
+            for x in r.x0 >> Self::LEVEL..=(r.x1 - 1) >> Self::LEVEL {
+                let mark = &mut self.marks[(y * self.columns + x) as usize];
+                let cell = PyramidCell { level: Self::LEVEL as u8, x: x as u16, y: y as u16 };
+                *mark = *mark || nearest >= self.buffer.farthest(cell);
+            }
+        }
+    }
+    /// The share of the image that is marked.
+    pub fn share(&self) -> f32 {
+        if self.is_all {
+            return 1.0;
+        }
+        let (width, height) = (self.view.width, self.view.height);
+        let pixels = |at: usize| {
+            let (x, y) = (at as u32 % self.columns, at as u32 / self.columns);
+            let r = PyramidCell { level: Self::LEVEL as u8, x: x as u16, y: y as u16 }.pixels(width, height);
+            u64::from(r.x1 - r.x0) * u64::from(r.y1 - r.y0)
+        };
+        let marked: u64 = (0..self.marks.len()).filter(|&at| self.marks[at]).map(pixels).sum();
+        (marked as f64 / (f64::from(width) * f64::from(height))) as f32
+    }
+}

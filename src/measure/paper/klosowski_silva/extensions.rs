@@ -1,0 +1,107 @@
+//! Section 6: what each extension of the method does, beside the method as it is and beside the paper's arithmetic.
+
+use std::sync::Arc;
+
+use super::{BUDGET, Judge, METHOD, frame, settings};
+use crate::drawing::{Plot, Role, Series, Shape};
+use crate::measure::paper::flight::{about, path};
+use crate::measure::paper::walk::stop_or_go;
+use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part};
+use crate::measure::table::{Cell, Table};
+use crate::raster::Target;
+use crate::scene::{Progress, Scene};
+
+pub const SWEEP: Sweep = Sweep {
+    columns: &[
+        SOURCE,
+        SCENE,
+        column("form", "form", "", 0),
+        BUDGET,
+        column("drawn_triangles", "drawn", "triangles", 0),
+        column("found_percent", "found", "% of visible", 1),
+        column("wrong_mean_percent", "wrong pixels, mean", "%", 2),
+        column("wrong_worst_percent", "worst frame", "%", 2),
+        column("cull_ms", "cull", "ms", 2),
+        column("draw_ms", "draw", "ms", 2),
+    ],
+    flat: rows,
+    solid: rows,
+    paper: Vec::new,
+    plots,
+};
+
+/// A form of the method: its name and the parameters that make it.
+type Form = (&'static str, &'static [(&'static str, &'static str)]);
+
+const FORMS: [Form; 9] = [
+    ("as it is", &[]),
+    ("the paper's", &[("transfer", "aligned"), ("update", "latest")]),
+    ("latest update", &[("update", "latest")]),
+    ("front-facing count", &[("occupancy", "front-facing")]),
+    ("64 seeds", &[("seeds", "64")]),
+    ("quality 90 %", &[("quality", "90")]),
+    ("quality 99 %", &[("quality", "99")]),
+    ("queries for the rest", &[("queries", "true")]),
+    ("queries, 64 seeds", &[("queries", "true"), ("seeds", "64")]),
+];
+/// Budgets, per cent.
+const STARTS: [f64; 2] = [1.0, 10.0];
+
+fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+    let path = path(scene, setup);
+    let entry = method::<S>(METHOD);
+    let mut runs = Vec::new();
+    let first = entry.ready(scene, &settings::<S>(METHOD, setup, &[])?, &part(progress, 0.0, 0.2))?.ok_or(PaperError::Cancelled)?;
+    let saved = first.save().unwrap_or_default();
+    let quick = part(progress, 0.2, 0.3);
+    for (budget, (_, form)) in STARTS.iter().flat_map(|b| FORMS.iter().map(move |f| (b, f))) {
+        let mut on_top: Vec<(&str, String)> = form.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
+        on_top.push(("budget", format!("{budget}%")));
+        let settings = settings::<S>(METHOD, setup, &on_top)?;
+        let run = match entry.restore(scene, &settings, &saved, &quick) {
+            Ok(run) => run,
+            Err(_) => entry.ready(scene, &settings, &quick)?,
+        };
+        runs.push(run.ok_or(PaperError::Cancelled)?);
+    }
+    let (mut judge, mut target, n) = (Judge::new(scene, setup), Target::default(), path.views.len());
+    let mut sums = vec![[0.0f64; 6]; runs.len()];
+    for (k, view) in path.views.iter().enumerate() {
+        stop_or_go(progress, 0.3 + 0.7 * k as f32 / n as f32, "comparing forms of the method")?;
+        judge.look(scene, view);
+        for (run, sum) in runs.iter_mut().zip(&mut sums) {
+            let (list, [cull, draw]) = frame(scene, &mut **run, view, &mut target);
+            let verdict = judge.judge(scene, view, &list);
+            let wrong = verdict.wrong_percent();
+            let add = [list.len() as f64, judge.coverage_percent(&verdict), wrong, 0.0, cull, draw];
+            (0..6).for_each(|i| sum[i] += add[i] / n as f64);
+            sum[3] = sum[3].max(wrong);
+        }
+    }
+    let about = about(scene, &path);
+    let row = |at: usize| {
+        let mut row: Vec<Cell> =
+            vec!["measured".into(), about.name.as_str().into(), FORMS[at % FORMS.len()].0.into(), STARTS[at / FORMS.len()].into()];
+        row.extend(sums[at].map(Cell::from));
+        row
+    };
+    Ok(((0..sums.len()).map(row).collect(), about))
+}
+
+fn plots(table: &Table) -> Vec<Plot> {
+    let bars = |(name, rows): (String, Vec<usize>)| {
+        let series = |at: usize, role: Role| {
+            let some = rows.iter().skip(at * FORMS.len()).take(FORMS.len()).enumerate();
+            let points = some.filter_map(|(i, &r)| Some((i as f64, table.number(r, "found_percent")?))).collect();
+            Series::new(format!("budget {} %", STARTS[at]), role, points)
+        };
+        Plot {
+            title: name,
+            x_label: String::new(),
+            y_label: "visible triangles found, %".into(),
+            shape: Shape::Bars { groups: FORMS.map(|f| f.0.to_owned()).to_vec(), stacked: false },
+            series: vec![series(0, Role::Partial), series(1, Role::Visible)],
+        }
+    };
+    by_scene(table).into_iter().map(bars).collect()
+}
