@@ -471,7 +471,7 @@ fn the_explorer_says_what_it_lacks_before_it_opens_a_window() {
 fn tables_of_the_paper_are_measured_and_written() {
     let here = folder("paper");
     let listed = done(&here, &["paper", "--list"]);
-    assert_eq!(listed.lines().count(), 14);
+    assert_eq!(listed.lines().count(), 16);
     let scene = ["--scene", "generate:building?polygons=3000", "--frames", "6", "--size", "96x64", "--check-every", "3"];
     let formats = ["--format", "csv,text,json,svg,pdf,png", "--out", "tables"];
     let text = done(&here, &with(&["paper", "coorg-teller-table-1"], &with(&scene, &formats)));

@@ -66,12 +66,21 @@ impl<S: Faces> Doubt<'_, S> {
             Footprint::Seen(image) => self.mark(image.pixels, image.nearest),
         }
     }
-    /// Marks what a primitive could change.
-    pub fn of_prim(&mut self, scene: &Scene<S>, prim: PrimId) {
-        match self.buffer.operands(scene, prim, &Options::default()) {
-            Some((extent, _)) => self.mark(extent.pixels, extent.nearest),
-            // It covers no pixel, or it is cut by the view volume and its box says enough.
-            None => self.of_box(&scene.prim_bounds(prim)),
+    /// Marks what a primitive could change; whether that is known.
+    pub fn of_prim(&mut self, scene: &Scene<S>, prim: PrimId) -> bool {
+        if let Some((extent, _)) = self.buffer.operands(scene, prim, &Options::default()) {
+            self.mark(extent.pixels, extent.nearest);
+            return true;
+        }
+        // It covers no pixel, or it is cut by the view volume and its box may say enough.
+        let Some((view, projection)) = self.buffer.view() else { return true };
+        match footprint(view, projection, &scene.prim_bounds(prim)) {
+            Footprint::Outside => true,
+            Footprint::CrossesNear => false,
+            Footprint::Seen(image) => {
+                self.mark(image.pixels, image.nearest);
+                true
+            }
         }
     }
     fn mark(&mut self, r: PixelRect, nearest: f32) {

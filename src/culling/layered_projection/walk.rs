@@ -171,7 +171,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// The share of the image that what is in view and not drawn could still change.
     fn doubt(&mut self, rest: &mut Rest<S>) -> f32 {
-        let (index, scene, eye) = (self.index, self.scene, self.view.eye.position);
+        let (index, scene, eye, planes) = (self.index, self.scene, self.view.eye.position, Frustum::<S::Vector>::ALL);
         let mut doubt = rest.doubt(self.view);
         for cell in (0..index.count() as u32).map(CellId).filter(|c| !index.assignment.own(*c).is_empty()) {
             if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside {
@@ -179,8 +179,13 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             }
         }
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
-            if !self.marks[number] && !(self.params.backface_culling && prim_faces_away(scene, eye, prim)) {
-                doubt.of_prim(scene, prim);
+            let faces = || !(self.params.backface_culling && prim_faces_away(scene, eye, prim));
+            let outside = || matches!(self.frustum.test(&scene.prim_bounds(prim), planes), FrustumTest::Outside(_));
+            // What the near plane may cut has no bound in the image: there are few of them, so they are drawn.
+            if !self.marks[number] && faces() && !outside() && !doubt.of_prim(scene, prim) {
+                self.marks[number] = true;
+                self.out.prims.push(prim);
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
             }
         }
         doubt.share()

@@ -38,7 +38,7 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
     let [right, wrong] = [Role::Paper, Role::Wrong].map(|role| encoded(tint(role)));
     let picture = |rgba: Vec<u8>| Picture::Pixels(Pixels { width: SIDE, height: SIDE, rgba: rgba.into() });
     let (mut upper, mut lower) = (Vec::new(), Vec::new());
-    let cells = [("transfer", "aligned"), ("penalty", "100"), ("leaf-size", "5")];
+    let cells = [("leaf-size", "5")];
     let ways = [("centroid", None), ("octree", Some("octree")), ("Delaunay", Some("delaunay"))];
     for (name, tessellation) in ways {
         let drawn = match tessellation {

@@ -125,7 +125,7 @@ fn arithmetic(transfer: &Transfer, name: char) -> Vec<String> {
         format!("     The ray from the center of {name} to the Eye leaves through the side that it shares with A: star-shaped, no penalty.")
     } else {
         format!(
-            "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, with the penalty ×2 = {:.2}.",
+            "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, with the penalty of 1 = {:.2}.",
             n("solidity")
         )
     };
