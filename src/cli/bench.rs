@@ -74,6 +74,7 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     });
     let views = views.collect::<Result<Vec<_>, _>>()?;
     let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else { return Err(CliError::Interrupted) };
+    occluders.draw_depths_only(true);
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
         output::write_file(path, |to| to.write_all(&measured.answers).map(|()| true))?;

@@ -9,6 +9,9 @@ pub struct Frustum<V> {
     pub eye: V,
     normals: [V; 6],
     offsets: [f32; 6],
+    /// The same by axes, for all planes at a time; the last ones repeat the first.
+    by_axis: [[f32; 8]; 3],
+    offsets_of_all: [f32; 8],
 }
 
 /// The result of one box against one plane, with its operands.
@@ -61,7 +64,7 @@ impl<V: Vector> Frustum<V> {
 
     pub(super) fn new(projection: &Projection<V>, near: f32, far: f32) -> Self {
         let forward = projection.rows[V::AXES - 1];
-        let mut frustum = Self { eye: projection.eye, normals: [forward; 6], offsets: [0.0; 6] };
+        let mut frustum = Self { eye: projection.eye, normals: [forward; 6], offsets: [0.0; 6], by_axis: [[0.0; 8]; 3], offsets_of_all: [0.0; 8] };
         let unit = |v: V| v * (1.0 / v.length());
         for axis in 0..V::AXES - 1 {
             frustum.normals[2 * axis] = unit(forward + projection.rows[axis]);
@@ -70,6 +73,11 @@ impl<V: Vector> Frustum<V> {
         let last = 2 * (V::AXES - 1);
         (frustum.normals[last], frustum.offsets[last]) = (forward, -near);
         (frustum.normals[last + 1], frustum.offsets[last + 1]) = (-forward, far);
+        for lane in 0..8 {
+            let plane = lane % Self::PLANES;
+            frustum.offsets_of_all[lane] = frustum.offsets[plane];
+            (0..V::AXES).for_each(|a| frustum.by_axis[a][lane] = frustum.normals[plane].get(a));
+        }
         frustum
     }
 
@@ -119,6 +127,25 @@ impl<V: Vector> Frustum<V> {
             cutting |= u8::from(!test.is_inside()) << plane;
         }
         if cutting == 0 { FrustumTest::Inside } else { FrustumTest::Partial(cutting) }
+    }
+
+    /// Whether a box lies wholly outside one of the planes: the very arithmetic of [`Frustum::test`], all planes at a time.
+    #[inline]
+    pub fn excludes(&self, bounds: &Aabb<V>) -> bool {
+        let (mut far, mut size) = (self.offsets_of_all, self.offsets_of_all.map(f32::abs));
+        for axis in 0..V::AXES {
+            let (min, max) = (bounds.min.get(axis) - self.eye.get(axis), bounds.max.get(axis) - self.eye.get(axis));
+            for (lane, n) in self.by_axis[axis].into_iter().enumerate() {
+                let (low, high) = (n * min, n * max);
+                far[lane] += if low > high { low } else { high };
+                size[lane] += if low.abs() > high.abs() { low.abs() } else { high.abs() };
+            }
+        }
+        let mut outside = 0;
+        for lane in 0..8 {
+            outside |= u32::from(far[lane] < -(size[lane] * ERROR_ULPS));
+        }
+        outside != 0
     }
 
     /// The corners of the volume: first the near ones, then the far ones, in the order of the image

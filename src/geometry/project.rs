@@ -37,8 +37,15 @@ impl PixelRect {
     /// The pixels whose centers lie within [`MARGIN_PX`] of the span `low..high` (x, then y), of an image of this size.
     #[inline]
     pub fn around(low: [f64; 2], high: [f64; 2], width: u32, height: u32) -> Self {
-        let first = |v: f64, size: u32| (v - (0.5 + MARGIN_PX)).ceil().clamp(0.0, f64::from(size)) as u32;
-        let past = |v: f64, size: u32| ((v + (MARGIN_PX - 0.5)).floor() + 1.0).clamp(0.0, f64::from(size)) as u32;
+        // Rounded by hand: the functions of the standard library are calls on machines that lack the instruction.
+        let first = |v: f64, size: u32| {
+            let v = (v - (0.5 + MARGIN_PX)).clamp(0.0, f64::from(size));
+            v as u32 + u32::from(f64::from(v as u32) < v)
+        };
+        let past = |v: f64, size: u32| {
+            let v = v + (MARGIN_PX - 0.5);
+            if v < 0.0 { 0 } else { (v.min(f64::from(size)) as u32 + 1).min(size) }
+        };
         Self { x0: first(low[0], width), x1: past(high[0], width), y0: first(low[1], height), y1: past(high[1], height) }
     }
 }
@@ -79,9 +86,8 @@ pub fn project_box<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near
     let image_axes = V::AXES - 1;
     let half = [f64::from(width) * 0.5, f64::from(height) * 0.5];
     let clips = corner_clips(projection, bounds);
-    let w = |clip: &[f64; 3]| clip[image_axes];
-    let corners = &clips[..Aabb::<V>::CORNERS];
-    let (nearest, farthest) = corners.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(n, f), c| (n.min(w(c)), f.max(w(c))));
+    let w = &clips[image_axes];
+    let [nearest, farthest] = extremes(w);
     let slack = reach(projection, bounds) * DEPTH_SLACK;
     if farthest < f64::from(near) - slack || nearest > f64::from(far) + slack {
         return Footprint::Outside;
@@ -89,23 +95,22 @@ pub fn project_box<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near
     if nearest <= f64::from(near) + slack {
         return Footprint::CrossesNear;
     }
-    let mut corners_px = [[half[0], half[1]]; 8];
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for (to, clip) in corners_px.iter_mut().zip(corners) {
-        let inverse = 1.0 / w(clip);
-        to[0] = half[0] + clip[0] * inverse * half[0];
+    let (mut x, mut y) = ([0.0; 8], [half[1]; 8]);
+    for i in 0..8 {
+        let inverse = 1.0 / w[i];
+        x[i] = half[0] + clips[0][i] * inverse * half[0];
         if image_axes == 2 {
-            to[1] = half[1] - clip[1] * inverse * half[1];
-        }
-        for a in 0..2 {
-            (low[a], high[a]) = (low[a].min(to[a]), high[a].max(to[a]));
+            y[i] = half[1] - clips[1][i] * inverse * half[1];
         }
     }
+    let (across, down) = (extremes(&x), extremes(&y));
+    let (low, high) = ([across[0], down[0]], [across[1], down[1]]);
     let beside = (0..2).any(|a| high[a] < -MARGIN_PX || low[a] > 2.0 * half[a] + MARGIN_PX);
     if beside {
         return Footprint::Outside;
     }
     let pixels = PixelRect::around(low, high, width, height);
+    let corners_px = std::array::from_fn(|i| [x[i], y[i]]);
     Footprint::Seen(BoxImage { corners_px, pixels, nearest: depth_of(nearest - slack, near) })
 }
 
@@ -113,7 +118,7 @@ pub fn project_box<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near
 #[inline]
 pub fn nearest_depth<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near: f32) -> f32 {
     let clips = corner_clips(projection, bounds);
-    let nearest = clips[..Aabb::<V>::CORNERS].iter().fold(f64::INFINITY, |n, c| n.min(c[V::AXES - 1]));
+    let [nearest, _] = extremes(&clips[V::AXES - 1]);
     depth_of(nearest - reach(projection, bounds) * DEPTH_SLACK, near)
 }
 
@@ -130,20 +135,38 @@ fn reach<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> f64 {
     (0..V::AXES).map(axis).sum::<f64>() * f64::from(1.0 + f32::EPSILON)
 }
 
-/// Clip coordinates of the corners, in the order of [`Aabb::corner`]: sums of what each axis adds.
+/// Clip coordinates of the corners, a row each, in the order of [`Aabb::corner`]: sums of what each axis adds. In flatland the
+/// four corners twice.
 #[inline]
-fn corner_clips<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> [[f64; 3]; 8] {
-    let mut clips = [[0.0; 3]; 8];
-    for a in 0..V::AXES {
+fn corner_clips<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> [[f64; 8]; 3] {
+    let mut clips = [[0.0; 8]; 3];
+    let ends = |a: usize| {
         let eye = f64::from(projection.eye.get(a));
-        let ends = [f64::from(bounds.min.get(a)) - eye, f64::from(bounds.max.get(a)) - eye];
-        for row in 0..V::AXES {
-            let r = f64::from(projection.rows[row].get(a));
-            let parts = ends.map(|e| r * e);
-            for (i, clip) in clips.iter_mut().enumerate() {
-                clip[row] += parts[i >> a & 1];
-            }
+        [f64::from(bounds.min.get(a)) - eye, f64::from(bounds.max.get(a)) - eye]
+    };
+    let (x, y, z) = (ends(0), ends(1), if V::AXES == 3 { ends(2) } else { [0.0; 2] });
+    for (row, clips) in projection.rows[..V::AXES].iter().zip(&mut clips) {
+        let r: [f64; 3] = std::array::from_fn(|a| if a < V::AXES { f64::from(row.get(a)) } else { 0.0 });
+        let (x, y, z) = (x.map(|e| r[0] * e), y.map(|e| r[1] * e), z.map(|e| r[2] * e));
+        let xy = [x[0] + y[0], x[1] + y[0], x[0] + y[1], x[1] + y[1]];
+        for (i, clip) in clips.iter_mut().enumerate() {
+            *clip = xy[i & 3] + z[i >> 2];
         }
     }
     clips
+}
+
+/// The least and the greatest; none is NaN.
+#[inline]
+fn extremes(v: &[f64; 8]) -> [f64; 2] {
+    // Halves against each other, which is SIMD; one after the other is not.
+    let lesser = |a: f64, b: f64| if a < b { a } else { b };
+    let greater = |a: f64, b: f64| if a > b { a } else { b };
+    let (mut low, mut high) = (*v, *v);
+    for half in [4, 2, 1] {
+        for i in 0..half {
+            (low[i], high[i]) = (lesser(low[i], low[i + half]), greater(high[i], high[i + half]));
+        }
+    }
+    [low[0], high[0]]
 }

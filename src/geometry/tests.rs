@@ -66,7 +66,9 @@ fn frustum_check<S: Space>(seed: u64) {
         let bounds = random_box(&mut rng, view.eye.position);
         let points: Vec<S::Vector> = bounds.corners().chain((0..8).map(|_| sample_in(&mut rng, &bounds))).collect();
         let clips: Vec<_> = points.iter().map(|&p| exact_clip(&view, p)).collect();
-        match view.frustum().test(&bounds, Frustum::<S::Vector>::ALL) {
+        let test = view.frustum().test(&bounds, Frustum::<S::Vector>::ALL);
+        assert_eq!(view.frustum().excludes(&bounds), matches!(test, FrustumTest::Outside(_)), "one test and all at a time: {bounds:?}");
+        match test {
             FrustumTest::Outside(test) => {
                 outside += 1;
                 assert!(test.far_corner < 0.0);

@@ -7,6 +7,8 @@
 //! Rows of a small triangle are one vector: three edge functions, one mask. Rows of a wide one are spans,
 //! whose ends follow from the edge functions by an exact division; then no edge is looked at per pixel.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::pyramid::Pyramid;
@@ -89,8 +91,9 @@ fn draw_in_bands(chunks: &mut Vec<Chunk>, frame: &Frame, mut sieve: Option<Sieve
             chunk.setups.iter().for_each(|s| sieve.pyramid.touch(s.rect()));
         }
     }
-    let rows = target.depth.par_chunks_mut(width * BAND_ROWS).zip(target.item.par_chunks_mut(width * BAND_ROWS));
-    rows.enumerate().for_each(|(number, (depth, item))| {
+    let mut items: Vec<&mut [u32]> = target.item.chunks_mut(width * BAND_ROWS).collect();
+    items.resize_with(bands, Default::default);
+    target.depth.par_chunks_mut(width * BAND_ROWS).zip(items).enumerate().for_each(|(number, (depth, item))| {
         let band = Band { depth, item, first_row: (number * BAND_ROWS) as i32, width };
         simd::run(options.isa, FillBand { chunks, number, band });
     });
@@ -174,26 +177,27 @@ pub(super) fn clip(camera: &Camera, corners: [Clip; 3]) -> impl Iterator<Item = 
 /// Some rows of the image.
 struct Band<'a> {
     depth: &'a mut [f32],
+    /// Empty where nobody wants to know.
     item: &'a mut [u32],
     first_row: i32,
     width: usize,
 }
 
-/// Fills the rows of a triangle that lie in the band.
+/// Fills the rows of a triangle that lie in the band; ids too if there are `ITEMS`.
 #[inline(always)]
-fn fill<L: Lanes>(l: L, s: &Setup, band: &mut Band) {
+fn fill<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band) {
     let y0 = s.y0.max(band.first_row);
     let y1 = s.y1.min(band.first_row + (band.depth.len() / band.width) as i32);
     if s.narrow && s.x1 - s.x0 <= L::N as i32 {
-        fill_small(l, s, band, y0, y1);
+        fill_small::<ITEMS, L>(l, s, band, y0, y1);
     } else {
-        fill_spans(l, s, band, y0, y1);
+        fill_spans::<ITEMS, L>(l, s, band, y0, y1);
     }
 }
 
 /// Rows that fit a vector, with 32-bit edge functions.
 #[inline(always)]
-fn fill_small<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
+fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     let columns = (s.x1 - s.x0) as usize;
     // Closures would not be compiled for the instruction set, so the three edges are written out.
     let [a, b, c] = &s.edges;
@@ -208,8 +212,18 @@ fn fill_small<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
         let at = (y - band.first_row) as usize * band.width + s.x0 as usize;
         let inside = l.none_negative(edge_a, edge_b, edge_c);
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
-        l.merge(&mut band.depth[at..at + columns], &mut band.item[at..at + columns], inside, z, s.id);
+        merge::<ITEMS, L>(l, band, at..at + columns, inside, z, s.id);
         (edge_a, edge_b, edge_c) = (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
+    }
+}
+
+/// Neighboring pixels, at most a vector of them.
+#[inline(always)]
+fn merge<const ITEMS: bool, L: Lanes>(l: L, band: &mut Band, at: Range<usize>, inside: L::M, z: L::F, id: u32) {
+    if ITEMS {
+        l.merge(&mut band.depth[at.clone()], &mut band.item[at], inside, z, id);
+    } else {
+        l.merge_depth(&mut band.depth[at], inside, z);
     }
 }
 
@@ -218,7 +232,7 @@ const SPAN_ROWS: usize = 16;
 
 /// Rows of any width, from the exact ends of their spans.
 #[inline(always)]
-fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
+fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
     let ahead = band.width * PREFETCH_ROWS;
@@ -237,10 +251,12 @@ fn fill_spans<L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
                 let past = row + end.min(x + L::N as i32) as usize;
                 // Rows are a page apart, which hardware does not foresee.
                 l.prefetch(band.depth.get(at + ahead));
-                l.prefetch(band.item.get(at + ahead));
+                if ITEMS {
+                    l.prefetch(band.item.get(at + ahead));
+                }
                 let along = l.mul(slope, l.ramp_f(center(x) - s.plane.x, 1 << SUBPIXEL_BITS));
                 let z = l.clamp(l.add(base, along), low, high);
-                l.merge(&mut band.depth[at..past], &mut band.item[at..past], l.all(), z, s.id);
+                merge::<ITEMS, L>(l, band, at..past, l.all(), z, s.id);
                 x += L::N as i32;
             }
         }
@@ -307,7 +323,14 @@ struct DrawAll<'a> {
 
 impl Work for DrawAll<'_> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self, l: L) {
+    fn run<L: Lanes>(self, l: L) {
+        if self.band.item.is_empty() { self.fill::<false, L>(l) } else { self.fill::<true, L>(l) }
+    }
+}
+
+impl DrawAll<'_> {
+    #[inline(always)]
+    fn fill<const ITEMS: bool, L: Lanes>(mut self, l: L) {
         for prims in self.prims.chunks(BATCH_PRIMS) {
             self.setups.clear();
             self.frame.set_up(prims, self.setups);
@@ -319,7 +342,7 @@ impl Work for DrawAll<'_> {
                     }
                     sieve.pyramid.touch(setup.rect());
                 }
-                fill(l, setup, &mut self.band);
+                fill::<ITEMS, L>(l, setup, &mut self.band);
             }
         }
     }
@@ -368,10 +391,17 @@ struct FillBand<'a> {
 
 impl Work for FillBand<'_> {
     #[inline(always)]
-    fn run<L: Lanes>(mut self, l: L) {
+    fn run<L: Lanes>(self, l: L) {
+        if self.band.item.is_empty() { self.fill::<false, L>(l) } else { self.fill::<true, L>(l) }
+    }
+}
+
+impl FillBand<'_> {
+    #[inline(always)]
+    fn fill<const ITEMS: bool, L: Lanes>(mut self, l: L) {
         for chunk in self.chunks {
             for &setup in &chunk.bands[self.number] {
-                fill(l, &chunk.setups[setup as usize], &mut self.band);
+                fill::<ITEMS, L>(l, &chunk.setups[setup as usize], &mut self.band);
             }
         }
     }

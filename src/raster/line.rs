@@ -23,11 +23,14 @@ pub(super) fn draw(target: &mut Target, mut sieve: Option<Sieve>, scene: &Scene<
             }
             sieve.pyramid.touch(pixels);
         }
-        let covered = pixels.x0 as usize..pixels.x1 as usize;
-        for ((x, depth), item) in (pixels.x0 as i32..).zip(&mut target.depth[covered.clone()]).zip(&mut target.item[covered]) {
-            let z = (plane.z + plane.dx * (center(x) - plane.x) as f32).max(plane.low).min(plane.high);
-            if z > *depth || z == *depth && prim.0 < *item {
-                (*depth, *item) = (z, prim.0);
+        for x in pixels.x0..pixels.x1 {
+            let z = (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high);
+            let (depth, item) = (&mut target.depth[x as usize], target.item.get_mut(x as usize));
+            if z > *depth || z == *depth && item.as_ref().is_some_and(|item| prim.0 < **item) {
+                *depth = z;
+                if let Some(item) = item {
+                    *item = prim.0;
+                }
             }
         }
     }

@@ -85,6 +85,8 @@ pub(super) trait Lanes: Copy {
     /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
     /// Touches the slices' lanes only: both have the same length, at most `N`.
     fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32);
+    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`]. At most `N` are given.
+    fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F);
 }
 
 mod portable {
@@ -151,6 +153,12 @@ mod portable {
                 let wins = inside & ((z > *depth) | ((z == *depth) & (id < *item)));
                 *depth = if wins { z } else { *depth };
                 *item = if wins { id } else { *item };
+            }
+        }
+        #[inline(always)]
+        fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F) {
+            for ((depth, inside), z) in depth.iter_mut().zip(inside).zip(z) {
+                *depth = if inside & (z > *depth) { z } else { *depth };
             }
         }
     }
@@ -261,6 +269,19 @@ mod x86 {
                 }
             }
         }
+        #[inline(always)]
+        fn merge_depth(self, depth: &mut [f32], inside: __m256i, z: __m256) {
+            let lanes = depth.len().min(8);
+            unsafe {
+                let held = _mm256_cmpgt_epi32(_mm256_set1_epi32(lanes as i32), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+                let inside = _mm256_and_si256(inside, held);
+                let old = _mm256_maskload_ps(depth.as_ptr(), inside);
+                let wins = _mm256_and_si256(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old)), inside);
+                if _mm256_testz_si256(wins, wins) == 0 {
+                    _mm256_maskstore_ps(depth.as_mut_ptr(), wins, z);
+                }
+            }
+        }
     }
 
     // SAFETY: as above.
@@ -334,6 +355,18 @@ mod x86 {
                 if wins != 0 {
                     _mm512_mask_storeu_ps(depth.as_mut_ptr(), wins, z);
                     _mm512_mask_storeu_epi32(item.as_mut_ptr().cast(), wins, ids);
+                }
+            }
+        }
+        #[inline(always)]
+        fn merge_depth(self, depth: &mut [f32], inside: __mmask16, z: __m512) {
+            let lanes = depth.len().min(16);
+            let inside = inside & ((1u32 << lanes) - 1) as u16;
+            unsafe {
+                let old = _mm512_maskz_loadu_ps(inside, depth.as_ptr());
+                let wins = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(inside, z, old);
+                if wins != 0 {
+                    _mm512_mask_storeu_ps(depth.as_mut_ptr(), wins, z);
                 }
             }
         }

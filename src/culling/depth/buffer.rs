@@ -1,13 +1,21 @@
 //! The z-buffer of a frame with its z-pyramid: the large state that a run changes and a film replays.
 
-use crate::geometry::{PixelRect, PrimId, Projection, View};
+use crate::geometry::{Frustum, PixelRect, PrimId, Projection, View};
 use crate::raster::{Drawable, Extent, Options, Pyramid, PyramidCell, Sieve, Target};
 use crate::scene::Scene;
+
+/// A view with what follows from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<S: Drawable> {
+    pub view: View<S>,
+    pub projection: Projection<S::Vector>,
+    pub frustum: Frustum<S::Vector>,
+}
 
 /// A depth image, its pyramid, and the view it is for.
 #[derive(Clone, Debug)]
 pub struct Buffer<S: Drawable> {
-    view: Option<(View<S>, Projection<S::Vector>)>,
+    sight: Option<Sight<S>>,
     target: Target,
     pyramid: Pyramid,
     hidden: Vec<PrimId>,
@@ -15,27 +23,35 @@ pub struct Buffer<S: Drawable> {
 
 impl<S: Drawable> Default for Buffer<S> {
     fn default() -> Self {
-        Self { view: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
+        Self { sight: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
     }
 }
 
 impl<S: Drawable> Buffer<S> {
-    /// The view it is for and its projection, once there is one.
+    /// The view it is for, once there is one.
     #[inline]
-    pub fn view(&self) -> Option<&(View<S>, Projection<S::Vector>)> {
-        self.view.as_ref()
+    pub fn sight(&self) -> Option<&Sight<S>> {
+        self.sight.as_ref()
     }
     /// Empties it for a view.
     pub fn begin(&mut self, view: &View<S>) {
-        self.view = Some((*view, view.projection()));
         self.target.clear(view);
+        self.look(view);
+    }
+    /// The same for depths alone, which queries need: nobody will look at which primitive shows where.
+    pub fn begin_depths(&mut self, view: &View<S>) {
+        self.target.clear_depths(view);
+        self.look(view);
+    }
+    fn look(&mut self, view: &View<S>) {
+        self.sight = Some(Sight { view: *view, projection: view.projection(), frustum: view.frustum() });
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }
     /// Draws primitives but for those that lie behind their pyramid cells, which are returned in the order of `prims`. The
     /// pyramid grows stale where something was drawn.
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) -> &[PrimId] {
         self.hidden.clear();
-        if let Some((view, _)) = &self.view {
+        if let Some(Sight { view, .. }) = &self.sight {
             let sieve = Sieve { pyramid: &mut self.pyramid, hidden: &mut self.hidden };
             S::sift(&mut self.target, sieve, scene, view, prims, options);
         }
@@ -43,7 +59,7 @@ impl<S: Drawable> Buffer<S> {
     }
     /// Draws primitives without asking the pyramid, which grows stale all over.
     pub fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
-        if let Some((view, _)) = &self.view {
+        if let Some(Sight { view, .. }) = &self.sight {
             S::draw(&mut self.target, scene, view, prims, options);
             self.pyramid.touch(options.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height }));
         }
@@ -51,7 +67,7 @@ impl<S: Drawable> Buffer<S> {
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid holds for it. The same
     /// before and after it was drawn: only refreshing changes what the pyramid holds.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
-        let extent = S::extent(scene, &self.view.as_ref()?.0, prim, options)?;
+        let extent = S::extent(scene, &self.sight.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
     /// Makes a part of the pyramid stale.

@@ -29,15 +29,23 @@ pub trait Faces: Drawable {
 pub struct FaceImage {
     /// The pixels whose centers it can cover.
     pub pixels: PixelRect,
-    /// Its sides as lines `x·a + y·b + c`, in pixels, negative outside; where there are none, the rectangle is all.
-    sides: [[f64; 3]; 4],
-    has_sides: bool,
+    sides: Sides,
+}
+
+/// Four sides as lines `x·a + y·b + c`, negative outside, and [`MARGIN_PX`] in the same measure, which is the pixel times the side's
+/// length. All zero where there is none: it bounds nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Sides {
+    a: [f64; 4],
+    b: [f64; 4],
+    c: [f64; 4],
+    margin: [f64; 4],
 }
 
 impl FaceImage {
     /// A face that covers a rectangle.
     pub fn rectangle(pixels: PixelRect) -> Self {
-        Self { pixels, sides: [[0.0; 3]; 4], has_sides: false }
+        Self { pixels, sides: Sides::default() }
     }
     /// Whether it may cover the center of a pixel of the rectangle.
     #[inline]
@@ -47,7 +55,9 @@ impl FaceImage {
             return false;
         }
         let (center, half) = centers(both);
-        !self.has_sides || self.sides.iter().all(|s| distance(s, center) + spread(s, half) >= -MARGIN_PX)
+        let s = &self.sides;
+        // All four at a time: which of them rejects is not to be foreseen.
+        (0..4).fold(true, |all, i| all & (s.distance(i, center) + s.spread(i, half) >= -s.margin[i]))
     }
     /// Whether it covers the centers of all pixels of the rectangle.
     #[inline]
@@ -55,7 +65,19 @@ impl FaceImage {
         let r = self.pixels;
         let inside = cell.x0 >= r.x0 && cell.x1 <= r.x1 && cell.y0 >= r.y0 && cell.y1 <= r.y1;
         let (center, half) = centers(cell);
-        inside && (!self.has_sides || self.sides.iter().all(|s| distance(s, center) >= spread(s, half)))
+        let s = &self.sides;
+        inside && (0..4).fold(true, |all, i| all & (s.distance(i, center) >= s.spread(i, half)))
+    }
+}
+
+impl Sides {
+    #[inline(always)]
+    fn distance(&self, i: usize, at: [f64; 2]) -> f64 {
+        self.a[i] * at[0] + self.b[i] * at[1] + self.c[i]
+    }
+    #[inline(always)]
+    fn spread(&self, i: usize, half: [f64; 2]) -> f64 {
+        self.a[i].abs() * half[0] + self.b[i].abs() * half[1]
     }
 }
 
@@ -66,20 +88,17 @@ fn centers(r: PixelRect) -> ([f64; 2], [f64; 2]) {
     let (w, h) = (f64::from(r.x1 - r.x0) - 1.0, f64::from(r.y1 - r.y0) - 1.0);
     ([x * 0.5, y * 0.5], [w * 0.5, h * 0.5])
 }
-#[inline]
-fn distance(side: &[f64; 3], at: [f64; 2]) -> f64 {
-    side[0] * at[0] + side[1] * at[1] + side[2]
-}
-#[inline]
-fn spread(side: &[f64; 3], half: [f64; 2]) -> f64 {
-    side[0].abs() * half[0] + side[1].abs() * half[1]
-}
-
 /// The bounds of a face's corners on the screen.
 #[inline]
 fn rect(corners: &[[f64; 2]], width: u32, height: u32) -> PixelRect {
-    let fold = |f: fn(f64, f64) -> f64, start: f64| corners.iter().fold([start; 2], |m, c| [f(m[0], c[0]), f(m[1], c[1])]);
-    PixelRect::around(fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY), width, height)
+    let (mut low, mut high) = (corners[0], corners[0]);
+    for c in &corners[1..] {
+        for a in 0..2 {
+            low[a] = if c[a] < low[a] { c[a] } else { low[a] };
+            high[a] = if c[a] > high[a] { c[a] } else { high[a] };
+        }
+    }
+    PixelRect::around(low, high, width, height)
 }
 
 impl Faces for Flat {
@@ -110,16 +129,18 @@ impl Faces for Solid {
         if area.abs() < LEAST_AREA {
             return face;
         }
-        for (i, side) in face.sides.iter_mut().enumerate() {
+        let turn = area.signum();
+        for i in 0..4 {
             let (from, along) = (p[i], minus(p[(i + 1) % 4], p[i]));
-            let length = along[0].hypot(along[1]);
+            let length_2 = along[0] * along[0] + along[1] * along[1];
             // A side of no length bounds nothing.
-            if length > 1e-9 {
-                let n = [-along[1] / length * area.signum(), along[0] / length * area.signum()];
-                *side = [n[0], n[1], -(n[0] * from[0] + n[1] * from[1])];
+            if length_2 > 1e-18 {
+                let n = [-along[1] * turn, along[0] * turn];
+                (face.sides.a[i], face.sides.b[i]) = (n[0], n[1]);
+                face.sides.c[i] = -(n[0] * from[0] + n[1] * from[1]);
+                face.sides.margin[i] = length_2.sqrt() * MARGIN_PX;
             }
         }
-        face.has_sides = true;
         face
     }
 }

@@ -1,18 +1,22 @@
 //! Is a box hidden by what is drawn so far? (Georges 1995, Section 3.2.)
 //!
-//! For each face of the box that faces the eye: the finest cell of the z-pyramid that covers the face's screen
-//! rectangle holds the farthest depth there. If the box's nearest point lies behind it, the face is hidden; else the
-//! four cells below are asked that the face touches, down to the pixels that it covers.
+//! First the at most four cells that cover the box's screen rectangle, and where one does not decide, those of the next
+//! two levels in it: what lies behind all of them is hidden, which decides for most of what is. Then, for each face of the
+//! box that faces the eye: the finest cell of the z-pyramid that covers the face's screen rectangle holds the farthest
+//! depth there. If the box's nearest point lies behind it, the face is hidden; else the four cells below are asked that
+//! the face touches, down to the pixels that it covers.
 //!
 //! Departures: the depth that is compared is that of the box's nearest corner for every face (the paper takes each
 //! face's own nearest vertex). Mostly it is the same corner; where it is not, a triangle that the rasterizer snapped to
 //! its grid may come nearer than the face it shows through, but never nearer than the whole box. And a cell that the
 //! face covers wholly and that is not farther ends the descent: some pixel of it shows the face.
 //!
-//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the image of
-//! the box, hence of one of its front faces, and its fragments are no nearer than its nearest vertex; depths that are
-//! equal count as visible, since ids then decide.
-//! Cost: a few cells where coarse levels decide; at worst the pixels along the face's outline.
+//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the image of the box,
+//! hence in its screen rectangle and so near to the image of one of its front faces; its fragments are no nearer than the
+//! box's nearest vertex; and depths that are equal count as visible, since ids then decide. A box out of view is told by
+//! the bound that also keeps its contents from being drawn ([`crate::geometry::Frustum::excludes`]).
+//! Cost: a box out of view takes one test of six planes at a time; one in view eight corners in SIMD and four cells where they
+//! decide; at worst the pixels along the outlines of its faces.
 
 use super::{Buffer, FaceImage, Faces, footprint};
 use crate::culling::evidence::short;
@@ -73,8 +77,8 @@ impl Outcome {
 /// A cell of the pyramid was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Read {
-    /// Number of the face among those that face the eye.
-    pub face: u8,
+    /// Number of the face among those that face the eye; `None` for the rectangle of the whole box.
+    pub face: Option<u8>,
     /// The cell.
     pub cell: PyramidCell,
     /// Its farthest depth and the box's nearest, `1/w`.
@@ -149,9 +153,14 @@ impl<S: Faces> Held<S> for &Buffer<S> {
 
 /// Whether a box is hidden by what is drawn for the buffer's view, by its front faces; `None` if it lies outside the view. A box
 /// that reaches the near plane is not hidden.
+#[inline]
 pub fn hides<S: Faces>(buffer: impl Held<S>, bounds: &Aabb<S::Vector>, listener: impl Listener) -> Option<Answer> {
-    let (view, projection) = *buffer.buffer().view()?;
-    match footprint(&view, &projection, bounds) {
+    let sight = buffer.buffer().sight()?;
+    if sight.frustum.excludes(bounds) {
+        return None;
+    }
+    let view = sight.view;
+    match footprint(&view, &sight.projection, bounds) {
         Footprint::Outside => None,
         Footprint::CrossesNear => Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None }),
         Footprint::Seen(image) => Some(Query::new(buffer, image.nearest, listener).faces(bounds, &image, &view)),
@@ -180,6 +189,9 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     }
     /// The same within a window of the image.
     pub fn faces_in(mut self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>, window: PixelRect) -> Answer {
+        if self.behind_whole(image.pixels.intersection(window)) {
+            return self.answer;
+        }
         let (faces, count) = S::front(bounds, view.eye.position);
         for (number, face) in faces[..count].iter().enumerate() {
             let mut face = S::image(*face, image, view.width, view.height);
@@ -200,30 +212,82 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         self.answer.is_hidden
     }
 
-    /// Whether the face lies behind all that is drawn in a cell.
-    fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+    /// Whether a rectangle that holds the box's image lies behind the at most four cells that cover it, or those a little below.
+    fn behind_whole(&mut self, pixels: PixelRect) -> bool {
+        if pixels.is_empty() {
+            return true;
+        }
+        let (first, last) = self.buffer.buffer().pyramid().cover(pixels);
+        for y in first.y..=last.y {
+            for x in first.x..=last.x {
+                if !self.behind_part(pixels, PyramidCell { level: first.level, x, y }, FINER) {
+                    // What was found so far decides nothing.
+                    self.answer.decisive = None;
+                    return false;
+                }
+            }
+        }
+        true
+    }
+    /// Whether it lies behind what of it a cell holds, or behind all of the cells in it that are at most so many levels finer.
+    fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
+        let held = self.look_at(cell);
         let nearest = self.answer.nearest;
-        let mut held = self.buffer.buffer().farthest(cell);
-        if nearest >= held && self.buffer.would_refresh(cell) {
+        let outcome = if nearest < held { Outcome::Behind } else { Outcome::Descends };
+        self.listener.reads(Read { face: None, cell, held, nearest, outcome });
+        if outcome == Outcome::Behind {
+            self.least(cell, held);
+            return true;
+        }
+        if finer == 0 || cell.level == 0 {
+            return false;
+        }
+        let level = cell.level - 1;
+        let along = |at: u16, first: u32, past: u32| (2 * at).max((first >> level) as u16)..=(2 * at + 1).min(((past - 1) >> level) as u16);
+        for y in along(cell.y, pixels.y0, pixels.y1) {
+            for x in along(cell.x, pixels.x0, pixels.x1) {
+                if !self.behind_part(pixels, PyramidCell { level, x, y }, finer - 1) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+    /// What the pyramid holds for a cell, brought up to date where that could decide.
+    #[inline]
+    fn look_at(&mut self, cell: PyramidCell) -> f32 {
+        self.answer.reads += 1;
+        let held = self.buffer.buffer().farthest(cell);
+        if self.answer.nearest >= held && self.buffer.would_refresh(cell) {
             self.listener.refreshes(cell);
             self.buffer.refresh(cell);
-            held = self.buffer.buffer().farthest(cell);
+            return self.buffer.buffer().farthest(cell);
         }
-        self.answer.reads += 1;
-        let pixels = cell.pixels(self.buffer.buffer().target().width, self.buffer.buffer().target().height);
+        held
+    }
+    /// Keeps the cell with the least margin.
+    #[inline]
+    fn least(&mut self, cell: PyramidCell, held: f32) {
+        if self.answer.decisive.is_none_or(|(_, least)| held < least) {
+            self.answer.decisive = Some((cell, held));
+        }
+    }
+
+    /// Whether the face lies behind all that is drawn in a cell.
+    fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+        let held = self.look_at(cell);
+        let nearest = self.answer.nearest;
         let outcome = if nearest < held {
             Outcome::Behind
-        } else if cell.level == 0 || cell.level <= TILE_LEVEL && face.covers(pixels) {
+        } else if cell.level == 0 || cell.level <= TILE_LEVEL && face.covers(self.pixels(cell)) {
             Outcome::Shows
         } else {
             Outcome::Descends
         };
-        self.listener.reads(Read { face: number, cell, held, nearest, outcome });
+        self.listener.reads(Read { face: Some(number), cell, held, nearest, outcome });
         match outcome {
             Outcome::Behind => {
-                if self.answer.decisive.is_none_or(|(_, least)| held < least) {
-                    self.answer.decisive = Some((cell, held));
-                }
+                self.least(cell, held);
                 true
             }
             Outcome::Shows => {
@@ -236,17 +300,24 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
 
     /// Whether the face lies behind all that is drawn in the cells below one.
     fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
-        let (width, height) = (self.buffer.buffer().target().width, self.buffer.buffer().target().height);
         for k in 0..4 {
             let child = PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
-            if face.touches(child.pixels(width, height)) && !self.behind(number, face, child) {
+            if face.touches(self.pixels(child)) && !self.behind(number, face, child) {
                 return false;
             }
         }
         true
     }
+    #[inline]
+    fn pixels(&self, cell: PyramidCell) -> PixelRect {
+        let target = self.buffer.buffer().target();
+        cell.pixels(target.width, target.height)
+    }
 }
 
+/// Levels by which the cells over a whole box are refined before its faces are asked for: one look at four cells takes in up to 16
+/// times the box's rectangle, one at the cells two levels below hardly more than it.
+const FINER: u8 = 2;
 /// The highest level whose cells know when they are stale: below it a cell that is not farther shows a pixel; above it
 /// it may only be out of date.
 const TILE_LEVEL: u8 = 4;

@@ -34,6 +34,11 @@ impl<S: Faces> Obscurer<S> {
         let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
         Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default() }))
     }
+    /// Whether only depths are drawn from now on: boxes can be asked for, and the image has no items. Half the memory to clear and
+    /// to fill.
+    pub fn draw_depths_only(&mut self, depths_only: bool) {
+        self.memory.depths_only = depths_only;
+    }
     /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns what was drawn.
     pub fn render(&mut self, view: &View<S>) -> DrawList {
         let mut list = DrawList::default();
@@ -42,7 +47,7 @@ impl<S: Faces> Obscurer<S> {
     }
     /// Forgets earlier frames.
     pub fn forget(&mut self) {
-        self.memory = Memory::default();
+        self.memory = Memory { depths_only: self.memory.depths_only, ..Memory::default() };
     }
     /// Whether a box is hidden by what was drawn last, by its front faces; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {

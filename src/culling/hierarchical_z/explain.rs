@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use super::line;
 use super::simulation::{Job, Unit, Worked};
 use crate::culling::depth::{Answer, Buffer, Faces, Listener, Read};
 use crate::culling::event::Tallied;
@@ -81,7 +82,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Listener for Asked<'_, S, O> {
     #[inline]
     fn reads(&mut self, read: Read) {
         let node = self.node;
-        self.watch.event(Event::Line(self.line));
+        self.watch.event(Event::Line(if read.face.is_none() && self.line == line::BEHIND { line::WHOLE } else { self.line }));
         self.watch.note(move || Evidence::Read(node, read));
     }
 }
@@ -299,7 +300,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Listed(n, _) | Self::Unlisted(n) => vec![integer("node", n.0)],
             Self::Tested(n) => n.fields(),
             Self::Read(node, n) => {
-                let mut fields = vec![integer("node", node.0), integer("face", n.face.into())];
+                let mut fields = vec![integer("node", node.0)];
+                fields.extend(n.face.map(|face| integer("face", face.into())));
                 fields.extend(cell_fields(n.cell));
                 fields.push(number("face_depth_units", units(n.nearest).into()));
                 fields.push(number("held_depth_units", units(n.held).into()));
@@ -340,7 +342,10 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Listed(n, false) => format!("Node {n} is on the visible list: it was drawn at the start of the frame, without a test."),
             Self::Unlisted(n) => format!("Node {n} cannot be seen in the finished image; it leaves the visible list with all below it."),
             Self::Tested(n) => n.sentence(),
-            Self::Read(node, n) => format!("Face {} of node {node} against {}: {}.", n.face + 1, place(n.cell), n.comparison()),
+            Self::Read(node, n) => {
+                let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
+                format!("{what} of node {node} against {}: {}.", place(n.cell), n.comparison())
+            }
             Self::Refreshed(cell) => {
                 format!("Something was drawn under {} since it was read: its tile is brought up to date, with all values above.", place(*cell))
             }

@@ -100,10 +100,11 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Draw:4", text: "    rasterize p; the pyramid follows" },
     CodeLine { label: "Obscured:1", text: "Obscured(cube C)" },
     CodeLine { label: "Obscured:2", text: "  if C crosses the near plane: return false" },
-    CodeLine { label: "Obscured:3", text: "  for each face F of C toward the eye" },
-    CodeLine { label: "Obscured:4", text: "    q := finest cell that covers F on the screen" },
-    CodeLine { label: "Obscured:5", text: "    if not Behind(F, q): return false" },
-    CodeLine { label: "Obscured:6", text: "  return true" },
+    CodeLine { label: "Obscured:3", text: "  if C is behind the few cells over its screen rectangle: return true" },
+    CodeLine { label: "Obscured:4", text: "  for each face F of C toward the eye" },
+    CodeLine { label: "Obscured:5", text: "    q := finest cell that covers F on the screen" },
+    CodeLine { label: "Obscured:6", text: "    if not Behind(F, q): return false" },
+    CodeLine { label: "Obscured:7", text: "  return true" },
     CodeLine { label: "Behind:1", text: "Behind(face F, cell q)" },
     CodeLine { label: "Behind:2", text: "  if the nearest depth of F is behind q: return true" },
     CodeLine { label: "Behind:3", text: "  if q is a pixel or F covers q: return false" },
@@ -127,7 +128,8 @@ mod line {
     pub const SKIP: u8 = 15;
     pub const RASTERIZE: u8 = 16;
     pub const NEAR: u8 = 18;
-    pub const BEHIND: u8 = 24;
+    pub const WHOLE: u8 = 19;
+    pub const BEHIND: u8 = 25;
 }
 
 /// What is kept from frame to frame.
@@ -141,12 +143,14 @@ pub struct Memory<S: Faces> {
     farthest: f32,
     /// The simulated machine's.
     lists: Lists,
+    /// Whether only depths are drawn: nobody will look at the image.
+    depths_only: bool,
     scratch: Scratch<S>,
 }
 
 impl<S: Faces> Default for Memory<S> {
     fn default() -> Self {
-        Self { listed: Vec::new(), frames: 0, farthest: 0.0, lists: Lists::default(), scratch: Scratch::default() }
+        Self { listed: Vec::new(), frames: 0, farthest: 0.0, lists: Lists::default(), depths_only: false, scratch: Scratch::default() }
     }
 }
 
@@ -277,12 +281,17 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         cubes.resize(index.nodes().len(), false);
         drawn.clear();
         drawn.resize(scene.prim_count(), false);
-        buffer.begin(view);
+        if memory.depths_only {
+            buffer.begin_depths(view)
+        } else {
+            buffer.begin(view)
+        }
         if params.machine.processors > 1 {
             Simulation::new(index, scene, view, params, buffer, drawn, &mut memory.lists, out, watch).run();
             return;
         }
-        let options = Options { backface_culling: params.backface_culling, threads: threads(), ..Options::default() };
+        // Not asked of the rasterizer, since each cube's primitives are asked as they are gathered.
+        let options = Options { backface_culling: false, threads: threads(), ..Options::default() };
         let frustum = view.frustum();
         let mut frame = Frame {
             index,

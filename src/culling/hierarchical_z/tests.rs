@@ -6,7 +6,7 @@ use rand_pcg::rand_core::Rng;
 use super::anatomy::figure_1;
 use super::explain::Evidence;
 use super::*;
-use crate::culling::depth::Outcome;
+use crate::culling::depth::{Outcome, hides};
 use crate::culling::{Recorder, Unobserved};
 use crate::geometry::{Flat, Solid};
 use crate::raster::{Target, render};
@@ -85,7 +85,18 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             let middle = S::Vector::from_fn(|_| unit() * 24.0 - 12.0);
             let half = S::Vector::from_fn(|_| unit() * unit() * 3.0);
             let bounds = Aabb { min: middle - half, max: middle + half };
-            let Footprint::Seen(image) = footprint(&view, &view.projection(), &bounds) else { continue };
+            let told = hides(&mut buffer, &bounds, Nobody).map(|answer| answer.is_hidden);
+            let image = match footprint(&view, &view.projection(), &bounds) {
+                Footprint::Seen(image) => image,
+                Footprint::CrossesNear => {
+                    assert_ne!(told, Some(true), "{bounds:?} reaches the near plane");
+                    continue;
+                }
+                Footprint::Outside => {
+                    assert_eq!(told, None, "{bounds:?} is outside");
+                    continue;
+                }
+            };
             let (points, prims) = shell(&bounds);
             let outside = Scene::<S>::new(Parts::simple("shell", points, prims)).expect("valid");
             let mut with = drawn.clone();
@@ -94,6 +105,7 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             let changed = |t: &Target| (0..t.depth.len()).any(|i| t.depth[i] != drawn.depth[i] || t.item[i] != drawn.item[i]);
             let answer = Query::new(&mut buffer, image.nearest, Nobody).faces(&bounds, &image, &view);
             assert!(!answer.is_hidden || !changed(&with), "{bounds:?} is called hidden and shows");
+            assert!(told != Some(!answer.is_hidden) && (told.is_some() || !changed(&with)), "{bounds:?}: asked for at once and by parts");
             let mut query = Query::new(&mut buffer, image.nearest, Nobody);
             let by_rectangle = query.face(0, &FaceImage::rectangle(image.pixels));
             assert!(!by_rectangle || answer.is_hidden, "what the rectangle hides, the faces do");
@@ -135,7 +147,7 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     for (form, interval) in [(0, 1), (0, 30), (1, 1), (1, 30)] {
         let params = Params { form, check_interval: interval, leaf_primitives: 4, ..Params::default() };
         let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
-        let mut memory = Memory::default();
+        let (mut memory, mut bare) = (Memory::default(), Memory { depths_only: true, ..Memory::default() });
         for view in crate::scene::random_views(&scene, 12, 3) {
             for step in 0..4 {
                 let mut view = View { width: 80, height: view.height.min(60), ..view };
@@ -143,7 +155,13 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
                 view.eye.target = view.eye.position + view.eye.forward();
                 let mut list = DrawList::default();
                 HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut Unobserved);
-                assert_eq!(render(&scene, &view, &list.prims), render(&scene, &view, scene.live()), "form {form}, interval {interval}");
+                let plain = render(&scene, &view, scene.live());
+                assert_eq!(render(&scene, &view, &list.prims), plain, "form {form}, interval {interval}");
+                assert_eq!(*memory.scratch.buffer.target(), plain, "form {form}, interval {interval}: its own image");
+                let mut same = DrawList::default();
+                HierarchicalZ::cull(&index, &scene, &view, &params, &mut bare, &mut same, &mut Unobserved);
+                assert_eq!(list, same, "form {form}, interval {interval}: by depths alone");
+                assert!(bare.scratch.buffer.target().item.is_empty() && bare.scratch.buffer.target().depth == plain.depth);
             }
         }
     }

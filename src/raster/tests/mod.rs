@@ -105,6 +105,10 @@ pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims:
                 target.item[i], target.depth[i], expected.item[i], expected.depth[i]
             );
         }
+        let mut depths = Target::default();
+        depths.clear_depths(view);
+        S::draw(&mut depths, scene, view, prims, &options);
+        assert!(depths.item.is_empty() && depths.depth == expected.depth, "{what}, {options:?}: depths alone");
     }
     expected
 }
