@@ -1,19 +1,22 @@
 //! What the parts of `hierarchical-z` cost: bringing the pyramid up to date, a query, and whole frames, at four image sizes.
 //!
-//! `cargo bench --no-default-features --bench hierarchical_z`. Frames of the walk with obscuration culling are paired and
+//! `cargo bench --no-default-features --bench hierarchical_z`. Last, the two-pass form on one thread and on two, interleaved. Frames of the walk with obscuration culling are paired and
 //! interleaved with view-frustum culling and drawing of the same views; each line ends with a hash of its result.
 
 use std::hint::black_box;
+use std::sync::Arc;
 
 use cullscope::culling::obscuration::Obscurer;
-use cullscope::culling::{Methods, Settings};
+use cullscope::culling::{Methods, Run, Settings};
 use cullscope::geometry::{Aabb, NodeId, Solid, View};
 use cullscope::measure::timed;
 use cullscope::measure::timing::{median, paired};
 use cullscope::raster::{Drawable, Options, Target};
-use cullscope::scene::{AnyScene, LoadOptions, Quiet, load};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use glam::Vec3;
 
+/// Threads that the two-pass form is measured on, against one.
+const THREADS: usize = 2;
 const SIZES: [[u32; 2]; 4] = [[256, 256], [512, 512], [1024, 1024], [1920, 1080]];
 const ROUNDS: usize = 9;
 /// Views along the path.
@@ -52,36 +55,69 @@ fn main() {
                 100.0 * hidden,
                 hash(answers.into_iter())
             );
-            let mut target = Target::default();
-            let (mut all, mut kept) = (0, 0);
-            let result = paired(
-                ROUNDS,
-                || {
-                    for view in &views {
-                        let list = frustum.cull(view);
-                        target.clear(view);
-                        Solid::draw(&mut target, &scene, view, &list.prims, &Options::default());
-                        all = list.prims.len();
-                        black_box(&target);
-                    }
-                },
-                || {
-                    for view in &views {
-                        kept = occluders.render(view).prims.len();
-                        black_box(occluders.target());
-                    }
-                },
-            );
-            println!(
-                "{source} {width}x{height}: frame {:.2} ms against {:.2} ms culled by frustum: ×{:.3} (quartiles {:.3} to {:.3}), last view {} of {} drawn",
-                result.b_ms / views.len() as f64,
-                result.a_ms / views.len() as f64,
-                result.ratio,
-                result.spread[0],
-                result.spread[1],
-                kept,
-                all
-            );
+            frames(source, &scene, &views, &mut frustum, &mut occluders);
+            threads(source, &scene, &views);
         }
     }
+}
+
+/// Frames against those culled by the frustum.
+fn frames(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>], frustum: &mut Box<dyn Run<Solid>>, occluders: &mut Obscurer<Solid>) {
+    let mut target = Target::default();
+    let (mut all, mut kept) = (0, 0);
+    let result = paired(
+        ROUNDS,
+        || {
+            for view in views {
+                let list = frustum.cull(view);
+                target.clear(view);
+                Solid::draw(&mut target, scene, view, &list.prims, &Options::default());
+                all = list.prims.len();
+                black_box(&target);
+            }
+        },
+        || {
+            for view in views {
+                kept = occluders.render(view).prims.len();
+                black_box(occluders.target());
+            }
+        },
+    );
+    println!(
+        "{source} {}x{}: frame {:.2} ms against {:.2} ms culled by frustum: ×{:.3} (quartiles {:.3} to {:.3}), last view {kept} of {all} drawn",
+        views[0].width,
+        views[0].height,
+        result.b_ms / views.len() as f64,
+        result.a_ms / views.len() as f64,
+        result.ratio,
+        result.spread[0],
+        result.spread[1],
+    );
+}
+
+/// The two-pass form on several threads against itself on one.
+fn threads(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>]) {
+    let settings = Settings([("form".to_owned(), "two-pass".to_owned())].into());
+    let run = |threads: usize| {
+        let mut occluders = Obscurer::new(scene, &settings, &Quiet).expect("fine").expect("built");
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        move || {
+            pool.install(|| {
+                for view in views {
+                    black_box(occluders.render(view));
+                }
+            });
+        }
+    };
+    let result = paired(ROUNDS, run(1), run(THREADS));
+    println!(
+        "{source} {}x{}: two-pass frame {:.2} ms on {THREADS} threads against {:.2} ms on one: ×{:.3} (quartiles {:.3} to {:.3})",
+        views[0].width,
+        views[0].height,
+        result.b_ms / views.len() as f64,
+        result.a_ms / views.len() as f64,
+        result.ratio,
+        result.spread[0],
+        result.spread[1],
+    );
 }
