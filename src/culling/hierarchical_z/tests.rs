@@ -1,5 +1,6 @@
 //! The paper's worked example, and queries against brute force.
 
+use glam::Vec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
@@ -8,7 +9,7 @@ use super::explain::Evidence;
 use super::*;
 use crate::culling::depth::{Outcome, hides};
 use crate::culling::{Recorder, Unobserved};
-use crate::geometry::{Flat, Solid};
+use crate::geometry::{Eye, Flat, Solid};
 use crate::raster::{Target, render};
 use crate::scene::Parts;
 
@@ -227,14 +228,70 @@ fn the_simulated_machine_draws_the_plain_image() {
     machines::<Solid>(|c| c);
 }
 
+/// Boxes of all sizes just before, at and just behind a wall that fills the image: only the last are hidden.
+#[test]
+fn a_wall_hides_what_lies_behind_it_only() {
+    let points = [(-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0)].map(|(x, y)| Vec3::new(x, y, -10.0)).into();
+    let scene = Scene::<Solid>::new(Parts::simple("a wall", points, vec![[0, 1, 2], [0, 2, 3]])).expect("valid");
+    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 100.0 };
+    let mut buffer = Buffer::default();
+    buffer.begin_depths(&View { eye, width: 200, height: 150 });
+    buffer.draw(&scene, scene.live(), &Options::default());
+    for half in [0.3, 1.0, 4.0] {
+        for (x, y) in [(0.0, 0.0), (-3.0, 2.0), (5.0, -4.0), (7.0, 6.0)] {
+            for (depth, is_hidden) in [(9.95, false), (9.999, false), (10.0, false), (10.001, true), (12.0, true)] {
+                let bounds = Aabb { min: Vec3::new(x - half, y - half, -depth - half), max: Vec3::new(x + half, y + half, -depth) };
+                let told = hides(&mut buffer, &bounds, Nobody).map(|a| a.is_hidden);
+                assert_eq!(told, Some(is_hidden), "{half} wide at ({x}, {y}), {depth} deep");
+            }
+        }
+    }
+}
+
+/// A structure over two regions of the screen, hidden in one and seen in the other: it is drawn whichever answers last.
+#[test]
+fn a_structure_shows_if_one_region_says_so() {
+    for side in [-1.0, 1.0] {
+        let mut points: Vec<_> = [(0.0, -6.0), (0.0, 6.0), (6.0, 6.0), (6.0, -6.0)].map(|(x, y)| glam::vec3(x * side, y, -5.0)).into();
+        let mut prims = vec![[0, 1, 2], [0, 2, 3]];
+        for k in 0..6 {
+            let (x, first) = (k as f32 * 0.4 - 1.2, points.len() as u32);
+            points.extend([(x, 0.5), (x + 0.4, 0.5), (x, 1.5)].map(|(x, y)| glam::vec3(x, y, -10.0)));
+            prims.push([first, first + 1, first + 2]);
+        }
+        let scene = Arc::new(Scene::<Solid>::new(Parts::simple("a row half behind a wall", points, prims)).expect("valid"));
+        for (renderers, overlap) in [(1, true), (2, true), (2, false)] {
+            let machine = Machine { processors: 2, renderers, overlap, farthest_first: false, ..Machine::default() };
+            let params = Params { machine, leaf_primitives: 6, ..Params::default() };
+            let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+            let (mut memory, mut asked) = (Memory::default(), Recorder::new(usize::MAX));
+            // First the row lies beyond the far plane, so that the wall is on the list alone.
+            for far in [8.0, 100.0] {
+                let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far };
+                let view = View { eye, width: 256, height: 128 };
+                let mut list = DrawList::default();
+                HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut asked);
+                assert_eq!(render(&scene, &view, &list.prims), render(&scene, &view, scene.live()), "wall at {side}, {renderers} renderers");
+            }
+            let answers = asked.notes.iter().filter(|n| matches!(n, Evidence::Worked(w) if w.job == super::simulation::Job::Answer));
+            let told: Vec<u32> = answers.map(|n| if let Evidence::Worked(w) = n { w.count } else { 0 }).collect();
+            assert!(told.contains(&0) && told.contains(&1), "one region hides it and one shows it: {told:?}");
+        }
+    }
+}
+
 #[test]
 fn threads_leave_no_trace() {
     let mut rng = Pcg32::new(7, 9);
     let scene = soup::<Solid>(&mut rng, 6000, |c| c);
     for form in [0, 1] {
-        let params = Params { form, ..Params::default() };
+        let params = Params { form, leaf_primitives: 16, ..Params::default() };
         let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
         let views = crate::scene::random_views(&scene, 5, 4);
+        let (mut memory, mut watch) = (Memory::default(), Recorder::new(usize::MAX));
+        views.iter().for_each(|v| HierarchicalZ::cull(&index, &scene, v, &params, &mut memory, &mut DrawList::default(), &mut watch));
+        let hidden = watch.events.iter().filter(|e| matches!(e, Event::DecidedNode(_, Verdict::Hidden))).count();
+        assert!(hidden > 20, "{hidden} cubes are hidden");
         let run = || {
             let mut memory = Memory::default();
             let frame = |view: &View<Solid>| {

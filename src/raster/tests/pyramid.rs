@@ -84,3 +84,28 @@ fn windows_put_together_are_the_image() {
         assert!(target == whole);
     }
 }
+
+/// A primitive that the near plane cuts falls into parts; where the pyramid hides one of them, another may show.
+#[test]
+fn parts_of_a_primitive_are_not_judged() {
+    let mut dice = Dice::new(8);
+    let view = straight_view(64, 0.1, 100.0);
+    let mut cut = 0;
+    for _ in 0..400 {
+        let edge = f64::from(dice.between(8.0, 56.0));
+        let [a, b, c, d] = [(-4.0, -4.0), (-4.0, 68.0), (edge, 68.0), (edge, -4.0)].map(|(x, y)| at_px(64, x, y, 0.2));
+        let [p, q] =
+            [(); 2].map(|()| at_px(64, f64::from(dice.between(0.0, 64.0)), f64::from(dice.between(0.0, 64.0)), f64::from(dice.between(1.0, 20.0))));
+        let behind = Vec3::new(dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), dice.between(0.5, 5.0));
+        let scene = soup(&[[a, b, c], [a, c, d], [p, q, behind]]);
+        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
+        pyramid.clear(64, 64, 1.0 / view.eye.far);
+        for part in scene.live().chunks(2) {
+            Solid::sift(&mut target, Sieve { pyramid: &mut pyramid, hidden: &mut hidden }, &scene, &view, part, &Options::default());
+            pyramid.refresh_all(&target.depth);
+        }
+        cut += usize::from(Solid::extent(&scene, &view, PrimId(2), &Options::default()).is_none() && target.item.contains(&2));
+        assert!(hidden.iter().all(|h| !target.item.contains(&h.0)), "what is called hidden shows");
+    }
+    assert!(cut > 100, "{cut} show and are cut");
+}
