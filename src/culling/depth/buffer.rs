@@ -28,7 +28,11 @@ impl<S: Drawable> Default for Buffer<S> {
 }
 
 impl<S: Drawable> Buffer<S> {
-    /// The view it is for, once there is one.
+    /// The view it is for and its projection, once there is one.
+    pub fn view(&self) -> Option<(&View<S>, &Projection<S::Vector>)> {
+        self.sight.as_ref().map(|s| (&s.view, &s.projection))
+    }
+    /// The same with its frustum.
     #[inline]
     pub fn sight(&self) -> Option<&Sight<S>> {
         self.sight.as_ref()

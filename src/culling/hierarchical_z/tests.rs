@@ -283,30 +283,11 @@ fn a_structure_shows_if_one_region_says_so() {
 #[test]
 fn threads_leave_no_trace() {
     let mut rng = Pcg32::new(7, 9);
-    // Two clouds of triangles and a wall between them, looked at from both sides.
-    let mut unit = || (rng.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
-    let mut points: Vec<Vec3> = [(-30.0, -30.0), (30.0, -30.0), (30.0, 30.0), (-30.0, 30.0)].map(|(x, y)| Vec3::new(x, y, 0.0)).into();
-    let mut prims = vec![[0, 1, 2], [0, 2, 3]];
-    for k in 0..6000 {
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
-        let middle = Vec3::new(unit() * 20.0 - 10.0, unit() * 20.0 - 10.0, side * (1.0 + unit() * 10.0));
-        prims.push([0, 1, 2].map(|c| points.len() as u32 + c));
-        points.extend([(); 3].map(|()| middle + Vec3::new(unit(), unit(), unit()) * 0.5));
-    }
-    let scene = Arc::new(Scene::<Solid>::new(Parts::simple("two clouds and a wall", points, prims)).expect("valid"));
-    let view = |z: f32, x: f32| {
-        let position = Vec3::new(x, 1.0, z);
-        let eye = Eye { position, target: Vec3::ZERO, up: Vec3::Y, fov: 1.0, near: 0.5, far: 100.0 };
-        View { eye, width: 200, height: 150 }
-    };
-    let views = [view(30.0, 0.0), view(30.0, 0.5), view(29.0, 8.0), view(-30.0, 2.0), view(-30.0, 3.0)];
+    let scene = soup::<Solid>(&mut rng, 6000, |c| c);
     for form in [0, 1] {
-        let params = Params { form, leaf_primitives: 16, ..Params::default() };
+        let params = Params { form, ..Params::default() };
         let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
-        let (mut memory, mut watch) = (Memory::default(), Recorder::new(usize::MAX));
-        views.iter().for_each(|v| HierarchicalZ::cull(&index, &scene, v, &params, &mut memory, &mut DrawList::default(), &mut watch));
-        let hidden = watch.events.iter().filter(|e| matches!(e, Event::DecidedNode(_, Verdict::Hidden))).count();
-        assert!(hidden >= 8, "{hidden} cubes are hidden");
+        let views = crate::scene::random_views(&scene, 5, 4);
         let run = || {
             let mut memory = Memory::default();
             let frame = |view: &View<Solid>| {
