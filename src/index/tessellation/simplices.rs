@@ -108,10 +108,18 @@ impl<S: Cellular> SimplexCells<S> {
     fn side(&self, cell: &Simplex, face: usize, point: S::Vector) -> f64 {
         S::side(&self.face(cell, face)[..S::CORNERS], point)
     }
+    #[inline]
     pub(super) fn corners(&self, cell: CellId) -> [S::Vector; 4] {
         let vertices = self.cells[cell.at()].vertices;
         std::array::from_fn(|k| self.points[vertices[if k < Self::CORNERS { k } else { 0 }] as usize])
     }
+}
+
+/// The mean of a simplex's corners.
+#[inline]
+fn middle<S: Cellular>(corners: &[S::Vector; 4]) -> S::Vector {
+    let count = S::Vector::AXES + 1;
+    corners[..count].iter().fold(S::Vector::default(), |sum, p| sum + *p * (1.0 / count as f32))
 }
 
 impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
@@ -122,8 +130,7 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
         Aabb::of(self.corners(cell))
     }
     fn center(&self, cell: CellId) -> S::Vector {
-        let corners = self.corners(cell);
-        corners[..Self::CORNERS].iter().fold(S::Vector::default(), |sum, p| sum + *p * (1.0 / Self::CORNERS as f32))
+        middle::<S>(&self.corners(cell))
     }
     fn contains(&self, cell: CellId, point: S::Vector) -> bool {
         let simplex = &self.cells[cell.at()];
@@ -147,18 +154,17 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
         None
     }
     fn exit(&self, from: CellId, point: S::Vector) -> Exit {
-        let simplex = &self.cells[from.at()];
-        let center = Tessellation::<S>::center(self, from);
+        let corners = self.corners(from);
+        let center = middle::<S>(&corners);
         let way = point - center;
         // When the way meets the plane of each face; parts of 1.
         let (mut first, mut through) = (f32::INFINITY, NONE);
-        for face in 0..Self::CORNERS {
-            let corners = self.face(simplex, face);
-            let inward = S::normal(&corners[..S::CORNERS]);
+        for (face, [a, b, c]) in FACES[S::Vector::AXES - 2].into_iter().enumerate().take(Self::CORNERS) {
+            let inward = S::normal(&[corners[a], corners[b], corners[c]][..S::CORNERS]);
             let speed = -inward.dot(way);
-            let at = if speed > 0.0 { inward.dot(center - corners[0]) / speed } else { f32::INFINITY };
+            let at = if speed > 0.0 { inward.dot(center - corners[a]) / speed } else { f32::INFINITY };
             if at < first {
-                (first, through) = (at, simplex.neighbors[face]);
+                (first, through) = (at, self.cells[from.at()].neighbors[face]);
             }
         }
         match through {
