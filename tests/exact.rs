@@ -83,13 +83,15 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
 }
 
 /// The methods that draw fewer primitives than all, and promise to miss none.
-const METHODS: [(&str, &[(&str, &str)]); 6] = [
+const METHODS: [(&str, &[(&str, &str)]); 8] = [
     ("frustum", &[]),
     ("large-occluders", &[]),
     ("hierarchical-z", &[]),
     ("hierarchical-z", &[("coherence", "false"), ("query", "rectangles"), ("redistribution", "split")]),
     ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
     ("hierarchical-z", &[("processors", "4"), ("leaf-primitives", "256")]),
+    ("layered-projection", &[("budget", "2%"), ("queries", "true")]),
+    ("layered-projection", &[("budget", "5%"), ("queries", "true"), ("tessellation", "octree"), ("seeds", "16")]),
 ];
 
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
