@@ -49,7 +49,7 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let Ready { mut run, path, bar, .. } = args.task.ready(scene)?;
     if let Some((_, time)) = run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_)))) {
         let why = "what fits into a time differs from run to run, and a trace must not";
-        return Err(CliError::words(&format!("--set budget={time}"), why)
+        return Err(CliError::words(format!("--set budget={time}"), why)
             .with_help("give a number of primitives; `cullscope cull` prints how many were drawn"));
     }
     let (detail, name) = match args.detail {

@@ -66,11 +66,10 @@ pub fn frame_within<S: Drawable>(run: &mut dyn Run<S>, scene: &Arc<Scene<S>>, vi
 
 /// The milliseconds of a run's budget, if it is a time.
 fn time_of<S: Drawable>(run: &dyn Run<S>) -> Option<f64> {
-    let times = run.knobs().into_iter().filter_map(|(_, value)| match value {
+    run.knobs().into_iter().find_map(|(_, value)| match value {
         KnobValue::Budget(Budget::Milliseconds(ms)) => Some(f64::from(ms)),
         _ => None,
-    });
-    times.last()
+    })
 }
 
 /// A run that keeps the deadline which its budget names, if it names one.

@@ -96,7 +96,8 @@ impl Read {
             Outcome::Descends => "not behind, descend",
             Outcome::Shows => "not behind: visible",
         };
-        format!("face {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
+        let what = if self.face.is_some() { "face" } else { "box" };
+        format!("{what} {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
     }
 }
 

@@ -175,6 +175,8 @@ impl Seen {
 const NUMBERED: usize = 64;
 /// The least distance of two labels, as a part of the scene's diagonal.
 const LABELS_APART: f32 = 0.06;
+/// Cells of the front that are outlined in space.
+const NEXT_IN_SPACE: usize = 24;
 /// Cells of the front that are labeled in a picture of flatland.
 const LABELED: usize = 200;
 
@@ -386,7 +388,9 @@ fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut
 
 /// Draws the front, the latest projected cells, and the evidence of a note.
 pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
-    seen.front.keys().for_each(|&cell| outline(index, cell, Layer::Nodes, Role::Undecided, to));
+    // In space the edges of many cells hide each other and the scene: those that are next say more.
+    let shown = if S::Vector::AXES == 2 { usize::MAX } else { NEXT_IN_SPACE };
+    seen.in_order().into_iter().take(shown).for_each(|(cell, _)| outline(index, cell, Layer::Nodes, Role::Undecided, to));
     if S::Vector::AXES == 2 {
         labels(seen, scene, index, to);
     }

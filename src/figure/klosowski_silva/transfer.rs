@@ -221,8 +221,8 @@ mod tests {
             let n = |key: &str| t.number(key);
             let sum = n("held") / n("rho_max") + n("alignment") * n("from_solidity");
             assert!((sum - n("transferred")).abs() < 1e-5);
-            let factor = if t.is_star_shaped() { 1.0 } else { 2.0 };
-            assert!((sum * factor - n("solidity")).abs() < 1e-5);
+            let penalty = if t.is_star_shaped() { 0.0 } else { 1.0 };
+            assert!((sum + penalty - n("solidity")).abs() < 1e-5);
             let (v, normal) = (t.vector("view_direction"), t.vector("normal"));
             assert!((f64::from(v.dot(normal)) - n("alignment")).abs() < 1e-5);
             // The picture's normal is that of the shared side, away from A; its view direction goes to the center.

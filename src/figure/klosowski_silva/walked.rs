@@ -50,6 +50,7 @@ impl Moment {
             let (kind, fields) = film.fields(at);
             match kind {
                 "CellSeeded" => _ = moment.front.insert(node(&fields, "node"), 0.0),
+                "SolidityTransferred" if number(&fields, "keeps") == Some(1.0) => {}
                 "SolidityTransferred" => {
                     moment.front.insert(node(&fields, "node"), number(&fields, "solidity").unwrap_or_default() as f32);
                 }
