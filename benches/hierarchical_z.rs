@@ -10,7 +10,7 @@ use cullscope::culling::obscuration::Obscurer;
 use cullscope::culling::{Methods, Run, Settings};
 use cullscope::geometry::{Aabb, NodeId, Solid, View};
 use cullscope::measure::timed;
-use cullscope::measure::timing::{median, paired};
+use cullscope::measure::timing::{Paired, median, paired};
 use cullscope::raster::{Drawable, Options, Target};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use glam::Vec3;
@@ -83,16 +83,7 @@ fn frames(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>], frustu
             }
         },
     );
-    println!(
-        "{source} {}x{}: frame {:.2} ms against {:.2} ms culled by frustum: ×{:.3} (quartiles {:.3} to {:.3}), last view {kept} of {all} drawn",
-        views[0].width,
-        views[0].height,
-        result.b_ms / views.len() as f64,
-        result.a_ms / views.len() as f64,
-        result.ratio,
-        result.spread[0],
-        result.spread[1],
-    );
+    say(source, views, &result, ["frame", "culled by frustum"], &format!(", last view {kept} of {all} drawn"));
 }
 
 /// The two-pass form on several threads against itself on one.
@@ -110,8 +101,13 @@ fn threads(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>]) {
         }
     };
     let result = paired(ROUNDS, run(1), run(THREADS));
+    say(source, views, &result, [&format!("two-pass frame on {THREADS} threads"), "on one"], "");
+}
+
+/// One line: a frame of the second way, of the first, and their ratio.
+fn say(source: &str, views: &[View<Solid>], result: &Paired, [second, first]: [&str; 2], more: &str) {
     println!(
-        "{source} {}x{}: two-pass frame {:.2} ms on {THREADS} threads against {:.2} ms on one: ×{:.3} (quartiles {:.3} to {:.3})",
+        "{source} {}x{}: {second} {:.2} ms against {:.2} ms {first}: ×{:.3} (quartiles {:.3} to {:.3}){more}",
         views[0].width,
         views[0].height,
         result.b_ms / views.len() as f64,

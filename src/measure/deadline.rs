@@ -6,6 +6,7 @@
 //! machine, so a film is recorded with the number of primitives that the timed frame drew: it shows that frame, on any
 //! machine. [`paced`] gives a run whose budget is a time this behavior; [`frame_within`] is one such frame.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::timing::Stopwatch;
@@ -99,8 +100,13 @@ impl<S: Drawable> Paced<S> {
     fn counted<T>(&mut self, view: &View<S>, work: impl FnOnce(&mut dyn Run<S>) -> T) -> T {
         let known = self.drawn.iter().rev().find(|(of, _)| of == view).map(|(_, n)| *n);
         let count = known.unwrap_or_else(|| self.cull(view).prims.len() as u32);
+        let drawn = AtomicUsize::new(0);
+        // Also ended from outside, as the timed frame was: what a method does after a budget of its own does not follow.
+        let limit: Limit = Arc::new(move |prims: &[PrimId]| drawn.fetch_add(prims.len(), Ordering::Relaxed) + prims.len() >= count as usize);
         self.run.set_budget(Budget::Count(count));
+        self.run.limit(Some(limit));
         let result = work(&mut *self.run);
+        self.run.limit(None);
         self.run.set_budget(Budget::Milliseconds(self.ms as f32));
         result
     }
@@ -157,7 +163,10 @@ mod tests {
     use crate::scene::{Quiet, random_views, samples};
 
     fn ready<S: Methods + Drawable>(method: &str, budget: &str, scene: &Arc<Scene<S>>) -> Box<dyn Run<S>> {
-        let settings = Settings([("budget".to_owned(), budget.to_owned())].into());
+        ready_with(method, &[("budget", budget)], scene)
+    }
+    fn ready_with<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>) -> Box<dyn Run<S>> {
+        let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
         S::method(method).expect("listed").ready(scene, &settings, &Quiet).expect("it fits").expect("not cancelled")
     }
 
@@ -177,6 +186,11 @@ mod tests {
             assert_eq!(budget_of(recording.film.knobs()), Some(list.prims.len().to_string()));
             assert_eq!(budget_of(&run.knobs()).as_deref(), Some(budget));
         }
+        let asking = ready_with("layered-projection", &[("budget", "0.000001ms"), ("queries", "true")], scene);
+        let mut asking = paced(asking, scene).expect("it can be ended");
+        let list = asking.cull(&view);
+        assert!(list.prims.len() < whole.prims.len(), "a deadline also ends what follows a budget");
+        assert_eq!(asking.record(&view, usize::MAX).list, list);
         let frame = frame_within(&mut *all, scene, &view, Target::default(), 1e9);
         assert_eq!(frame.image.item, render(scene, &view, &frame.list.prims).item);
     }

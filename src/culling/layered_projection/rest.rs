@@ -24,8 +24,10 @@ impl<S: Faces> Rest<S> {
     }
     /// Draws what was added to the frame's primitives.
     pub fn catch_up(&mut self, scene: &Scene<S>, prims: &[PrimId]) {
-        self.buffer.draw(scene, &prims[self.drawn..], &Options::default());
-        self.drawn = prims.len();
+        if self.drawn < prims.len() {
+            self.buffer.draw(scene, &prims[self.drawn..], &Options::default());
+            self.drawn = prims.len();
+        }
     }
     /// Whether a box is hidden; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
@@ -59,12 +61,7 @@ impl<S: Faces> Doubt<'_, S> {
 
     /// Marks what the contents of a box could change.
     pub fn of_box(&mut self, bounds: &Aabb<S::Vector>) {
-        let Some((view, projection)) = self.buffer.view() else { return };
-        match footprint(view, projection, bounds) {
-            Footprint::Outside => {}
-            Footprint::CrossesNear => self.is_all = true,
-            Footprint::Seen(image) => self.mark(image.pixels, image.nearest),
-        }
+        self.is_all |= !self.is_bounded(bounds);
     }
     /// Marks what a primitive could change; whether that is known.
     pub fn of_prim(&mut self, scene: &Scene<S>, prim: PrimId) -> bool {
@@ -73,15 +70,16 @@ impl<S: Faces> Doubt<'_, S> {
             return true;
         }
         // It covers no pixel, or it is cut by the view volume and its box may say enough.
+        self.is_bounded(&scene.prim_bounds(prim))
+    }
+    /// Marks the image of a box; whether it has one: what reaches the near plane has no bounds.
+    fn is_bounded(&mut self, bounds: &Aabb<S::Vector>) -> bool {
         let Some((view, projection)) = self.buffer.view() else { return true };
-        match footprint(view, projection, &scene.prim_bounds(prim)) {
-            Footprint::Outside => true,
-            Footprint::CrossesNear => false,
-            Footprint::Seen(image) => {
-                self.mark(image.pixels, image.nearest);
-                true
-            }
+        let footprint = footprint(view, projection, bounds);
+        if let Footprint::Seen(image) = &footprint {
+            self.mark(image.pixels, image.nearest);
         }
+        !matches!(footprint, Footprint::CrossesNear)
     }
     fn mark(&mut self, r: PixelRect, nearest: f32) {
         if r.is_empty() || self.is_all {

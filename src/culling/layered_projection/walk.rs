@@ -124,6 +124,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if self.asks {
             self.draw_the_shared_rest();
         }
+        self.ask();
         self.tell_the_rest(seed.is_some());
         self.watch.event(Event::DecidedNode(NodeId(0), Verdict::Partial));
         self.watch.event(Event::Left(NodeId(0)));
@@ -421,7 +422,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         self.left = self.left.saturating_sub(1);
         self.out.prims.push(prim);
-        if self.out.prims.len() - self.told == CHUNK {
+        if self.out.prims.len() - self.told >= CHUNK {
             self.ask();
         }
         None

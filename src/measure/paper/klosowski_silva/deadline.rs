@@ -5,12 +5,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-use super::{Judge, METHOD, settings};
+use super::{Judge, METHOD, around, settings};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::deadline::frame_within;
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part};
+use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::{median, quantile};
 use crate::raster::Target;
@@ -42,7 +42,7 @@ const MACHINES: [&str; 2] = ["idle", "loaded"];
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let all = settings::<S>(METHOD, setup, &[("budget", "100%".to_owned())])?;
-    let mut run = method::<S>(METHOD).ready(scene, &all, &part(progress, 0.0, 0.2))?.ok_or(PaperError::Cancelled)?;
+    let mut run = around(scene, METHOD, &all, None, &part(progress, 0.0, 0.2))?;
     let (mut judge, mut image, n) = (Judge::new(scene, setup), Target::default(), path.views.len());
     let about = about(scene, &path);
     let mut rows = Vec::new();

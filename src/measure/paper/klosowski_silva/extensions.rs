@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{BUDGET, Judge, METHOD, frame, settings};
+use super::{BUDGET, Judge, METHOD, around, frame, settings};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part};
+use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
 use crate::measure::table::{Cell, Table};
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
@@ -49,20 +49,13 @@ const STARTS: [f64; 2] = [1.0, 10.0];
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
-    let entry = method::<S>(METHOD);
     let mut runs = Vec::new();
-    let first = entry.ready(scene, &settings::<S>(METHOD, setup, &[])?, &part(progress, 0.0, 0.2))?.ok_or(PaperError::Cancelled)?;
-    let saved = first.save().unwrap_or_default();
+    let saved = around(scene, METHOD, &settings::<S>(METHOD, setup, &[])?, None, &part(progress, 0.0, 0.2))?.save();
     let quick = part(progress, 0.2, 0.3);
     for (budget, (_, form)) in STARTS.iter().flat_map(|b| FORMS.iter().map(move |f| (b, f))) {
         let mut on_top: Vec<(&str, String)> = form.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
         on_top.push(("budget", format!("{budget}%")));
-        let settings = settings::<S>(METHOD, setup, &on_top)?;
-        let run = match entry.restore(scene, &settings, &saved, &quick) {
-            Ok(run) => run,
-            Err(_) => entry.ready(scene, &settings, &quick)?,
-        };
-        runs.push(run.ok_or(PaperError::Cancelled)?);
+        runs.push(around(scene, METHOD, &settings::<S>(METHOD, setup, &on_top)?, saved.as_deref(), &quick)?);
     }
     let (mut judge, mut target, n) = (Judge::new(scene, setup), Target::default(), path.views.len());
     let mut sums = vec![[0.0f64; 6]; runs.len()];

@@ -24,13 +24,13 @@ pub use table_1::SWEEP as TABLE_1;
 
 use std::sync::Arc;
 
-use super::{Column, PaperError, Setup, World, column, method};
+use super::{Column, PaperError, Setup, World, column, method, part};
 use crate::culling::{RestoreError, Run, Settings};
 use crate::drawing::Role;
 use crate::geometry::{PrimId, View};
 use crate::measure::timed;
 use crate::raster::{Options, Target, shade};
-use crate::scene::{Part, Progress, Scene};
+use crate::scene::{Progress, Scene};
 use crate::truth::Truth;
 
 pub const METHOD: &str = "layered-projection";
@@ -94,21 +94,28 @@ fn ready<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, way: Way, budgets: &[Mo
             on_top.push(("budget", format!("{percent}%")));
         }
         let settings = settings::<S>(key, setup, &on_top)?;
-        let again = saved.as_ref().map(|saved: &Vec<u8>| method::<S>(key).restore(scene, &settings, saved, &rest));
-        let run = match again {
-            Some(Ok(run)) => run,
-            Some(Err(RestoreError::Setting(error))) => return Err(error.into()),
-            Some(Err(RestoreError::Saved(_))) | None => method::<S>(key).ready(scene, &settings, &rest)?,
-        };
-        let run = run.ok_or(PaperError::Cancelled)?;
+        let run = around(scene, key, &settings, saved.as_deref(), &rest)?;
         saved = saved.or_else(|| run.save());
         runs.push(run);
     }
     Ok(runs)
 }
 
-fn part(whole: &dyn Progress, start: f32, end: f32) -> Part<'_> {
-    Part { whole, start, length: end - start }
+/// A method ready to run, around what an earlier one saved if it fits.
+fn around<S: World>(
+    scene: &Arc<Scene<S>>,
+    key: &str,
+    settings: &Settings,
+    saved: Option<&[u8]>,
+    progress: &dyn Progress,
+) -> Result<Box<dyn Run<S>>, PaperError> {
+    let entry = method::<S>(key);
+    let run = match saved.map(|saved| entry.restore(scene, settings, saved, progress)) {
+        Some(Ok(run)) => run,
+        Some(Err(RestoreError::Setting(error))) => return Err(error.into()),
+        Some(Err(RestoreError::Saved(_))) | None => entry.ready(scene, settings, progress)?,
+    };
+    run.ok_or(PaperError::Cancelled)
 }
 
 /// View-frustum culling, ready to run.
