@@ -1,7 +1,8 @@
 //! Delaunay triangulation in space, microseconds a point.
 //!
-//! `cargo bench --bench delaunay`. One thread. Random points in a cube; centers of the cells of an octree that is refined
-//! toward a wavy surface, jittered and exact; and points on a sphere, where no grid helps. Every result has a hash.
+//! `cargo bench --bench delaunay`. One thread. Random points in a cube; centers of the cells of an octree
+//! that is refined toward a wavy surface, jittered and exact; and points on a sphere, where no grid helps.
+//! Every result has a hash.
 
 use cullscope::index::Delaunay;
 use cullscope::measure::timing::{median, timed};
@@ -23,8 +24,8 @@ impl Random {
     }
 }
 
-/// Centers and sizes of the leaves of an octree over the unit cube: cells that a wavy surface may cross are divided,
-/// level by level, until there are enough.
+/// Centers and sizes of the leaves of an octree over the unit cube: cells that a wavy surface may cross are
+/// divided, level by level, until there are enough.
 fn octree(count: usize) -> Vec<(Vec3, f32)> {
     let mut leaves = vec![(Vec3::splat(0.5), 1.0f32)];
     loop {
@@ -37,7 +38,11 @@ fn octree(count: usize) -> Vec<(Vec3, f32)> {
             }
             let height = 0.5 + 0.2 * (center.x * 9.0).sin() * (center.z * 7.0).cos();
             if (center.y - height).abs() < size {
-                let child = |i: u32| center + (Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5) * (0.5 * size);
+                let child = |i: u32| {
+                    center
+                        + (Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) - 0.5)
+                            * (0.5 * size)
+                };
                 next.extend((0..8).map(|i| (child(i), 0.5 * size)));
             } else {
                 next.push((center, size));
@@ -53,17 +58,27 @@ fn main() {
         let octree = octree(size);
         let sets: [(&str, Vec<Vec3>); 4] = [
             ("random", (0..size).map(|_| random.point()).collect()),
-            ("jittered octree centers", octree.iter().map(|(c, s)| *c + (random.point() - 0.5) * (0.1 * s)).collect()),
+            (
+                "jittered octree centers",
+                octree.iter().map(|(c, s)| *c + (random.point() - 0.5) * (0.1 * s)).collect(),
+            ),
             ("exact octree centers", octree.iter().map(|(c, _)| *c).collect()),
             ("on a sphere", (0..size).map(|_| (random.point() - 0.5).normalize()).collect()),
         ];
         for (name, points) in sets {
             let build = || Delaunay::new(points.clone(), || false).expect("not cancelled");
             let built = build();
-            let hash = built.tetrahedra().iter().flat_map(|t| t.vertices).fold(0u64, |h, v| h.rotate_left(7) ^ u64::from(v));
+            let hash = built
+                .tetrahedra()
+                .iter()
+                .flat_map(|t| t.vertices)
+                .fold(0u64, |h, v| h.rotate_left(7) ^ u64::from(v));
             let ms = median((0..ROUNDS).map(|_| timed(build).1).collect());
             let cells = built.tetrahedra().len() as f64 / size as f64;
-            println!("{size} {name}: {:.2} µs a point, {cells:.2} tetrahedra a point, hash {hash:016x}", ms * 1e3 / size as f64);
+            println!(
+                "{size} {name}: {:.2} µs a point, {cells:.2} tetrahedra a point, hash {hash:016x}",
+                ms * 1e3 / size as f64
+            );
         }
     }
 }

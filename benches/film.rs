@@ -11,20 +11,34 @@ use cullscope::scene::{AnyScene, LoadOptions, Quiet, framing_view, load};
 use cullscope::trace::{Moves, Stamps};
 
 fn main() {
-    let AnyScene::Solid(scene) = load("generate:building?polygons=350000", &LoadOptions::default(), &Quiet).expect("a scene") else {
+    let AnyScene::Solid(scene) =
+        load("generate:building?polygons=350000", &LoadOptions::default(), &Quiet).expect("a scene")
+    else {
         panic!("the generator makes a scene of space");
     };
     let view = framing_view::<Solid>(&scene.bounds(), 1024, 1024);
     let settings = Settings([("backface-culling".to_owned(), "true".to_owned())].into());
-    let mut run = Solid::method("frustum").expect("a method").ready(&scene, &settings, &Quiet).expect("settings").expect("not cancelled");
+    let mut run = Solid::method("frustum")
+        .expect("a method")
+        .ready(&scene, &settings, &Quiet)
+        .expect("settings")
+        .expect("not cancelled");
     let (_, plain_ms) = timed(|| run.cull(&view));
     let (film, record_ms) = timed(|| run.record(&view, 10_000_000).film);
     let (stamps, stamps_ms) = timed(|| Stamps::new(&*film));
     let (moves, moves_ms) = timed(|| Moves::new(film.events()));
     let events = film.events();
     let million = events.len() as f64 / 1e6;
-    println!("scene: {} triangles; film: {} events, {} not kept", scene.live().len(), events.len(), film.lost());
-    println!("plain run {plain_ms:.1} ms, recorded {record_ms:.1} ms, stamps {stamps_ms:.1} ms, moves {moves_ms:.1} ms");
+    println!(
+        "scene: {} triangles; film: {} events, {} not kept",
+        scene.live().len(),
+        events.len(),
+        film.lost()
+    );
+    println!(
+        "plain run {plain_ms:.1} ms, recorded {record_ms:.1} ms, stamps {stamps_ms:.1} ms, moves \
+         {moves_ms:.1} ms"
+    );
     println!("events and notes: {:.1} MB a million events (limit 200)", film.bytes() as f64 / 1e6 / million);
 
     // Steps far apart, in no order.
@@ -34,8 +48,9 @@ fn main() {
         let step = (i * 0x9E37_79B9 % (events.len() as u64 + 1)) as usize;
         let (seen, ms) = timed(|| {
             let counts = stamps.counts(step);
-            let nodes =
-                (0..film.hierarchy().node_count() as u32).filter(|&n| stamps.node(NodeId(n), step) != cullscope::trace::State::Unseen).count();
+            let nodes = (0..film.hierarchy().node_count() as u32)
+                .filter(|&n| stamps.node(NodeId(n), step) != cullscope::trace::State::Unseen)
+                .count();
             let mut drawing = Drawing::default();
             film.explain(step, &mut drawing);
             let at = step.max(1) - 1;
@@ -47,7 +62,12 @@ fn main() {
         times.push(ms);
     }
     times.sort_by(f64::total_cmp);
-    println!("a step: median {:.3} ms, worst {:.3} ms of {} (limit 16)", times[times.len() / 2], times[times.len() - 1], times.len());
+    println!(
+        "a step: median {:.3} ms, worst {:.3} ms of {} (limit 16)",
+        times[times.len() / 2],
+        times[times.len() - 1],
+        times.len()
+    );
     let decided = scene.live().iter().filter(|p: &&PrimId| stamps.decided_at(**p).is_some()).count();
     let lines = events.iter().filter(|e| matches!(e, Event::Line(_))).count();
     println!("hash {:016x}", hash ^ (decided as u64) << 20 ^ lines as u64);

@@ -1,7 +1,9 @@
-//! What the parts of `hierarchical-z` cost: bringing the pyramid up to date, a query, and whole frames, at four image sizes.
+//! What the parts of `hierarchical-z` cost: bringing the pyramid up to date, a query, and whole frames, at
+//! four image sizes.
 //!
-//! `cargo bench --no-default-features --bench hierarchical_z`. Last, the two-pass form on one thread and on two, interleaved. Frames of the walk with obscuration culling are paired and
-//! interleaved with view-frustum culling and drawing of the same views; each line ends with a hash of its result.
+//! `cargo bench --no-default-features --bench hierarchical_z`. Last, the two-pass form on one thread and on
+//! two, interleaved. Frames of the walk with obscuration culling are paired and interleaved with view-frustum
+//! culling and drawing of the same views; each line ends with a hash of its result.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -28,15 +30,25 @@ fn hash(values: impl Iterator<Item = u32>) -> u64 {
 
 fn main() {
     for source in ["generate:building", "generate:city"] {
-        let AnyScene::Solid(scene) = load(source, &LoadOptions::default(), &Quiet).expect("a generator") else { continue };
+        let AnyScene::Solid(scene) = load(source, &LoadOptions::default(), &Quiet).expect("a generator")
+        else {
+            continue;
+        };
         let path = &scene.paths()[0];
         let step = (path.views.len() / VIEWS).max(1);
-        let mut frustum = Solid::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
-        let nodes = (0..frustum.hierarchy().node_count() as u32).map(|n| frustum.hierarchy().bounds(NodeId(n)));
+        let mut frustum = Solid::method("frustum")
+            .expect("a method")
+            .ready(&scene, &Settings::default(), &Quiet)
+            .expect("fine")
+            .expect("built");
+        let nodes =
+            (0..frustum.hierarchy().node_count() as u32).map(|n| frustum.hierarchy().bounds(NodeId(n)));
         let boxes: Vec<Aabb<Vec3>> = nodes.collect();
         for [width, height] in SIZES {
-            let views: Vec<View<Solid>> = path.views.iter().step_by(step).map(|v| View { width, height, ..*v }).collect();
-            let mut occluders = Obscurer::new(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
+            let views: Vec<View<Solid>> =
+                path.views.iter().step_by(step).map(|v| View { width, height, ..*v }).collect();
+            let mut occluders =
+                Obscurer::new(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
             let (mut refresh, mut query, mut answers) = (Vec::new(), Vec::new(), Vec::new());
             for view in &views {
                 occluders.render(view);
@@ -47,9 +59,11 @@ fn main() {
                 query.push(ms * 1e6 / in_view as f64);
                 answers.extend(all.into_iter().map(|a| a.map_or(3, u32::from)));
             }
-            let hidden = answers.iter().filter(|a| **a == 1).count() as f64 / answers.iter().filter(|a| **a < 3).count().max(1) as f64;
+            let hidden = answers.iter().filter(|a| **a == 1).count() as f64
+                / answers.iter().filter(|a| **a < 3).count().max(1) as f64;
             println!(
-                "{source} {width}x{height}: pyramid {:.3} ms, query {:.0} ns a box in view ({:.1} % hidden), hash {:016x}",
+                "{source} {width}x{height}: pyramid {:.3} ms, query {:.0} ns a box in view ({:.1} % hidden), \
+                 hash {:016x}",
                 median(refresh),
                 median(query),
                 100.0 * hidden,
@@ -62,7 +76,13 @@ fn main() {
 }
 
 /// Frames against those culled by the frustum.
-fn frames(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>], frustum: &mut Box<dyn Run<Solid>>, occluders: &mut Obscurer<Solid>) {
+fn frames(
+    source: &str,
+    scene: &Arc<Scene<Solid>>,
+    views: &[View<Solid>],
+    frustum: &mut Box<dyn Run<Solid>>,
+    occluders: &mut Obscurer<Solid>,
+) {
     let mut target = Target::default();
     let (mut all, mut kept) = (0, 0);
     let result = paired(
@@ -83,7 +103,13 @@ fn frames(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>], frustu
             }
         },
     );
-    say(source, views, &result, ["frame", "culled by frustum"], &format!(", last view {kept} of {all} drawn"));
+    say(
+        source,
+        views,
+        &result,
+        ["frame", "culled by frustum"],
+        &format!(", last view {kept} of {all} drawn"),
+    );
 }
 
 /// The two-pass form on several threads against itself on one.

@@ -30,7 +30,8 @@ impl Stripped<'_> {
         let mut out = DrawList::default();
         let frustum = view.frustum();
         let Self { tree: index, scene, backface_culling } = self;
-        let mut walk = Walk { index, scene, view, frustum, backface_culling: *backface_culling, out: &mut out };
+        let mut walk =
+            Walk { index, scene, view, frustum, backface_culling: *backface_culling, out: &mut out };
         walk.visible(NodeId(0), Frustum::<Vec3>::ALL);
         out
     }
@@ -80,7 +81,9 @@ impl Walk<'_> {
 }
 
 fn hash(lists: impl Iterator<Item = DrawList>) -> u64 {
-    lists.flat_map(|l| l.prims).fold(0xcbf2_9ce4_8422_2325, |h, p| (h ^ u64::from(p.0)).wrapping_mul(0x100_0000_01b3))
+    lists
+        .flat_map(|l| l.prims)
+        .fold(0xcbf2_9ce4_8422_2325, |h, p| (h ^ u64::from(p.0)).wrapping_mul(0x100_0000_01b3))
 }
 
 fn print(name: &str, p: &Paired) {
@@ -91,29 +94,53 @@ fn print(name: &str, p: &Paired) {
 }
 
 fn main() {
-    let AnyScene::Solid(scene) = load("generate:building", &LoadOptions::default(), &Quiet).expect("a scene") else {
+    let AnyScene::Solid(scene) = load("generate:building", &LoadOptions::default(), &Quiet).expect("a scene")
+    else {
         panic!("the generator makes a scene of space");
     };
     let views = random_views(&scene, VIEWS, 7);
     // Each way has a tree of its own, so each finds the other one's in the caches.
-    let [stripped, again] = [(); 2].map(|()| Stripped { tree: build(&scene), scene: &scene, backface_culling: std::hint::black_box(false) });
+    let [stripped, again] = [(); 2].map(|()| Stripped {
+        tree: build(&scene),
+        scene: &scene,
+        backface_culling: std::hint::black_box(false),
+    });
     let settings = Settings([("tree-height".to_owned(), HEIGHT.to_string())].into());
     let entry = Solid::method("frustum").expect("a method");
-    let [mut a, mut b, mut c] = [(); 3].map(|()| entry.ready(&scene, &settings, &Quiet).expect("settings").expect("not cancelled"));
+    let [mut a, mut b, mut c] =
+        [(); 3].map(|()| entry.ready(&scene, &settings, &Quiet).expect("settings").expect("not cancelled"));
 
     let want = hash(views.iter().map(|v| stripped.cull(v)));
     assert_eq!(want, hash(views.iter().map(|v| a.cull(v))), "both ways draw the same");
     let nodes: u64 = views.iter().map(|v| a.count(v).1.nodes_entered).sum();
-    println!("scene: {} triangles, tree of {HEIGHT} levels, {nodes} nodes entered, {ROUNDS} rounds", scene.live().len());
+    println!(
+        "scene: {} triangles, tree of {HEIGHT} levels, {nodes} nodes entered, {ROUNDS} rounds",
+        scene.live().len()
+    );
 
     let bare = || views.iter().for_each(|v| drop(std::hint::black_box(stripped.cull(v))));
-    print("stripped again", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(again.cull(v))))));
-    print("unobserved    ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(a.cull(v))))));
-    print("counted       ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(b.count(v))))));
-    print("recorded      ", &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(c.record(v, usize::MAX).list)))));
+    print(
+        "stripped again",
+        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(again.cull(v))))),
+    );
+    print(
+        "unobserved    ",
+        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(a.cull(v))))),
+    );
+    print(
+        "counted       ",
+        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(b.count(v))))),
+    );
+    print(
+        "recorded      ",
+        &paired(ROUNDS, bare, || {
+            views.iter().for_each(|v| drop(std::hint::black_box(c.record(v, usize::MAX).list)))
+        }),
+    );
     println!("hash {want:016x}");
 }
 
 fn build(scene: &Arc<Scene<Solid>>) -> KdTree<Vec3> {
-    KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), HEIGHT, || false).expect("not cancelled")
+    KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), HEIGHT, || false)
+        .expect("not cancelled")
 }

@@ -19,8 +19,12 @@ const VIEWS: usize = 6;
 
 fn main() {
     let ship = |name: &str| format!("{}/scenes3d/{name}/{name}.obj", env!("CARGO_MANIFEST_DIR"));
-    let mut sources =
-        vec![ship("freedoom_p2_map12"), ship("terrain_jacksboro_65k"), "generate:building".into(), "generate:building?polygons=1000000".into()];
+    let mut sources = vec![
+        ship("freedoom_p2_map12"),
+        ship("terrain_jacksboro_65k"),
+        "generate:building".into(),
+        "generate:building?polygons=1000000".into(),
+    ];
     // Further models may be named on the command line.
     sources.extend(std::env::args().skip(1).filter(|a| !a.starts_with("--")));
     println!("instruction set {}, {ROUNDS} rounds a view, {VIEWS} views of each path", Isa::detect().label());
@@ -43,7 +47,10 @@ fn main() {
 }
 
 fn views(scene: &Scene<Solid>, width: u32, height: u32) -> Vec<View<Solid>> {
-    let all = scene.paths().first().map_or_else(|| vec![framing_view(&scene.bounds(), width, height)], |p| p.views.clone());
+    let all = scene
+        .paths()
+        .first()
+        .map_or_else(|| vec![framing_view(&scene.bounds(), width, height)], |p| p.views.clone());
     let step = all.len().div_ceil(VIEWS).max(1);
     all.into_iter().step_by(step).map(|v| View { width, height, ..v }).collect()
 }
@@ -75,7 +82,8 @@ fn draw_ms(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>, option
 /// Clearing and drawing every triangle: the best and the median round of each view, each as the median
 /// over views. Rates are of the best, which other work on the machine disturbs least.
 fn speed(scene: &Scene<Solid>, width: u32, height: u32) {
-    let forms = [("1 thread", Options::default()), ("all threads", Options { threads: 0, ..Options::default() })];
+    let forms =
+        [("1 thread", Options::default()), ("all threads", Options { threads: 0, ..Options::default() })];
     for (name, options) in forms {
         let (mut target, mut best, mut middle, mut digest) = (Target::default(), Vec::new(), Vec::new(), 0);
         for view in views(scene, width, height) {
@@ -85,9 +93,11 @@ fn speed(scene: &Scene<Solid>, width: u32, height: u32) {
             digest ^= hash(&target);
         }
         let (best, middle) = (median(best), median(middle));
-        let (triangles, pixels) = (scene.live().len() as f64 / best / 1e3, f64::from(width * height) / best / 1e3);
+        let (triangles, pixels) =
+            (scene.live().len() as f64 / best / 1e3, f64::from(width * height) / best / 1e3);
         println!(
-            "  {width}×{height}, {name}: best {best:.2} ms, median {middle:.2} ms, {triangles:.1} M triangles/s, {pixels:.0} MP/s  [{digest:016x}]"
+            "  {width}×{height}, {name}: best {best:.2} ms, median {middle:.2} ms, {triangles:.1} M \
+             triangles/s, {pixels:.0} MP/s  [{digest:016x}]"
         );
     }
 }
@@ -105,14 +115,24 @@ fn against_reference(scene: &Scene<Solid>) {
         theirs / ours
     });
     let ratio = median(ratios.collect());
-    println!("  256×256, reference / fast: ×{ratio:.1}, {} wrong pixels  [{:016x}]", fast.wrong_pixels(&plain), hash(&fast));
+    println!(
+        "  256×256, reference / fast: ×{ratio:.1}, {} wrong pixels  [{:016x}]",
+        fast.wrong_pixels(&plain),
+        hash(&fast)
+    );
     let view = views(scene, 1024, 1024)[0];
     for isa in [Isa::Portable, Isa::Avx2] {
         let ratios = (0..ROUNDS).map(|_| {
             let ours = draw_ms(&mut fast, scene, &view, &Options::default());
             draw_ms(&mut plain, scene, &view, &Options { isa, ..Options::default() }) / ours
         });
-        println!("  1024×1024, {} / {}: ×{:.2}  [{:016x}]", isa.label(), Isa::detect().label(), median(ratios.collect()), hash(&plain));
+        println!(
+            "  1024×1024, {} / {}: ×{:.2}  [{:016x}]",
+            isa.label(),
+            Isa::detect().label(),
+            median(ratios.collect()),
+            hash(&plain)
+        );
     }
 }
 
@@ -153,7 +173,11 @@ impl Pipeline for Peer<'_> {
 /// `euc` at 1024², from outside the scene, for it does not clip at the near plane. It draws both sides.
 fn against_euc(scene: &Scene<Solid>) {
     let view: View<Solid> = framing_view(&scene.bounds(), 1024, 1024);
-    let corners: Vec<(u32, PrimId)> = scene.live().iter().flat_map(|&p| scene.corners(p).into_iter().flatten().map(move |c| (c, p))).collect();
+    let corners: Vec<(u32, PrimId)> = scene
+        .live()
+        .iter()
+        .flat_map(|&p| scene.corners(p).into_iter().flatten().map(move |c| (c, p)))
+        .collect();
     let (mut ours, size) = (Target::default(), [1024; 2]);
     let (mut color, mut depth) = (Buffer2d::new(size, Target::NONE), Buffer2d::new(size, 0f32));
     let peer = Peer { scene, projection: view.projection() };
@@ -162,12 +186,20 @@ fn against_euc(scene: &Scene<Solid>) {
         let b = timed_ms(|| {
             color.clear(Target::NONE);
             depth.clear(1.0 / view.eye.far);
-            peer.draw::<euc::rasterizer::Triangles<'_, _, euc::rasterizer::BackfaceCullingDisabled>, _>(&corners, &mut color, Some(&mut depth));
+            peer.draw::<euc::rasterizer::Triangles<'_, _, euc::rasterizer::BackfaceCullingDisabled>, _>(
+                &corners,
+                &mut color,
+                Some(&mut depth),
+            );
         });
         b / a
     });
     let ratio = median(ratios.collect());
     let same = ours.item.iter().zip(color.as_ref()).filter(|p| p.0 == p.1).count();
     let share = same as f64 / ours.item.len() as f64 * 100.0;
-    println!("  1024×1024, euc / fast, seen from outside: ×{ratio:.1}, {share:.2} % of the pixels alike  [{:016x}]", hash(&ours));
+    println!(
+        "  1024×1024, euc / fast, seen from outside: ×{ratio:.1}, {share:.2} % of the pixels alike  \
+         [{:016x}]",
+        hash(&ours)
+    );
 }

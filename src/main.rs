@@ -10,7 +10,8 @@ fn main() -> ExitCode {
         let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
         let _ = writeln!(
             std::io::stderr(),
-            "error: internal: {what} ({place})\nhelp: this is a fault of cullscope; please report it with the call that led to it"
+            "error: internal: {what} ({place})\nhelp: this is a fault of cullscope; please report it with \
+             the call that led to it"
         );
     }));
     match std::panic::catch_unwind(|| cullscope::cli::run(std::env::args_os())) {

@@ -35,8 +35,12 @@ fn solid(source: &str, bytes: &[u8]) -> Arc<Scene<Solid>> {
 fn error(source: &str, bytes: &[u8]) -> String {
     match read(source, bytes) {
         Err(said) => said,
-        Ok(AnyScene::Solid(s)) => panic!("{source} should be refused, but has {} triangles: {:?}", s.live().len(), s.report()),
-        Ok(AnyScene::Flat(s)) => panic!("{source} should be refused, but has {} segments: {:?}", s.live().len(), s.report()),
+        Ok(AnyScene::Solid(s)) => {
+            panic!("{source} should be refused, but has {} triangles: {:?}", s.live().len(), s.report())
+        }
+        Ok(AnyScene::Flat(s)) => {
+            panic!("{source} should be refused, but has {} segments: {:?}", s.live().len(), s.report())
+        }
     }
 }
 

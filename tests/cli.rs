@@ -27,7 +27,12 @@ fn boxes() -> String {
         let (x, z) = (f64::from(i % 7) * 3.0, f64::from(i / 7) * -3.0);
         text += &format!("o box_{i}\n");
         for c in 0..8 {
-            text += &format!("v {} {} {}\n", x + f64::from(c & 1), f64::from(c >> 1 & 1) * 2.0, z - f64::from(c >> 2));
+            text += &format!(
+                "v {} {} {}\n",
+                x + f64::from(c & 1),
+                f64::from(c >> 1 & 1) * 2.0,
+                z - f64::from(c >> 2)
+            );
         }
         for quad in [[1, 2, 4, 3], [5, 7, 8, 6], [1, 5, 6, 2], [3, 4, 8, 7], [1, 3, 7, 5], [2, 6, 8, 4]] {
             text += &format!("f {}\n", quad.map(|c| (c + base).to_string()).join(" "));
@@ -38,7 +43,12 @@ fn boxes() -> String {
 }
 
 fn cullscope(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_cullscope")).args(words).current_dir(folder).stdin(Stdio::null()).output().expect("the program runs")
+    Command::new(env!("CARGO_BIN_EXE_cullscope"))
+        .args(words)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program runs")
 }
 
 /// Standard output of a call that must succeed.
@@ -95,7 +105,10 @@ fn every_command_explains_itself_with_an_example() {
     ];
     for words in commands {
         let text = done(&here, &with(words, &["--help"]));
-        assert!(text.contains("Example") && text.contains(&format!("cullscope {}", words.join(" "))), "{words:?}: {text}");
+        assert!(
+            text.contains("Example") && text.contains(&format!("cullscope {}", words.join(" "))),
+            "{words:?}: {text}"
+        );
     }
     let all = done(&here, &["--help"]);
     for later in ["sweep", "stability", "advise"] {
@@ -110,7 +123,10 @@ fn methods_are_listed_with_their_parameters() {
     let listed = json(&done(&here, &["methods", "--json"]));
     let methods = listed["methods"].as_array().expect("a list");
     let names: Vec<_> = methods.iter().map(|m| m["key"].as_str().expect("a key")).collect();
-    assert_eq!(names, ["z-buffer", "frustum", "centroid", "large-occluders", "hierarchical-z", "layered-projection"]);
+    assert_eq!(
+        names,
+        ["z-buffer", "frustum", "centroid", "large-occluders", "hierarchical-z", "layered-projection"]
+    );
     for method in methods {
         for param in method["params"].as_array().expect("a list") {
             assert_eq!(keys(param), ["default", "meaning", "name", "range", "source", "type", "unit"]);
@@ -127,17 +143,34 @@ fn cull_prints_the_contract() {
     let here = folder("cull");
     let words = with(&["cull", "boxes.obj", "--method", "frustum", "--set", "tree-height=5"], &ALONG);
     let plain = json(&done(&here, &words));
-    assert_eq!(keys(&plain), ["build_ms", "cullscope", "frames", "index_bytes", "method", "params", "scene", "triangles"]);
-    assert_eq!((&plain["triangles"], &plain["method"], &plain["params"]["tree-height"]), (&588.into(), &"frustum".into(), &5.into()));
+    assert_eq!(
+        keys(&plain),
+        ["build_ms", "cullscope", "frames", "index_bytes", "method", "params", "scene", "triangles"]
+    );
+    assert_eq!(
+        (&plain["triangles"], &plain["method"], &plain["params"]["tree-height"]),
+        (&588.into(), &"frustum".into(), &5.into())
+    );
     let frame = &plain["frames"][0];
     assert_eq!(keys(frame), ["counters", "cull_ms", "draw_ms", "drawn_triangles", "stages_ms", "view"]);
-    assert!(frame["counters"]["nodes_entered"].as_u64() > Some(1) && frame["counters"]["planes_tested"].as_u64() > Some(1));
+    assert!(
+        frame["counters"]["nodes_entered"].as_u64() > Some(1)
+            && frame["counters"]["planes_tested"].as_u64() > Some(1)
+    );
 
     let full = json(&done(&here, &with(&words, &["--truth", "--ids"])));
     let frame = &full["frames"][0];
     let truth = &frame["truth"];
-    let expected =
-        ["coverage_ratio", "flip_mean", "missed_ids", "missed_triangles", "overdraw", "visible_triangles", "wrong_pixel_ratio", "wrong_pixels"];
+    let expected = [
+        "coverage_ratio",
+        "flip_mean",
+        "missed_ids",
+        "missed_triangles",
+        "overdraw",
+        "visible_triangles",
+        "wrong_pixel_ratio",
+        "wrong_pixels",
+    ];
     assert_eq!(keys(truth), expected);
     let ids: Vec<u64> = frame["drawn_ids"].as_array().expect("ids").iter().filter_map(Json::as_u64).collect();
     assert_eq!(ids.len() as u64, frame["drawn_triangles"]);
@@ -150,17 +183,27 @@ fn cull_prints_the_contract() {
 #[test]
 fn a_budget_that_is_too_small_shows_in_the_truth() {
     let here = folder("budget");
-    let words = with(&["cull", "boxes.obj", "--method", "centroid", "--set", "budget=3", "--truth", "--ids"], &ALONG);
+    let words =
+        with(&["cull", "boxes.obj", "--method", "centroid", "--set", "budget=3", "--truth", "--ids"], &ALONG);
     let truth = &json(&done(&here, &words))["frames"][0]["truth"];
-    assert!(truth["missed_triangles"].as_u64() > Some(0) && truth["wrong_pixels"].as_u64() > Some(0), "{truth}");
+    assert!(
+        truth["missed_triangles"].as_u64() > Some(0) && truth["wrong_pixels"].as_u64() > Some(0),
+        "{truth}"
+    );
     assert_eq!(truth["missed_ids"].as_array().map(|l| l.len() as u64), truth["missed_triangles"].as_u64());
-    assert!(truth["flip_mean"].as_f64() > Some(0.0) && truth["coverage_ratio"].as_f64() < Some(1.0), "{truth}");
+    assert!(
+        truth["flip_mean"].as_f64() > Some(0.0) && truth["coverage_ratio"].as_f64() < Some(1.0),
+        "{truth}"
+    );
 }
 
 #[test]
 fn back_faces_are_left_out_of_answer_and_truth_alike() {
     let here = folder("backface");
-    let words = with(&["cull", "boxes.obj", "--method", "frustum", "--truth", "--set", "backface-culling=true"], &ALONG);
+    let words = with(
+        &["cull", "boxes.obj", "--method", "frustum", "--truth", "--set", "backface-culling=true"],
+        &ALONG,
+    );
     let one_sided = json(&done(&here, &words));
     let two_sided = json(&done(&here, &with(&["cull", "boxes.obj", "--method", "frustum"], &ALONG)));
     let drawn = |report: &Json| report["frames"][0]["drawn_triangles"].as_u64().expect("a count");
@@ -171,7 +214,8 @@ fn back_faces_are_left_out_of_answer_and_truth_alike() {
 #[test]
 fn views_come_from_files_paths_options_or_chance() {
     let here = folder("views");
-    let views = r#"{"width":64,"height":48,"views":[{"eye":[-2,1,0.5],"target":[10,1,-6],"up":[0,1,0],"fov_y_degrees":60,"near":0.1,"far":100},
+    let views = r#"{"width":64,"height":48,"views":[
+        {"eye":[-2,1,0.5],"target":[10,1,-6],"up":[0,1,0],"fov_y_degrees":60,"near":0.1,"far":100},
         {"eye":[9,30,-9],"target":[9,0,-9],"up":[0,1,0],"fov_y_degrees":60,"near":0.1,"far":100}]}"#;
     fs::write(here.join("path.json"), views).expect("written");
     let base = ["cull", "boxes.obj", "--method", "frustum", "--truth"];
@@ -185,8 +229,17 @@ fn views_come_from_files_paths_options_or_chance() {
         assert_eq!(&bytes[1..4], b"PNG");
         assert_eq!((&bytes[16..20], &bytes[20..24]), (&64u32.to_be_bytes()[..], &48u32.to_be_bytes()[..]));
     }
-    let random = |seed| json(&done(&here, &with(&base, &["--random-views", "3", "--seed", seed, "--size", "40x30", "--ids"])));
-    let drawn = |report: &Json| report["frames"].as_array().expect("frames").iter().map(|f| f["drawn_ids"].clone()).collect::<Vec<_>>();
+    let random = |seed| {
+        json(&done(&here, &with(&base, &["--random-views", "3", "--seed", seed, "--size", "40x30", "--ids"])))
+    };
+    let drawn = |report: &Json| {
+        report["frames"]
+            .as_array()
+            .expect("frames")
+            .iter()
+            .map(|f| f["drawn_ids"].clone())
+            .collect::<Vec<_>>()
+    };
     assert_eq!(drawn(&random("5")).len(), 3);
     assert_eq!(drawn(&random("5")), drawn(&random("5")));
     assert_ne!(drawn(&random("5")), drawn(&random("6")));
@@ -197,7 +250,21 @@ fn views_come_from_files_paths_options_or_chance() {
     let first = json(&String::from_utf8_lossy(&chosen.stdout));
     assert_eq!(drawn(&first), drawn(&json(&done(&here, &with(&with(&base, &["--ids"]), &again)))));
     // A flatland scene brought a path.
-    let eyes = json(&done(&here, &["cull", "walls.json", "--method", "frustum", "--truth", "--ids", "--path", "eyes", "--set", "tree-height=3"]));
+    let eyes = json(&done(
+        &here,
+        &[
+            "cull",
+            "walls.json",
+            "--method",
+            "frustum",
+            "--truth",
+            "--ids",
+            "--path",
+            "eyes",
+            "--set",
+            "tree-height=3",
+        ],
+    ));
     assert_eq!(eyes["frames"].as_array().map(Vec::len), Some(2));
     assert_eq!(eyes["frames"][0]["drawn_ids"], json("[0,1]"));
     assert_eq!(eyes["frames"][0]["truth"]["missed_triangles"], 0);
@@ -215,14 +282,22 @@ fn steps_are_written_the_same_each_time_and_check() {
         assert!(done(&here, &["trace", "check", "run.jsonl"]).contains("valid"));
         let mut lines = first.lines();
         let header = json(lines.next().expect("a header"));
-        assert_eq!((&header["trace"], &header["method"], &header["params"]["tree-height"]), (&1.into(), &"frustum".into(), &4.into()));
+        assert_eq!(
+            (&header["trace"], &header["method"], &header["params"]["tree-height"]),
+            (&1.into(), &"frustum".into(), &4.into())
+        );
         assert_eq!(header["scene"], scene);
         assert!(header["view"]["views"][0]["eye"].is_array());
         let events: Vec<Json> = lines.map(json).collect();
-        assert!(events.iter().any(|e| e["event"] == "NodeClassified" && e["line"] == "Visible:2" && e["far_corner_units"].is_array()));
+        assert!(events.iter().any(|e| e["event"] == "NodeClassified"
+            && e["line"] == "Visible:2"
+            && e["far_corner_units"].is_array()));
         assert!(events.iter().all(|e| e["step"].is_u64() && e["frame"].is_u64() && e["event"].is_string()));
         let first_steps = events.iter().filter(|e| e["step"] == 1).map(|e| &e["frame"]);
-        assert!(first_steps.eq((0..frames).map(Json::from).collect::<Vec<_>>().iter()), "every view is a frame");
+        assert!(
+            first_steps.eq((0..frames).map(Json::from).collect::<Vec<_>>().iter()),
+            "every view is a frame"
+        );
         let coarse = done(&here, &with(&words, &["--detail", "coarse"]));
         assert!(coarse.lines().count() < first.lines().count() && !coarse.contains("LineReached"));
     }
@@ -252,10 +327,14 @@ fn a_trace_is_proven_and_an_altered_one_is_not() {
         let trace = done(&here, &with(&["step", scene, "--method", method], more));
         fs::write(here.join("run.jsonl"), &trace).expect("written");
         let said = done(&here, &["trace", "check", "run.jsonl", "--prove"]);
-        assert!(said.contains("valid") && said.contains("proven: ") && !said.contains("proven: 0"), "{method}: {said}");
+        assert!(
+            said.contains("valid") && said.contains("proven: ") && !said.contains("proven: 0"),
+            "{method}: {said}"
+        );
         // The last decision is another one, and the format still holds.
         let at = trace.rfind("\"verdict\":\"").expect("a decision");
-        let altered = trace[..at].to_owned() + &trace[at..].replacen("\"verdict\":\"", "\"verdict\":\"not-", 1);
+        let altered =
+            trace[..at].to_owned() + &trace[at..].replacen("\"verdict\":\"", "\"verdict\":\"not-", 1);
         fs::write(here.join("altered.jsonl"), altered).expect("written");
         done(&here, &["trace", "check", "altered.jsonl"]);
         let said = refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
@@ -264,21 +343,32 @@ fn a_trace_is_proven_and_an_altered_one_is_not() {
         let cut = trace.trim_end().rfind('\n').expect("lines") + 1;
         fs::write(here.join("altered.jsonl"), &trace[..cut]).expect("written");
         refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
-        fs::write(here.join("altered.jsonl"), trace.clone() + trace[cut..].replace("\"frame\":", "\"frame\":9").as_str()).expect("written");
+        fs::write(
+            here.join("altered.jsonl"),
+            trace.clone() + trace[cut..].replace("\"frame\":", "\"frame\":9").as_str(),
+        )
+        .expect("written");
         let said = refused(&here, &["trace", "check", "altered.jsonl", "--prove"], 1);
         assert!(said.contains("what follows"), "{method}: {said}");
     }
     fs::write(here.join("boxes.obj"), boxes().replacen("v 0 ", "v 0.5 ", 1)).expect("written");
-    let trace = fs::read_to_string(here.join("run.jsonl")).expect("a trace").replacen("walls.json", "boxes.obj", 1);
+    let trace =
+        fs::read_to_string(here.join("run.jsonl")).expect("a trace").replacen("walls.json", "boxes.obj", 1);
     fs::write(here.join("other.jsonl"), trace).expect("written");
-    assert!(refused(&here, &["trace", "check", "other.jsonl", "--prove"], 1).contains("not the scene of this trace"));
+    assert!(
+        refused(&here, &["trace", "check", "other.jsonl", "--prove"], 1)
+            .contains("not the scene of this trace")
+    );
 }
 
 #[test]
 fn scenes_are_described() {
     let here = folder("info");
     let info = json(&done(&here, &["scene", "info", "boxes.obj", "--json"]));
-    assert_eq!((&info["triangles"], &info["live"], &info["objects"], &info["space"]), (&588.into(), &588.into(), &49.into(), &"space".into()));
+    assert_eq!(
+        (&info["triangles"], &info["live"], &info["objects"], &info["space"]),
+        (&588.into(), &588.into(), &49.into(), &"space".into())
+    );
     assert_eq!(info["bounds"], json("[[0.0,0.0,-19.0],[19.0,2.0,0.0]]"));
     for key in ["groups", "materials", "dropped", "memory_bytes", "sha256", "paths", "points", "notes"] {
         assert!(info.get(key).is_some(), "`{key}`: {info}");
@@ -302,10 +392,16 @@ fn converted_scenes_are_the_same_scenes() {
         }
     }
     // What is drawn has the same ids.
-    let ids = |scene: &str| json(&done(&here, &with(&["cull", scene, "--method", "frustum", "--ids"], &ALONG)))["frames"][0]["drawn_ids"].clone();
+    let ids = |scene: &str| {
+        let words = with(&["cull", scene, "--method", "frustum", "--ids"], &ALONG);
+        json(&done(&here, &words))["frames"][0]["drawn_ids"].clone()
+    };
     assert_eq!(ids("odd.obj"), ids("out.obj"));
     done(&here, &["scene", "convert", "out.json", "again.json"]);
-    assert_eq!(fs::read(here.join("out.json")).expect("written"), fs::read(here.join("again.json")).expect("written"));
+    assert_eq!(
+        fs::read(here.join("out.json")).expect("written"),
+        fs::read(here.join("again.json")).expect("written")
+    );
     refused(&here, &["scene", "convert", "boxes.obj", "out.json"], 2);
     refused(&here, &["scene", "convert", "walls.json", "out.obj"], 2);
 }
@@ -320,7 +416,8 @@ fn figures_are_written_the_same_each_time() {
         assert_eq!(said.lines().count(), 3, "{said}");
     }
     for (extension, magic) in [("svg", "<"), ("pdf", "%PDF"), ("png", "\u{FFFD}PNG")] {
-        let [a, b] = ["a", "b/c"].map(|out| fs::read(here.join(out).join(format!("{name}.{extension}"))).expect("a figure"));
+        let [a, b] = ["a", "b/c"]
+            .map(|out| fs::read(here.join(out).join(format!("{name}.{extension}"))).expect("a figure"));
         assert!(a == b && String::from_utf8_lossy(&a).starts_with(magic), "{extension}");
     }
     assert!(refused(&here, &["figure", &name[1..]], 2).contains(&format!("did you mean `{name}`?")));
@@ -334,7 +431,10 @@ fn words_that_are_off_have_status_2_and_a_hint() {
     let here = folder("words");
     let hinted: [(&[&str], &str); 8] = [
         (&["cull", "boxes.obj", "--method", "frustrum"], "did you mean `frustum`?"),
-        (&["cull", "boxes.obj", "--method", "frustum", "--set", "tree-hight=3"], "did you mean `tree-height`?"),
+        (
+            &["cull", "boxes.obj", "--method", "frustum", "--set", "tree-hight=3"],
+            "did you mean `tree-height`?",
+        ),
         (&["scene", "info", "generate:bilding"], "did you mean `building`?"),
         (&["cul"], "did you mean `cull`?"),
         (&["cull", "boxes.obj", "--metod", "frustum"], "did you mean `--method`?"),
@@ -387,14 +487,24 @@ fn work_that_fails_has_status_1_and_leaves_no_file() {
     }
     let said = refused(&here, &["cull", "box.obj", "--method", "frustum"], 1);
     assert!(said.contains("did you mean `boxes.obj`?"), "{said}");
-    refused(&here, &["cull", "boxes.obj", "--method", "frustum", "--view", "views.json", "--out", "result"], 1);
-    refused(&here, &["cull", "boxes.obj", "--method", "frustum", "--view", "none.json", "--out", "result"], 1);
+    refused(
+        &here,
+        &["cull", "boxes.obj", "--method", "frustum", "--view", "views.json", "--out", "result"],
+        1,
+    );
+    refused(
+        &here,
+        &["cull", "boxes.obj", "--method", "frustum", "--view", "none.json", "--out", "result"],
+        1,
+    );
     refused(&here, &["step", "boxes.obj", "--method", "frustum", "--out", "no/such/folder/result"], 1);
     assert_eq!(entries(&here), before);
 }
 
 fn entries(folder: &Path) -> Vec<String> {
-    let names = fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
+    let names = fs::read_dir(folder)
+        .expect("a folder")
+        .map(|e| e.expect("an entry").file_name().to_string_lossy().into_owned());
     let mut names: Vec<String> = names.collect();
     names.sort();
     names
@@ -413,7 +523,12 @@ fn a_reader_that_leaves_is_no_error() {
         .expect("the program runs");
     drop(child.stdout.take());
     let output = child.wait_with_output().expect("the program ends");
-    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(
+        (output.status.code(), output.stderr.as_slice()),
+        (Some(0), &b""[..]),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }
 
 /// Ctrl-C while a long run is written: status 1, one line, and no file, not even half of one.
@@ -422,7 +537,20 @@ fn a_reader_that_leaves_is_no_error() {
 fn ctrl_c_stops_cleanly() {
     let here = folder("interrupt");
     let before = entries(&here);
-    let words = with(&["cull", "boxes.obj", "--method", "frustum", "--truth", "--random-views", "100000", "--out", "long.json"], &[]);
+    let words = with(
+        &[
+            "cull",
+            "boxes.obj",
+            "--method",
+            "frustum",
+            "--truth",
+            "--random-views",
+            "100000",
+            "--out",
+            "long.json",
+        ],
+        &[],
+    );
     let child = Command::new(env!("CARGO_BIN_EXE_cullscope"))
         .args(&words)
         .current_dir(&here)
@@ -432,7 +560,8 @@ fn ctrl_c_stops_cleanly() {
         .expect("the program runs");
     std::thread::sleep(std::time::Duration::from_millis(700));
     // The shell's own word: the program of that name is missing on a bare machine.
-    let killed = Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().expect("a shell runs");
+    let killed =
+        Command::new("sh").args(["-c", &format!("kill -INT {}", child.id())]).status().expect("a shell runs");
     assert!(killed.success(), "the run was still going");
     let output = child.wait_with_output().expect("the program ends");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -446,21 +575,35 @@ fn the_explorer_says_what_it_lacks_before_it_opens_a_window() {
     let folder = folder("explore");
     let explore = |words: &[&str]| {
         let mut program = Command::new(env!("CARGO_BIN_EXE_cullscope"));
-        program.args(words).current_dir(&folder).stdin(Stdio::null()).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+        program
+            .args(words)
+            .current_dir(&folder)
+            .stdin(Stdio::null())
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY");
         let output = program.output().expect("the program runs");
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
     };
     for words in [&[][..], &["explore", "walls.json"]] {
         let (status, said) = explore(words);
         assert_eq!(status, Some(1), "{said}");
-        let windowless = said.starts_with("error: display: there is none") || said.starts_with("error: explore: this program was built without");
+        let windowless = said.starts_with("error: display: there is none")
+            || said.starts_with("error: explore: this program was built without");
         assert!(windowless && said.lines().nth(1).is_some_and(|l| l.starts_with("help: ")), "{said}");
     }
     for (words, status, start) in [
         (&["explore", "nowhere.obj"][..], 1, "error: nowhere.obj: there is no such file"),
-        (&["explore", "walls.json", "--method", "frustrum"], 2, "error: --method: there is no method `frustrum`"),
+        (
+            &["explore", "walls.json", "--method", "frustrum"],
+            2,
+            "error: --method: there is no method `frustrum`",
+        ),
         (&["explore", "walls.json", "--set", "height"], 2, "error: "),
-        (&["explore", "walls.json", "--screenshot", "a.png", "--size", "big"], 2, "error: --size: `big` is not of the form 1280x800"),
+        (
+            &["explore", "walls.json", "--screenshot", "a.png", "--size", "big"],
+            2,
+            "error: --size: `big` is not of the form 1280x800",
+        ),
     ] {
         let (code, said) = explore(words);
         assert_eq!((code, said.starts_with(start)), (Some(status), true), "{words:?}: {said}");
@@ -472,13 +615,24 @@ fn tables_of_the_paper_are_measured_and_written() {
     let here = folder("paper");
     let listed = done(&here, &["paper", "--list"]);
     assert_eq!(listed.lines().count(), 16);
-    let scene = ["--scene", "generate:building?polygons=3000", "--frames", "6", "--size", "96x64", "--check-every", "3"];
+    let scene = [
+        "--scene",
+        "generate:building?polygons=3000",
+        "--frames",
+        "6",
+        "--size",
+        "96x64",
+        "--check-every",
+        "3",
+    ];
     let formats = ["--format", "csv,text,json,svg,pdf,png", "--out", "tables"];
     let text = done(&here, &with(&["paper", "coorg-teller-table-1"], &with(&scene, &formats)));
     assert!(text.contains("Soda") && text.contains("134,832") && text.contains("building"), "{text}");
-    let read = |name: &str| fs::read(here.join("tables").join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
+    let read =
+        |name: &str| fs::read(here.join("tables").join(name)).unwrap_or_else(|e| panic!("{name}: {e}"));
     let csv = String::from_utf8(read("coorg-teller-table-1.csv")).expect("UTF-8");
-    let head = "source,scene,polygons,frustum_percent,occlusion_percent,reduction_ratio,missed_triangles,checked_views";
+    let head = "source,scene,polygons,frustum_percent,occlusion_percent,reduction_ratio,missed_triangles,\
+     checked_views";
     assert_eq!(csv.lines().next(), Some(head));
     assert_eq!(csv.lines().nth(2), Some("paper,Soda,134832,19.7,2.6,7.576923076923077,,"));
     let report: Json = json(&String::from_utf8(read("coorg-teller-table-1.json")).expect("UTF-8"));
@@ -486,11 +640,16 @@ fn tables_of_the_paper_are_measured_and_written() {
     assert_eq!(report["rows"][0]["checked_views"], 2);
     assert!(report["rows"][0]["frustum_percent"].as_f64() >= report["rows"][0]["occlusion_percent"].as_f64());
     assert_eq!(report["params"]["occluders"], "32");
-    assert!(read("coorg-teller-table-1.svg").starts_with(b"<svg") && read("coorg-teller-table-1.pdf").starts_with(b"%PDF"));
+    assert!(
+        read("coorg-teller-table-1.svg").starts_with(b"<svg")
+            && read("coorg-teller-table-1.pdf").starts_with(b"%PDF")
+    );
     assert!(read("coorg-teller-table-1.png").starts_with(b"\x89PNG"));
     assert_eq!(fs::read_dir(here.join("tables")).expect("a folder").count(), 5, "and no unfinished file");
     assert!(refused(&here, &["paper"], 2).contains("coorg-teller-table-1"));
-    assert!(refused(&here, &["paper", "coorg-teller-tabel-1"], 2).contains("did you mean `coorg-teller-table-1`"));
+    assert!(
+        refused(&here, &["paper", "coorg-teller-tabel-1"], 2).contains("did you mean `coorg-teller-table-1`")
+    );
     assert!(refused(&here, &["paper", "coorg-teller-nodes", "--set", "occluder=3"], 2).contains("occluders"));
     refused(&here, &["paper", "coorg-teller-nodes", "--scene", "missing.obj"], 1);
     refused(&here, &["paper", "coorg-teller-nodes", "--size", "0x3"], 2);
@@ -499,19 +658,27 @@ fn tables_of_the_paper_are_measured_and_written() {
 #[test]
 fn occlusion_is_measured_on_an_input_that_others_read_too() {
     let folder = folder("bench");
-    fs::write(folder.join("wall.obj"), "v -2 -2 -5\nv 2 -2 -5\nv 2 2 -5\nv -2 2 -5\nf 1 2 3 4\n").expect("a written file");
+    fs::write(folder.join("wall.obj"), "v -2 -2 -5\nv 2 -2 -5\nv 2 2 -5\nv -2 2 -5\nf 1 2 3 4\n")
+        .expect("a written file");
     // Behind the wall, before it, behind the eye, beside the wall.
     let boxes = "-0.5 -0.5 -8 0.5 0.5 -7\n-0.5 -0.5 -4 0.5 0.5 -3\n0 0 3 1 1 4\n6 -0.5 -8 7 0.5 -7\n";
     fs::write(folder.join("boxes.txt"), boxes).expect("a written file");
     let camera = "1 0 0 0  0 1 0 0  0 0 -1 -0.2  0 0 -1 0  0.1  0 0 0\n";
     fs::write(folder.join("cams.txt"), camera).expect("a written file");
-    let call = ["bench", "occlusion", "--mesh", "wall.obj", "--boxes", "boxes.txt", "--cams", "cams.txt", "--size"];
+    let call =
+        ["bench", "occlusion", "--mesh", "wall.obj", "--boxes", "boxes.txt", "--cams", "cams.txt", "--size"];
     let said = done(&folder, &[&call[..], &["64x64", "--repeat", "2", "--dump-vis", "vis"]].concat());
-    assert!(said.starts_with("RESULT render_ms=") && said.contains(" pct_occluded_of_infrustum=33.333 false=0 hash="), "{said}");
+    assert!(
+        said.starts_with("RESULT render_ms=")
+            && said.contains(" pct_occluded_of_infrustum=33.333 false=0 hash="),
+        "{said}"
+    );
     assert_eq!(fs::read(folder.join("vis")).expect("a written file"), [1, 0, 3, 0]);
     let wide = refused(&folder, &[&call[..], &["64x32"]].concat(), 1);
     assert!(wide.contains("cams.txt line 1") && wide.contains("square"), "{wide}");
     fs::write(folder.join("cams.txt"), "1 2 3\n").expect("a written file");
     assert!(refused(&folder, &[&call[..], &["64x64"]].concat(), 1).contains("expected 20 finite numbers"));
-    assert!(refused(&folder, &[&call[..], &["64x64", "--set", "coherenc=true"]].concat(), 2).contains("coherenc"));
+    assert!(
+        refused(&folder, &[&call[..], &["64x64", "--set", "coherenc=true"]].concat(), 2).contains("coherenc")
+    );
 }

@@ -61,11 +61,14 @@ fn file(path: &str) -> AnyScene {
 fn flat_scenes() -> Vec<Arc<Scene<Flat>>> {
     let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Flat>(s, 60, |[a, b, _]| [a, b])).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes2d");
-    let mut files: Vec<_> = std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path()).collect();
+    let mut files: Vec<_> =
+        std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path()).collect();
     files.retain(|p| p.extension().is_some_and(|e| e == "json"));
     files.sort();
     for path in files {
-        match load(&path.display().to_string(), &LoadOptions::default(), &Quiet).expect("a committed scene loads") {
+        match load(&path.display().to_string(), &LoadOptions::default(), &Quiet)
+            .expect("a committed scene loads")
+        {
             AnyScene::Flat(scene) => scenes.push(scene),
             AnyScene::Solid(_) => panic!("{} is not flat", path.display()),
         }
@@ -75,7 +78,8 @@ fn flat_scenes() -> Vec<Arc<Scene<Flat>>> {
 
 fn solid_scenes() -> Vec<Arc<Scene<Solid>>> {
     let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Solid>(s, 80, |c| c)).collect();
-    let building = load("generate:building?polygons=2000&seed=5", &LoadOptions::default(), &Quiet).expect("a building");
+    let building =
+        load("generate:building?polygons=2000&seed=5", &LoadOptions::default(), &Quiet).expect("a building");
     for scene in [building, file("scenes3d/freedoom_e1m1/freedoom_e1m1.obj")] {
         match scene {
             AnyScene::Solid(scene) => scenes.push(scene),
@@ -96,7 +100,11 @@ fn settings<S: World>(entry: &dyn Entry<S>) -> Vec<Settings> {
             KnobValue::Budget(_) => "0".to_owned(),
             // Every other word in turn.
             KnobValue::Choice(chosen, options) => {
-                let others = options.iter().enumerate().filter(|(i, _)| *i != chosen).map(|(_, word)| (*word).to_owned());
+                let others = options
+                    .iter()
+                    .enumerate()
+                    .filter(|(i, _)| *i != chosen)
+                    .map(|(_, word)| (*word).to_owned());
                 all.extend(others.map(|word| Settings([(knob.name.to_owned(), word)].into())));
                 continue;
             }
@@ -121,7 +129,10 @@ fn ready<S: World>(entry: &dyn Entry<S>, scene: &Arc<Scene<S>>, settings: &Setti
     entry.ready(scene, settings, &Quiet).expect("settings fit").expect("not cancelled")
 }
 
-fn each_case<S: World>(scenes: &[Arc<Scene<S>>], mut check: impl FnMut(&dyn Entry<S>, &Arc<Scene<S>>, &Settings)) {
+fn each_case<S: World>(
+    scenes: &[Arc<Scene<S>>],
+    mut check: impl FnMut(&dyn Entry<S>, &Arc<Scene<S>>, &Settings),
+) {
     for entry in S::methods() {
         for settings in settings(*entry) {
             scenes.iter().for_each(|scene| check(*entry, scene, &settings));
@@ -133,7 +144,8 @@ fn watched_runs_decide_the_same<S: World>(scenes: &[Arc<Scene<S>>]) {
     each_case(scenes, |entry, scene, settings| {
         let what = format!("{} {settings:?} on {}", entry.card().key, scene.name());
         let views = views(scene, 1);
-        let [mut plain, mut counted, mut recorded, mut capped] = [(); 4].map(|()| ready(entry, scene, settings));
+        let [mut plain, mut counted, mut recorded, mut capped] =
+            [(); 4].map(|()| ready(entry, scene, settings));
         for view in &views {
             let list = plain.cull(view);
             assert_eq!(list, counted.count(view).0, "{what}: counted");
@@ -149,7 +161,11 @@ fn watched_runs_decide_the_same<S: World>(scenes: &[Arc<Scene<S>>]) {
         plain.forget();
         let again: Vec<_> = views.iter().map(|v| plain.cull(v)).collect();
         plain.forget();
-        assert_eq!(again, views.iter().map(|v| plain.cull(v)).collect::<Vec<_>>(), "{what}: after forgetting");
+        assert_eq!(
+            again,
+            views.iter().map(|v| plain.cull(v)).collect::<Vec<_>>(),
+            "{what}: after forgetting"
+        );
     });
 }
 
@@ -172,7 +188,11 @@ fn entered_is_left(events: &[Event], what: &str) {
     for (at, event) in events.iter().enumerate() {
         match event {
             Event::Entered(node) => open.push(*node),
-            Event::Left(node) => assert_eq!(open.pop(), Some(*node), "{what}: event {at} leaves the node that was entered last"),
+            Event::Left(node) => assert_eq!(
+                open.pop(),
+                Some(*node),
+                "{what}: event {at} leaves the node that was entered last"
+            ),
             _ => {}
         }
     }
@@ -208,13 +228,17 @@ fn stamps_are_the_fold<S: Space>(film: &dyn Film<S>) {
     for step in 0..=film.events().len() {
         if let Some(at) = step.checked_sub(1) {
             match film.events()[at] {
-                Event::DecidedNode(n, v) if v != Verdict::Partial => film.hierarchy().prims(n).iter().for_each(|p| _ = fold[p.at()].get_or_insert(v)),
+                Event::DecidedNode(n, v) if v != Verdict::Partial => {
+                    film.hierarchy().prims(n).iter().for_each(|p| _ = fold[p.at()].get_or_insert(v))
+                }
                 Event::DecidedPrim(p, v) if v != Verdict::Partial => _ = fold[p.at()].get_or_insert(v),
                 _ => {}
             }
         }
         let counts = stamps.counts(step);
-        for verdict in [Verdict::Outside, Verdict::Hidden, Verdict::Visible, Verdict::Approximated, Verdict::OverBudget] {
+        for verdict in
+            [Verdict::Outside, Verdict::Hidden, Verdict::Visible, Verdict::Approximated, Verdict::OverBudget]
+        {
             let folded = fold.iter().flatten().filter(|v| **v == verdict).count();
             assert_eq!(counts.of(verdict), folded, "{}: {verdict:?} at step {step}", film.card().key);
         }
@@ -279,7 +303,9 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         let key = entry.card().key;
         let (mut unseen, mut culled) = (0, 0);
         for scene in scenes {
-            for settings in [Settings::default(), Settings([("backface-culling".to_owned(), "true".to_owned())].into())] {
+            for settings in
+                [Settings::default(), Settings([("backface-culling".to_owned(), "true".to_owned())].into())]
+            {
                 let one_sided = !settings.0.is_empty();
                 let mut run = ready(*entry, scene, &settings);
                 let mut truth = Truth::new(scene, one_sided, 1, [1.0; 3]);
@@ -302,9 +328,13 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         }
         let share = culled as f64 / unseen as f64;
         let floor = FLOORS.iter().find(|(method, space, _)| *method == key && *space == S::NAME);
-        let (.., floor) = *floor.unwrap_or_else(|| panic!("`{key}` in {} needs a line in FLOORS; it culls {share:.3}", S::NAME));
+        let (.., floor) = *floor
+            .unwrap_or_else(|| panic!("`{key}` in {} needs a line in FLOORS; it culls {share:.3}", S::NAME));
         if share < floor {
-            fallen.push(format!("{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before", S::NAME));
+            fallen.push(format!(
+                "{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before",
+                S::NAME
+            ));
         }
         println!("{key} in {}: {share:.4}", S::NAME);
     }

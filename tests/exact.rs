@@ -1,5 +1,5 @@
-//! The conservative methods on real models: no visible primitive is missed, and the image of what was kept is the
-//! image of everything, byte for byte.
+//! The conservative methods on real models: no visible primitive is missed, and the image of what was kept is
+//! the image of everything, byte for byte.
 //!
 //! The committed scenes always, from a few views. Where `CULLSCOPE_SCENES` names a folder, every model below
 //! it as well, along its whole paths and from 100 random views:
@@ -19,7 +19,8 @@ const WHITE: [f32; 3] = [1.0; 3];
 
 /// Scene files below a folder, in order.
 fn models(folder: &Path, into: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).expect("a readable folder").map(|e| e.expect("an entry").path()).collect();
+    let mut entries: Vec<PathBuf> =
+        std::fs::read_dir(folder).expect("a readable folder").map(|e| e.expect("an entry").path()).collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {
@@ -43,7 +44,12 @@ struct Sum {
     all_ms: f64,
 }
 
-fn look<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>, views: &[View<S>]) -> Sum {
+fn look<S: Methods + Drawable>(
+    method: &str,
+    pairs: &[(&str, &str)],
+    scene: &Arc<Scene<S>>,
+    views: &[View<S>],
+) -> Sum {
     let entry = S::method(method).expect("a method");
     let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
     let mut run = entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled");
@@ -61,7 +67,11 @@ fn look<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc
         assert_eq!(judged.wrong_items == 0, *truth.image() == target, "{}: items and depths", scene.name());
         // The colored images as bytes, from now and then, since coloring is slower than drawing.
         if sum.drawn == 0 {
-            assert!(shade(truth.image(), scene, view, WHITE) == shade(&target, scene, view, WHITE), "{}: {view:?}", scene.name());
+            assert!(
+                shade(truth.image(), scene, view, WHITE) == shade(&target, scene, view, WHITE),
+                "{}: {view:?}",
+                scene.name()
+            );
         }
         sum.drawn += list.prims.len();
         sum.visible += judged.visible.len();
@@ -91,19 +101,31 @@ const METHODS: [(&str, &[(&str, &str)]); 8] = [
     ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
     ("hierarchical-z", &[("processors", "4"), ("leaf-primitives", "256")]),
     ("layered-projection", &[("budget", "2%"), ("queries", "true")]),
-    ("layered-projection", &[("budget", "5%"), ("queries", "true"), ("tessellation", "octree"), ("seeds", "16")]),
+    (
+        "layered-projection",
+        &[("budget", "5%"), ("queries", "true"), ("tessellation", "octree"), ("seeds", "16")],
+    ),
 ];
 
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
-    METHODS.iter().map(|(method, pairs)| check_method(method, pairs, scene, views)).fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
+    METHODS
+        .iter()
+        .map(|(method, pairs)| check_method(method, pairs, scene, views))
+        .fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }
 
-fn check_method<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
+fn check_method<S: Methods + Drawable>(
+    method: &str,
+    pairs: &[(&str, &str)],
+    scene: &Arc<Scene<S>>,
+    views: &[View<S>],
+) -> (usize, usize) {
     let sum = look(method, pairs, scene, views);
     let method = pairs.iter().fold(method.to_owned(), |text, (k, v)| format!("{text} {k}={v}"));
     let per = |total: f64| total / sum.views.max(1) as f64;
     println!(
-        "{method:<16} {:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",
+        "{method:<16} {:<28} {:>7} {}s {:>4} views: {} missed, {} wrong pixels; drawn {:>8.0} visible \
+         {:>7.0} a view; cull {:.3} ms, draw {:.2} ms, truth {:.2} ms",
         scene.name(),
         scene.live().len(),
         S::PRIM,

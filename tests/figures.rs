@@ -22,15 +22,21 @@ fn figures_are_what_is_shown_in_the_documentation() {
         let path = folder().join(figure.name).with_extension("svg");
         if let Some(out) = std::env::var_os("FIGURES_OUT") {
             let bytes = png(&drawing, Theme::Print, PngSize::Dpi(144.0), None).expect("a picture");
-            fs::write(Path::new(&out).join(figure.name).with_extension("png"), bytes).expect("the picture can be written");
+            fs::write(Path::new(&out).join(figure.name).with_extension("png"), bytes)
+                .expect("the picture can be written");
         }
         if std::env::var_os("UPDATE_FIGURES").is_some() {
             fs::create_dir_all(folder()).expect("the folder");
             fs::write(&path, text).expect("the figure can be written");
             continue;
         }
-        let golden = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}; UPDATE_FIGURES=1 writes it", path.display()));
-        assert!(text == golden, "{} differs from its file; if that is meant, UPDATE_FIGURES=1 writes it anew", figure.name);
+        let golden = fs::read_to_string(&path)
+            .unwrap_or_else(|e| panic!("{}: {e}; UPDATE_FIGURES=1 writes it", path.display()));
+        assert!(
+            text == golden,
+            "{} differs from its file; if that is meant, UPDATE_FIGURES=1 writes it anew",
+            figure.name
+        );
     }
 }
 
@@ -38,7 +44,11 @@ fn figures_are_what_is_shown_in_the_documentation() {
 fn every_file_in_the_folder_is_a_built_in_figure() {
     for entry in fs::read_dir(folder()).expect("screenshots/figures").map(|e| e.expect("an entry").path()) {
         let stem = entry.file_stem().expect("a name").to_string_lossy().into_owned();
-        assert!(BUILTIN.iter().any(|f| f.name == stem), "{} is no figure any more: delete it", entry.display());
+        assert!(
+            BUILTIN.iter().any(|f| f.name == stem),
+            "{} is no figure any more: delete it",
+            entry.display()
+        );
     }
 }
 
@@ -49,7 +59,11 @@ fn figures_are_the_same_bytes_each_time_in_every_format() {
     let files = || {
         let drawing = figure.drawing(&tint).expect("a figure");
         let svg = svg(&drawing, Theme::Print, &SvgOptions::default()).into_bytes();
-        [svg, pdf(&drawing, Theme::Print, None).expect("a file"), png(&drawing, Theme::Print, PngSize::Dpi(96.0), None).expect("a picture")]
+        [
+            svg,
+            pdf(&drawing, Theme::Print, None).expect("a file"),
+            png(&drawing, Theme::Print, PngSize::Dpi(96.0), None).expect("a picture"),
+        ]
     };
     assert!(files() == files());
 }

@@ -11,7 +11,8 @@ use cullscope::geometry::{Flat, PrimId, View};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use glam::DVec2;
 
-/// Angles between two directions below which nothing counts as seen, radians: what 32-bit rounding moves things by.
+/// Angles between two directions below which nothing counts as seen, radians: what 32-bit rounding moves
+/// things by.
 const LEAST_ANGLE: f64 = 1e-6;
 
 fn scenes() -> Vec<(PathBuf, Arc<Scene<Flat>>)> {
@@ -48,7 +49,8 @@ fn look(scene: &Scene<Flat>, view: &View<Flat>) -> Seen {
         points.extend(segments[..i].iter().filter_map(|b| crossing((a.1, a.2), (b.1, b.2))));
     }
     let angle = |p: DVec2| forward.angle_to(p - eye);
-    let mut angles: Vec<f64> = points.into_iter().map(angle).filter(|a| a.abs() < half).chain([-half, half]).collect();
+    let mut angles: Vec<f64> =
+        points.into_iter().map(angle).filter(|a| a.abs() < half).chain([-half, half]).collect();
     angles.sort_by(f64::total_cmp);
     let (mut visible, mut hit) = (BTreeSet::new(), BTreeSet::new());
     for w in angles.windows(2).filter(|w| w[1] - w[0] > LEAST_ANGLE) {
@@ -88,7 +90,12 @@ fn every_scene_says_what_it_teaches_and_has_eyes_and_facts() {
         assert!(!about.title.is_empty() && about.teaches.ends_with('.'), "{name}");
         assert!(!about.expect.is_empty() && !about.license.is_empty(), "{name}");
         assert_eq!(scene.paths()[0].name, "eyes", "{name}");
-        assert_eq!(scene.report().dropped_total() + scene.report().notes.len(), 0, "{name}: {:?}", scene.report());
+        assert_eq!(
+            scene.report().dropped_total() + scene.report().notes.len(),
+            0,
+            "{name}: {:?}",
+            scene.report()
+        );
     }
 }
 
@@ -101,14 +108,19 @@ fn every_fact_is_true_and_none_is_missing() {
             let set = |list: &[PrimId]| list.iter().copied().collect::<BTreeSet<_>>();
             assert_eq!(set(&fact.visible), seen.visible, "visible: {what}");
             assert_eq!(set(&fact.hidden), seen.hidden, "hidden: {what}");
-            assert_eq!(fact.visible.len() + fact.hidden.len() + fact.outside.len(), scene.prim_count(), "{what}");
+            assert_eq!(
+                fact.visible.len() + fact.hidden.len() + fact.outside.len(),
+                scene.prim_count(),
+                "{what}"
+            );
         }
     }
 }
 
 #[test]
 fn what_a_scene_is_for_is_in_its_facts() {
-    let find = |name: &str| scenes().into_iter().find(|(p, _)| p.ends_with(name)).expect("a scene of this name").1;
+    let find =
+        |name: &str| scenes().into_iter().find(|(p, _)| p.ends_with(name)).expect("a scene of this name").1;
     // Both walls together hide the box; without either of them it is seen.
     let fusion = find("fusion.json");
     let view = &fusion.paths()[0].views[0];

@@ -10,7 +10,8 @@ use cullscope::drawing::{Drawing, Layer, Mark, Role, Subject};
 use cullscope::geometry::{Eye, Frustum, MaterialId, NodeId, ObjectId, PrimId, Solid, View};
 use cullscope::render::Theme;
 use cullscope::render::gpu::{
-    ColorBy, GpuError, Headless, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, Surface, ViewportId, headless,
+    ColorBy, GpuError, Headless, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, Surface,
+    ViewportId, headless,
 };
 use cullscope::scene::{Face, Material, Object, Parts, Quiet, Report, Scene};
 use cullscope::trace::Stamps;
@@ -32,7 +33,8 @@ fn device() -> Option<Headless> {
 
 /// A scene of boxes (center, half size, color); each is an object.
 fn boxes(list: &[(Vec3, Vec3, [f32; 3])]) -> Arc<Scene<Solid>> {
-    let (mut points, mut prims, mut faces, mut objects, mut materials) = (vec![], vec![], vec![], vec![], vec![]);
+    let (mut points, mut prims, mut faces, mut objects, mut materials) =
+        (vec![], vec![], vec![], vec![], vec![]);
     let (mut prim_object, mut prim_material) = (vec![], vec![]);
     let sign = |k: u32, axis: u32| if k >> axis & 1 == 1 { 1.0 } else { -1.0 };
     for (i, &(center, half, color)) in list.iter().enumerate() {
@@ -51,7 +53,20 @@ fn boxes(list: &[(Vec3, Vec3, [f32; 3])]) -> Arc<Scene<Solid>> {
     }
     let (name, source) = ("boxes".into(), "boxes".into());
     let (origin, paths, report) = (DVec3::ZERO, vec![], Report::default());
-    let parts = Parts::<Solid> { name, source, points, prims, prim_object, prim_material, faces, objects, materials, origin, paths, report };
+    let parts = Parts::<Solid> {
+        name,
+        source,
+        points,
+        prims,
+        prim_object,
+        prim_material,
+        faces,
+        objects,
+        materials,
+        origin,
+        paths,
+        report,
+    };
     Arc::new(Scene::new(parts).expect("a well-formed scene"))
 }
 
@@ -61,19 +76,31 @@ fn town() -> Arc<Scene<Solid>> {
     for x in -3..=3 {
         for z in -3..=3 {
             let height = 0.6 + ((x * 5 + z * 3) as f32).sin().abs();
-            list.push((Vec3::new(x as f32 * 4.0, height, z as f32 * 4.0), Vec3::new(0.9, height, 0.9), [0.7, 0.45, 0.3]));
+            list.push((
+                Vec3::new(x as f32 * 4.0, height, z as f32 * 4.0),
+                Vec3::new(0.9, height, 0.9),
+                [0.7, 0.45, 0.3],
+            ));
         }
     }
     boxes(&list)
 }
 
 fn eye() -> Eye<Solid> {
-    Eye { position: Vec3::new(-2.0, 1.6, 12.0), target: Vec3::new(1.0, 1.2, 0.0), up: Vec3::Y, fov: 0.7, near: 0.5, far: 22.0 }
+    Eye {
+        position: Vec3::new(-2.0, 1.6, 12.0),
+        target: Vec3::new(1.0, 1.2, 0.0),
+        up: Vec3::Y,
+        fov: 0.7,
+        near: 0.5,
+        far: 22.0,
+    }
 }
 
 fn film(scene: &Arc<Scene<Solid>>, eye: Eye<Solid>) -> Arc<dyn Film<Solid>> {
     let method = Solid::method("frustum").expect("the method");
-    let mut run = method.ready(scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
+    let mut run =
+        method.ready(scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
     run.record(&View { eye, width: SIZE[0], height: SIZE[1] }, 1_000_000).film
 }
 
@@ -92,7 +119,14 @@ fn marks(film: &dyn Film<Solid>, step: usize) -> Drawing<Vec3> {
 }
 
 fn observer() -> SpaceCamera {
-    SpaceCamera { position: Vec3::new(16.0, 20.0, 26.0), target: Vec3::new(0.0, 0.0, 1.0), up: Vec3::Y, fov: 0.8, near: 0.1, far: f32::INFINITY }
+    SpaceCamera {
+        position: Vec3::new(16.0, 20.0, 26.0),
+        target: Vec3::new(0.0, 0.0, 1.0),
+        up: Vec3::Y,
+        fov: 0.8,
+        near: 0.1,
+        far: f32::INFINITY,
+    }
 }
 
 fn palette() -> Palette {
@@ -136,7 +170,8 @@ fn pixel(rgba: &[u8], x: u32, y: u32) -> [u8; 3] {
 fn is_shade_of(c: [u8; 3], flat: [u8; 3]) -> bool {
     let most = |c: [u8; 3]| f32::from(c.into_iter().max().unwrap_or(0));
     let shade = most(c) / most(flat);
-    (0.5..=1.01).contains(&shade) && (0..3).all(|i| (f32::from(c[i]) - f32::from(flat[i]) * shade).abs() <= 3.0)
+    (0.5..=1.01).contains(&shade)
+        && (0..3).all(|i| (f32::from(c[i]) - f32::from(flat[i]) * shade).abs() <= 3.0)
 }
 fn count(rgba: &[u8], flat: [u8; 3]) -> usize {
     rgba.chunks_exact(4).filter(|c| is_shade_of([c[0], c[1], c[2]], flat)).count()
@@ -175,18 +210,36 @@ fn the_step_of_a_decision_is_the_first_that_shows_it() {
     let Some(mut stage) = Stage::new(&scene) else { return };
     let film = film(&scene, eye());
     let stamps = stage.show(&film, &[]);
-    let kept = scene.live().iter().find(|p| stamps.prims()[p.at()].verdict == Verdict::Visible).copied().expect("something is kept");
+    let kept = scene
+        .live()
+        .iter()
+        .find(|p| stamps.prims()[p.at()].verdict == Verdict::Visible)
+        .copied()
+        .expect("something is kept");
     let step = stamps.decided_at(kept).expect("it was decided");
-    let blue = |step| count(&stage.picture(&observer(), &SpaceStyle { undecided: Shown::Not, ..plain(step) }), flat(Role::Visible));
+    let blue = |step| {
+        count(
+            &stage.picture(&observer(), &SpaceStyle { undecided: Shown::Not, ..plain(step) }),
+            flat(Role::Visible),
+        )
+    };
     assert!(blue(step) > blue(step - 1), "{} {}", blue(step - 1), blue(step));
 }
 
 #[test]
 fn the_nearer_triangle_wins_in_either_order() {
     let (red, green) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
-    let camera = SpaceCamera { position: Vec3::new(0.0, 0.0, 5.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.8, near: 0.1, far: 4000.0 };
+    let camera = SpaceCamera {
+        position: Vec3::new(0.0, 0.0, 5.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        fov: 0.8,
+        near: 0.1,
+        far: 4000.0,
+    };
     for order in [[0, 1], [1, 0]] {
-        let both = [(Vec3::ZERO, Vec3::splat(0.5), red), (Vec3::new(0.0, 0.0, -40.0), Vec3::splat(10.0), green)];
+        let both =
+            [(Vec3::ZERO, Vec3::splat(0.5), red), (Vec3::new(0.0, 0.0, -40.0), Vec3::splat(10.0), green)];
         let Some(stage) = Stage::new(&boxes(&order.map(|i| both[i]))) else { return };
         let picture = stage.picture(&camera, &SpaceStyle { color_by: ColorBy::Material, ..plain(0) });
         assert!(is_shade_of(pixel(&picture, 160, 120), [255, 0, 0]), "{:?}", pixel(&picture, 160, 120));
@@ -209,25 +262,43 @@ fn the_eyes_view_leaves_out_what_was_culled() {
     assert!(stamps.counts(last).of(Verdict::Outside) > 50, "the test needs culled triangles");
     let kept = stage.picture(&observer(), &SpaceStyle::eye(last, palette()));
     let all = stage.picture(&observer(), &SpaceStyle { culled: Shown::Solid, ..plain(last) });
-    let counts = [count(&all, flat(Role::Outside)), count(&kept, flat(Role::Outside)), count(&kept, flat(Role::Visible))];
+    let counts = [
+        count(&all, flat(Role::Outside)),
+        count(&kept, flat(Role::Outside)),
+        count(&kept, flat(Role::Visible)),
+    ];
     assert!(counts[0] > 2000 && counts[1] == 0 && counts[2] > 2000, "{counts:?}");
     // Through the Eye itself nothing is missing.
     let camera = SpaceCamera::from(eye());
-    let through = |culled| stage.picture(&camera, &SpaceStyle { color_by: ColorBy::Material, culled, ..SpaceStyle::eye(last, palette()) });
+    let through = |culled| {
+        stage.picture(
+            &camera,
+            &SpaceStyle { color_by: ColorBy::Material, culled, ..SpaceStyle::eye(last, palette()) },
+        )
+    };
     assert_eq!(through(Shown::Not), through(Shown::Solid));
     // Before anything is decided it shows nothing, or everything if asked.
-    let at_start = |undecided| stage.picture(&camera, &SpaceStyle { undecided, ..SpaceStyle::eye(0, palette()) });
+    let at_start =
+        |undecided| stage.picture(&camera, &SpaceStyle { undecided, ..SpaceStyle::eye(0, palette()) });
     assert_eq!(inked(&at_start(Shown::Not)), 0);
     assert!(count(&at_start(Shown::Solid), flat(Role::Scene)) > 10_000);
 }
 
 #[test]
 fn ghosts_hide_nothing() {
-    // A culled box stands before a kept one: as a ghost it lets the kept one through, wherever it comes in the scene.
+    // A culled box stands before a kept one: as a ghost it lets the kept one through, wherever it comes in
+    // the scene.
     let near = (Vec3::new(0.0, 0.0, 8.0), Vec3::splat(0.5), [1.0; 3]);
     let far = (Vec3::new(0.0, 0.0, -8.0), Vec3::splat(1.5), [1.0; 3]);
     let eye = Eye { position: Vec3::ZERO, target: -Vec3::Z, up: Vec3::Y, fov: 0.6, near: 0.1, far: 50.0 };
-    let camera = SpaceCamera { position: Vec3::new(0.0, 0.0, 14.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.6, near: 0.1, far: 100.0 };
+    let camera = SpaceCamera {
+        position: Vec3::new(0.0, 0.0, 14.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        fov: 0.6,
+        near: 0.1,
+        far: 100.0,
+    };
     for order in [[near, far], [far, near]] {
         let scene = boxes(&order);
         let Some(mut stage) = Stage::new(&scene) else { return };
@@ -244,7 +315,10 @@ fn ghosts_hide_nothing() {
         assert!(b > g && g > r, "blue shines through: {:?}", [r, g, b]);
         assert_ne!(ghost, alone, "and the ghost is seen");
         // What was culled wrongly is solid and in its own color, from the step of its decision on.
-        stage.show(&film, &scene.live().iter().copied().filter(|&p| scene.prim_bounds(p).max.z > 0.0).collect::<Vec<_>>());
+        stage.show(
+            &film,
+            &scene.live().iter().copied().filter(|&p| scene.prim_bounds(p).max.z > 0.0).collect::<Vec<_>>(),
+        );
         assert!(count(&stage.picture(&camera, &plain(last)), flat(Role::Wrong)) > 500);
         assert_eq!(count(&stage.picture(&camera, &plain(0)), flat(Role::Wrong)), 0);
     }
@@ -258,7 +332,10 @@ fn two_viewports_in_one_frame_and_the_same_picture_twice() {
     stage.show(&film, &[]);
     stage.mark(&marks(&*film, 40));
     let (a, b) = (ViewportId(1), ViewportId(2));
-    let (above, through) = (SpaceStyle::observer(40, palette()), SpaceStyle { undecided: Shown::Solid, ..SpaceStyle::eye(40, palette()) });
+    let (above, through) = (
+        SpaceStyle::observer(40, palette()),
+        SpaceStyle { undecided: Shown::Solid, ..SpaceStyle::eye(40, palette()) },
+    );
     let camera = SpaceCamera::from(eye());
     let draw = |layer: &mut SpaceLayer, gpu: &Headless| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -269,12 +346,17 @@ fn two_viewports_in_one_frame_and_the_same_picture_twice() {
         gpu.queue.submit([encoder.finish()]);
         drawn
     };
-    let read = |layer: &SpaceLayer, gpu: &Headless, id| layer.read_rgba(&gpu.device, &gpu.queue, id).expect("pixels");
+    let read = |layer: &SpaceLayer, gpu: &Headless, id| {
+        layer.read_rgba(&gpu.device, &gpu.queue, id).expect("pixels")
+    };
     assert_eq!(draw(&mut stage.layer, &stage.gpu), [true, true]);
     let first = [a, b].map(|id| read(&stage.layer, &stage.gpu, id).expect("drawn"));
     assert_eq!((first[1].0, first[1].1), (200, 150));
     assert_eq!(first[0].2, stage.picture(&observer(), &above), "a window and a file show the same");
-    let alone = stage.layer.snapshot(&stage.gpu.device, &stage.gpu.queue, [200, 150], 1, &camera, &through).expect("a picture");
+    let alone = stage
+        .layer
+        .snapshot(&stage.gpu.device, &stage.gpu.queue, [200, 150], 1, &camera, &through)
+        .expect("a picture");
     assert_eq!(first[1], alone);
     // Nothing changed, so nothing is drawn; then the marks change.
     assert_eq!(draw(&mut stage.layer, &stage.gpu), [false, false]);
@@ -311,9 +393,15 @@ fn a_viewport_is_copied_into_the_rect_of_a_pass() {
             view: &view,
             depth_slice: None,
             resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                store: wgpu::StoreOp::Store,
+            },
         };
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..Default::default() });
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            color_attachments: &[Some(attachment)],
+            ..Default::default()
+        });
         layer.blit(id, &mut pass.forget_lifetime());
         // 320 pixels of four bytes are a whole number of the rows that copies need.
         let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -322,8 +410,13 @@ fn a_viewport_is_copied_into_the_rect_of_a_pass() {
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
         });
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE[0] * 4), rows_per_image: None };
-        encoder.copy_texture_to_buffer(window.as_image_copy(), wgpu::TexelCopyBufferInfo { buffer: &buffer, layout }, extent);
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SIZE[0] * 4), rows_per_image: None };
+        encoder.copy_texture_to_buffer(
+            window.as_image_copy(),
+            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+            extent,
+        );
         gpu.queue.submit([encoder.finish()]);
         buffer.slice(..).map_async(wgpu::MapMode::Read, |r| r.expect("mapped"));
         gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("done");
@@ -367,8 +460,16 @@ fn wires_follow_faces_and_sections_cut() {
     let scene = boxes(&[(Vec3::ZERO, Vec3::splat(1.0), [0.2, 0.4, 0.8])]);
     let Some(stage) = Stage::new(&scene) else { return };
     // Straight on, the front face is a square: its diagonal is inside the face and has no wire.
-    let camera = SpaceCamera { position: Vec3::new(0.0, 0.0, 5.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.8, near: 0.1, far: 50.0 };
-    let wires = stage.picture(&camera, &SpaceStyle { surface: Surface::Wireframe, only_fronts: true, ..plain(0) });
+    let camera = SpaceCamera {
+        position: Vec3::new(0.0, 0.0, 5.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        fov: 0.8,
+        near: 0.1,
+        far: 50.0,
+    };
+    let wires =
+        stage.picture(&camera, &SpaceStyle { surface: Surface::Wireframe, only_fronts: true, ..plain(0) });
     assert!((100..2000).contains(&inked(&wires)), "{}", inked(&wires));
     assert_eq!(pixel(&wires, 160, 120), palette().paper);
     // Cutting the near half away opens the box: what is seen is its back, farther and so smaller.
@@ -389,17 +490,26 @@ fn tiles_join_without_a_seam_and_sizes_are_checked() {
     stage.show(&film, &[]);
     stage.mark(&marks(&*film, 60));
     let Headless { device, queue, .. } = &stage.gpu;
-    let style = SpaceStyle { surface: Surface::Both, transparent: true, ..SpaceStyle::observer(60, palette()) };
+    let style =
+        SpaceStyle { surface: Surface::Both, transparent: true, ..SpaceStyle::observer(60, palette()) };
     // At 8 by 8 samples 300 pixels are two tiles wide; at 3 by 3 they are one.
     let size = [300, 150];
-    let picture = |samples| stage.layer.snapshot(device, queue, size, samples, &observer(), &style).expect("a picture").2;
+    let picture = |samples| {
+        stage.layer.snapshot(device, queue, size, samples, &observer(), &style).expect("a picture").2
+    };
     let (many, few) = (picture(8), picture(3));
     assert_eq!(many[..4], [0; 4], "the corner is transparent");
-    let column =
-        |x: usize| (0..size[1] as usize).filter(|y| (0..4).any(|c| many[(y * 300 + x) * 4 + c].abs_diff(few[(y * 300 + x) * 4 + c]) > 40)).count();
+    let column = |x: usize| {
+        (0..size[1] as usize)
+            .filter(|y| (0..4).any(|c| many[(y * 300 + x) * 4 + c].abs_diff(few[(y * 300 + x) * 4 + c]) > 40))
+            .count()
+    };
     let worst = [254, 255, 256, 257].map(column);
     assert!(worst.iter().all(|&n| n < 15), "{worst:?}");
     for size in [[0, 10], [10, 30_000]] {
-        assert!(matches!(stage.layer.snapshot(device, queue, size, 1, &observer(), &style), Err(GpuError::Size { .. })));
+        assert!(matches!(
+            stage.layer.snapshot(device, queue, size, 1, &observer(), &style),
+            Err(GpuError::Size { .. })
+        ));
     }
 }

@@ -57,13 +57,21 @@ fn shipped_models_load_whole() {
 fn scenes_of_figures_show_what_the_figures_show() {
     // How many triangles of the box are drawn: parts of it may lie behind one occluder.
     let some = 1..=12;
-    for (name, drawn) in [("joint_convex", 0..=0), ("joint_not_convex", some.clone()), ("joint_disconnected", some), ("tangent_planes", 0..=0)] {
+    for (name, drawn) in [
+        ("joint_convex", 0..=0),
+        ("joint_not_convex", some.clone()),
+        ("joint_disconnected", some),
+        ("tangent_planes", 0..=0),
+    ] {
         let scene = solid(&home().join("scenes3d").join(name).join(format!("{name}.obj")));
         let views = &scene.paths()[0].views;
-        let of_box = |prims: &[PrimId]| prims.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "T").count();
+        let of_box = |prims: &[PrimId]| {
+            prims.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "T").count()
+        };
         let mut truth = Truth::new(&scene, false, 1, [1.0; 3]);
         let method = <Solid as Methods>::method("large-occluders").expect("a method");
-        let mut run = method.ready(&scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
+        let mut run =
+            method.ready(&scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");
         assert_eq!(of_box(&truth.look(&scene, &views[0])), 0, "{name}: the box is hidden");
         let of_box_drawn = of_box(&run.cull(&views[0]).prims);
         assert!(drawn.contains(&of_box_drawn), "{name}: {of_box_drawn} triangles of the box are drawn");
@@ -82,7 +90,11 @@ fn shipped_levels_stand_in_flatland_too() {
     ] {
         let scene = flat(&home().join("scenes2d").join(name).join(format!("{name}.flat.json")));
         assert_eq!(scene.prim_count(), segments, "{name}");
-        assert_eq!((scene.objects().len(), scene.paths()[0].views.len(), scene.paths()[1].views.len()), (objects, eyes, walk), "{name}");
+        assert_eq!(
+            (scene.objects().len(), scene.paths()[0].views.len(), scene.paths()[1].views.len()),
+            (objects, eyes, walk),
+            "{name}"
+        );
     }
 }
 
@@ -117,7 +129,12 @@ fn other_models_load_whole_where_they_are() {
             continue;
         }
         let scene = solid(&path);
-        println!("{name}: {} polygons, {} views, {:?}", scene.faces().len(), scene.paths()[0].views.len(), scene.report());
+        println!(
+            "{name}: {} polygons, {} views, {:?}",
+            scene.faces().len(),
+            scene.paths()[0].views.len(),
+            scene.report()
+        );
         assert_eq!((scene.prim_count(), scene.objects().len()), (triangles, objects), "{name}");
         assert!(!scene.paths().is_empty(), "{name}");
     }

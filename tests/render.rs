@@ -16,7 +16,8 @@ use cullscope::render::{self, Look, PngSize, SvgOptions, Theme, theme::Sight};
 use glam::{Vec2, vec2};
 use sample::every_mark;
 
-const RECIPE: &str = "{\"method\":\"frustum\",\"note\":\"a < b & \\\"c\\\" > d, ünï − ρ ≤ 1\\n\",\"step\":412}";
+const RECIPE: &str =
+    "{\"method\":\"frustum\",\"note\":\"a < b & \\\"c\\\" > d, ünï − ρ ≤ 1\\n\",\"step\":412}";
 
 fn golden(name: &str, text: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/figures").join(name);
@@ -24,8 +25,16 @@ fn golden(name: &str, text: &str) {
         std::fs::write(&path, text).expect("the figure can be written");
     }
     let wanted = std::fs::read_to_string(&path).unwrap_or_default();
-    let differs = text.lines().zip(wanted.lines()).position(|(a, b)| a != b).unwrap_or(text.lines().count().min(wanted.lines().count()));
-    assert!(text == wanted, "{name} differs from the golden file at line {}; UPDATE_FIGURES=1 writes it anew", differs + 1);
+    let differs = text
+        .lines()
+        .zip(wanted.lines())
+        .position(|(a, b)| a != b)
+        .unwrap_or(text.lines().count().min(wanted.lines().count()));
+    assert!(
+        text == wanted,
+        "{name} differs from the golden file at line {}; UPDATE_FIGURES=1 writes it anew",
+        differs + 1
+    );
 }
 
 fn look_at(name: &str, bytes: &[u8]) {
@@ -57,7 +66,8 @@ fn png_is_the_same_each_time_and_shows_every_theme() {
         look_at(&format!("roles-{}.png", theme.name()), &bytes);
     }
     for sight in Sight::ALL {
-        let bytes = render::png(&d, Look { theme: Theme::Print, sight }, PngSize::WidthPx(700), None).expect("a picture");
+        let bytes = render::png(&d, Look { theme: Theme::Print, sight }, PngSize::WidthPx(700), None)
+            .expect("a picture");
         look_at(&format!("sight-{}.png", sight.name()), &bytes);
     }
     let p = render::pixels(&d, Theme::Print, PngSize::WidthPx(420)).expect("a picture");
@@ -75,8 +85,11 @@ fn pdf_is_the_same_each_time_and_embeds_its_fonts() {
     assert_eq!(bytes, render::pdf(&d, Theme::Print, Some(RECIPE)).expect("a document"));
     look_at("roles-print.pdf", &bytes);
     look_at("roles-dark.pdf", &render::pdf(&d, Theme::Dark, None).expect("a document"));
-    let mut wanted: Vec<String> =
-        d.painted().iter().filter_map(|i| if let Mark::Text { text, .. } = &i.mark { Some(text.clone()) } else { None }).collect();
+    let mut wanted: Vec<String> = d
+        .painted()
+        .iter()
+        .filter_map(|i| if let Mark::Text { text, .. } = &i.mark { Some(text.clone()) } else { None })
+        .collect();
     let mut shown = pdf_text::text_of(&bytes);
     shown.retain(|t| t != "!");
     wanted.sort();
@@ -100,7 +113,15 @@ fn recipes_come_back_from_every_format() {
     let bare = render::svg(&d, Theme::Light, &SvgOptions::default());
     assert_eq!(render::recipe(bare.as_bytes()), None);
     assert_eq!(render::recipe(&render::pdf(&d, Theme::Light, None).expect("a document")), None);
-    for broken in [&b""[..], b"\x89PNG", b"%PDF-1.7", b"<metadata id=\"recipe\">", &png[..png.len() / 2], &pdf[..pdf.len() / 2], &[0xff; 40]] {
+    for broken in [
+        &b""[..],
+        b"\x89PNG",
+        b"%PDF-1.7",
+        b"<metadata id=\"recipe\">",
+        &png[..png.len() / 2],
+        &pdf[..pdf.len() / 2],
+        &[0xff; 40],
+    ] {
         let _ = render::recipe(broken);
     }
 }
@@ -122,7 +143,13 @@ fn odd_drawings_harm_nothing() {
     let svg = render::svg(&d, Theme::Print, &SvgOptions::default());
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
     assert!(render::png(&d, Theme::Print, PngSize::WidthPx(100), None).is_ok());
-    for size in [PngSize::WidthPx(0), PngSize::WidthPx(u32::MAX), PngSize::Dpi(f32::NAN), PngSize::Dpi(-3.0), PngSize::Dpi(0.0)] {
+    for size in [
+        PngSize::WidthPx(0),
+        PngSize::WidthPx(u32::MAX),
+        PngSize::Dpi(f32::NAN),
+        PngSize::Dpi(-3.0),
+        PngSize::Dpi(0.0),
+    ] {
         assert!(render::png(&d, Theme::Print, size, None).is_err(), "{size:?}");
     }
     assert!(render::pdf(&d, Theme::Print, None).is_ok());
@@ -133,9 +160,11 @@ fn odd_drawings_harm_nothing() {
 /// A flatland scene in every state, on a page.
 fn page(paper: Paper) -> Drawing {
     let mut page = Page { paper, title: "View-frustum culling over a kD-tree".into(), ..Page::default() };
-    page.caption = "Frustum culling of scenes2d/street.json, step 412 of 1,093: node 37 lies outside plane 2 (−3.5 m), so its 12 walls are \
+    page.caption =
+        "Frustum culling of scenes2d/street.json, step 412 of 1,093: node 37 lies outside plane 2 \
+                    (−3.5 m), so its 12 walls are \
                     culled without a further test. ρ = 0.75, height 8, back-face culling on."
-        .into();
+            .into();
     let mut picture = Drawing { size_pt: vec2(228.0, 150.0), ..Drawing::default() };
     picture.title = "Step 412".into();
     let mut states = Role::STATES.into_iter().cycle();
@@ -150,8 +179,18 @@ fn page(paper: Paper) -> Drawing {
         picture.line(Layer::Frustum, Role::Eye, Subject::Eye, [eye, far]);
     }
     picture.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Dot { at: eye, radius_pt: 3.0 });
-    picture.push(Layer::Evidence, Role::Evidence, Subject::Plane(2), Mark::Arrow(vec2(120.0, 75.0), vec2(128.0, 52.0)));
-    picture.outline(Layer::Emphasis, Role::Current, Subject::None, [vec2(116.0, 74.0), vec2(150.0, 74.0), vec2(150.0, 100.0), vec2(116.0, 100.0)]);
+    picture.push(
+        Layer::Evidence,
+        Role::Evidence,
+        Subject::Plane(2),
+        Mark::Arrow(vec2(120.0, 75.0), vec2(128.0, 52.0)),
+    );
+    picture.outline(
+        Layer::Emphasis,
+        Role::Current,
+        Subject::None,
+        [vec2(116.0, 74.0), vec2(150.0, 74.0), vec2(150.0, 100.0), vec2(116.0, 100.0)],
+    );
     axis::scale_bar(&mut picture, vec2(150.0, 146.0), 7.3, 70.0, "m");
     page.legend = legend(&picture);
     page.compose(&picture)
@@ -160,19 +199,30 @@ fn page(paper: Paper) -> Drawing {
 #[test]
 fn a_page_is_the_golden_text() {
     let column = page(Paper::Column);
-    golden("page-column.svg", &render::svg(&column, Theme::Print, &SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() }));
+    golden(
+        "page-column.svg",
+        &render::svg(&column, Theme::Print, &SvgOptions { metadata: Some(RECIPE), ..SvgOptions::default() }),
+    );
     for (name, paper) in [("column", Paper::Column), ("two", Paper::TwoColumns), ("slide", Paper::Slide)] {
-        look_at(&format!("page-{name}.png"), &render::png(&page(paper), Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"));
-        look_at(&format!("page-{name}.pdf"), &render::pdf(&page(paper), Theme::Print, None).expect("a document"));
+        look_at(
+            &format!("page-{name}.png"),
+            &render::png(&page(paper), Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"),
+        );
+        look_at(
+            &format!("page-{name}.pdf"),
+            &render::pdf(&page(paper), Theme::Print, None).expect("a document"),
+        );
     }
 }
 
 #[test]
 fn axes_can_be_read() {
     let mut d = Drawing { size_pt: vec2(240.0, 160.0), ..Drawing::default() };
-    let (x, y) = (axis::Axis::of("triangles", [120.0, 2.0e6], true), axis::Axis::of("time in ms", [0.4, 37.0], false));
+    let (x, y) =
+        (axis::Axis::of("triangles", [120.0, 2.0e6], true), axis::Axis::of("time in ms", [0.4, 37.0], false));
     let [min, max] = axis::axes(&mut d, &x, &y, Vec2::splat(4.0), vec2(236.0, 156.0));
-    let at = |t: f64, ms: f64| vec2(min.x + x.place(t) * (max.x - min.x), max.y - y.place(ms) * (max.y - min.y));
+    let at =
+        |t: f64, ms: f64| vec2(min.x + x.place(t) * (max.x - min.x), max.y - y.place(ms) * (max.y - min.y));
     d.line(Layer::Scene, Role::Visible, Subject::None, [at(120.0, 0.4), at(1.3e4, 3.0), at(2.0e6, 37.0)]);
     golden("axes.svg", &render::svg(&d, Theme::Print, &SvgOptions { outline_text: true, metadata: None }));
     look_at("axes.png", &render::png(&d, Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"));

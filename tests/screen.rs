@@ -10,11 +10,13 @@ use eframe::egui::{self, Pos2, Rect};
 use glam::{Vec2, vec2};
 use sample::every_mark;
 
-/// Paints a drawing in a context of 840 × 660 points; the number of triangles and the bounds of what is inked.
+/// Paints a drawing in a context of 840 × 660 points; the number of triangles and the bounds of what is
+/// inked.
 fn painted(ctx: &egui::Context, drawing: &Drawing, scale: f32) -> (usize, Rect) {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, egui::vec2(840.0, 660.0)));
     let input = egui::RawInput { screen_rect, ..egui::RawInput::default() };
-    let mut output = ctx.run_ui(input, |ui| screen::paint(ui.painter(), drawing, Theme::Light, Pos2::ZERO, scale));
+    let mut output =
+        ctx.run_ui(input, |ui| screen::paint(ui.painter(), drawing, Theme::Light, Pos2::ZERO, scale));
     output.textures_delta.clear();
     let meshes = ctx.tessellate(output.shapes, 1.0);
     let mut inked = Rect::NOTHING;
@@ -73,7 +75,11 @@ fn ten_thousand_marks_fit_into_a_frame() {
             Layer::Scene,
             role,
             Subject::None,
-            if i % 2 == 0 { Mark::Area(points.to_vec()) } else { Mark::Line { points: points.to_vec(), closed: false } },
+            if i % 2 == 0 {
+                Mark::Area(points.to_vec())
+            } else {
+                Mark::Line { points: points.to_vec(), closed: false }
+            },
         );
     }
     painted(&ctx, &d, 1.0);
@@ -107,14 +113,17 @@ fn the_screen_looks_like_the_files() {
     let Some(folder) = std::env::var_os("FIGURES_OUT") else { return };
     for theme in Theme::ALL {
         let d = every_mark();
-        let mut harness = egui_kittest::Harness::builder().with_size(egui::vec2(840.0, 660.0)).wgpu().build_ui(move |ui| {
-            screen::install_fonts(ui.ctx());
-            screen::paint_paper(ui.painter(), d.size_pt, theme, Pos2::ZERO, 2.0);
-            screen::paint(ui.painter(), &d, theme, Pos2::ZERO, 2.0);
-        });
+        let mut harness =
+            egui_kittest::Harness::builder().with_size(egui::vec2(840.0, 660.0)).wgpu().build_ui(move |ui| {
+                screen::install_fonts(ui.ctx());
+                screen::paint_paper(ui.painter(), d.size_pt, theme, Pos2::ZERO, 2.0);
+                screen::paint(ui.painter(), &d, theme, Pos2::ZERO, 2.0);
+            });
         harness.remove_cursor();
         harness.run();
         let picture = harness.render().expect("a picture");
-        picture.save(std::path::Path::new(&folder).join(format!("screen-{}.png", theme.name()))).expect("the picture can be written");
+        picture
+            .save(std::path::Path::new(&folder).join(format!("screen-{}.png", theme.name())))
+            .expect("the picture can be written");
     }
 }

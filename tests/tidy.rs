@@ -81,7 +81,11 @@ fn room(path: &Path) -> String {
 
 fn rank(room: &str) -> u8 {
     let found = ROOMS.iter().find(|(name, _)| *name == room);
-    found.unwrap_or_else(|| panic!("src/{room} is no room: give it a rank in tests/tidy.rs and a line in ARCHITECTURE.md")).1
+    found
+        .unwrap_or_else(|| {
+            panic!("src/{room} is no room: give it a rank in tests/tidy.rs and a line in ARCHITECTURE.md")
+        })
+        .1
 }
 
 /// The code of a file: comments blanked, unit tests at its end cut off.
@@ -126,7 +130,9 @@ fn nobody_looks_uphill() {
     for (path, text) in sources("src") {
         let here = room(&path);
         for (line, there) in rooms_used(&code(&text)) {
-            let allowed = there == here || rank(&there) < rank(&here) || PEERS.contains(&(here.as_str(), there.as_str()));
+            let allowed = there == here
+                || rank(&there) < rank(&here)
+                || PEERS.contains(&(here.as_str(), there.as_str()));
             if !allowed {
                 wrong.push(format!("{}:{line}: room `{here}` uses `{there}`", path.display()));
             }
@@ -137,7 +143,8 @@ fn nobody_looks_uphill() {
 
 #[test]
 fn the_uphill_test_sees_every_form_of_use() {
-    let text = "use crate::views;\nuse crate::{app::State, cli::{a, b}, render};\nlet x = crate::trace::Stamps::new();";
+    let text = "use crate::views;\nuse crate::{app::State, cli::{a, b}, render};\nlet x = \
+                crate::trace::Stamps::new();";
     let names: Vec<_> = rooms_used(text).into_iter().map(|(line, name)| format!("{line}{name}")).collect();
     assert_eq!(names, ["1views", "2app", "2cli", "2render", "3trace"]);
 }
@@ -181,7 +188,16 @@ fn functions_fit_on_a_screen() {
         for (i, line) in code(&text).lines().enumerate() {
             let indent = line.len() - line.trim_start().len();
             let words = line.trim_start();
-            let begins = ["fn ", "pub fn ", "pub(super) fn ", "pub(crate) fn ", "unsafe fn ", "pub unsafe fn ", "const fn ", "pub const fn "];
+            let begins = [
+                "fn ",
+                "pub fn ",
+                "pub(super) fn ",
+                "pub(crate) fn ",
+                "unsafe fn ",
+                "pub unsafe fn ",
+                "const fn ",
+                "pub const fn ",
+            ];
             if begins.iter().any(|b| words.starts_with(b)) && !words.ends_with(';') && !words.ends_with('}') {
                 open = Some((i, indent, words.chars().take(50).collect()));
             } else if let Some((from, depth, name)) = &open
@@ -212,7 +228,9 @@ fn methods_are_strangers_to_each_other() {
     for (path, text) in sources("src/culling") {
         let own = path.iter().nth(2).and_then(|n| n.to_str()).unwrap_or("").to_owned();
         // What methods share names none of them either.
-        for other in methods.iter().filter(|m| methods.contains(&own) && **m != own && !SHARED.contains(&m.as_str())) {
+        for other in
+            methods.iter().filter(|m| methods.contains(&own) && **m != own && !SHARED.contains(&m.as_str()))
+        {
             if code(&text).contains(&format!("{other}::")) {
                 wrong.push(format!("{}: method `{own}` names `{other}`", path.display()));
             }
@@ -224,7 +242,12 @@ fn methods_are_strangers_to_each_other() {
 #[test]
 fn nothing_is_left_undone() {
     // Spelled in halves so that this file does not find itself.
-    let marks = [concat!("to", "do!("), concat!("unim", "plemented!("), concat!("FIX", "ME"), concat!("#[ign", "ore")];
+    let marks = [
+        concat!("to", "do!("),
+        concat!("unim", "plemented!("),
+        concat!("FIX", "ME"),
+        concat!("#[ign", "ore"),
+    ];
     let mut wrong = Vec::new();
     for folder in ["src", "tests", "benches"] {
         for (path, text) in sources(folder) {
@@ -239,7 +262,10 @@ fn nothing_is_left_undone() {
 #[test]
 fn the_map_names_every_room() {
     let map = fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
-    let missing: Vec<_> = ROOMS.iter().filter(|(room, _)| !map.contains(&format!("`{room}`")) && !["lib", "main"].contains(room)).collect();
+    let missing: Vec<_> = ROOMS
+        .iter()
+        .filter(|(room, _)| !map.contains(&format!("`{room}`")) && !["lib", "main"].contains(room))
+        .collect();
     assert!(missing.is_empty(), "ARCHITECTURE.md does not name {missing:?}");
 }
 

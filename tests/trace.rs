@@ -13,7 +13,8 @@ use rand_pcg::rand_core::Rng;
 use serde_json::{Value as Json, json};
 
 fn scene() -> Arc<Scene<Solid>> {
-    match load("generate:building?polygons=1000&seed=3", &LoadOptions::default(), &Quiet).expect("a building") {
+    match load("generate:building?polygons=1000&seed=3", &LoadOptions::default(), &Quiet).expect("a building")
+    {
         AnyScene::Solid(scene) => scene,
         AnyScene::Flat(_) => panic!("a building stands in space"),
     }
@@ -21,7 +22,10 @@ fn scene() -> Arc<Scene<Solid>> {
 
 fn film(scene: &Arc<Scene<Solid>>, cap: usize) -> Arc<dyn Film<Solid>> {
     let view: View<Solid> = framing_view(&scene.bounds(), 64, 64);
-    let settings = Settings([("tree-height".to_owned(), "4".to_owned()), ("backface-culling".to_owned(), "true".to_owned())].into());
+    let settings = Settings(
+        [("tree-height".to_owned(), "4".to_owned()), ("backface-culling".to_owned(), "true".to_owned())]
+            .into(),
+    );
     let entry = Solid::method("frustum").expect("a method");
     entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled").record(&view, cap).film
 }
@@ -67,7 +71,12 @@ fn what_is_written_reads_back() {
                     // A 32-bit number is written with the digits of 32 bits.
                     Value::Number(v) => assert_eq!(got.as_f64().map(|g| g as f32), Some(v as f32)),
                     Value::List(list) => {
-                        let got: Vec<f32> = got.as_array().expect("a list").iter().map(|v| v.as_f64().expect("finite") as f32).collect();
+                        let got: Vec<f32> = got
+                            .as_array()
+                            .expect("a list")
+                            .iter()
+                            .map(|v| v.as_f64().expect("finite") as f32)
+                            .collect();
                         assert_eq!(got, list.iter().map(|v| *v as f32).collect::<Vec<_>>());
                     }
                     Value::Integer(v) => assert_eq!(got.as_u64(), Some(v)),
@@ -152,7 +161,10 @@ fn each_kind_of_bad_line_is_named() {
     }
     let bytes = [head.as_bytes(), b"\n\xff\xfe\n"].concat();
     assert_eq!(check(&bytes[..]).expect_err("not UTF-8").line(), 2);
-    let foreign = format!("{head}\r\n{}\r\n", ok.replace('}', ",\"engine\":\"ours\",\"culled\":true,\"where\":[1,null,2.5],\"none\":null}"));
+    let foreign = format!(
+        "{head}\r\n{}\r\n",
+        ok.replace('}', ",\"engine\":\"ours\",\"culled\":true,\"where\":[1,null,2.5],\"none\":null}")
+    );
     assert_eq!(check(foreign.as_bytes()).expect("valid").events, 1);
 }
 

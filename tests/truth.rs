@@ -13,7 +13,8 @@ use cullscope::truth::certificate::{Certificate, Checker, Claim, certificates, c
 const WHITE: [f32; 3] = [1.0; 3];
 
 fn building() -> Arc<Scene<Solid>> {
-    match load("generate:building?polygons=2000&seed=9", &LoadOptions::default(), &Quiet).expect("a building") {
+    match load("generate:building?polygons=2000&seed=9", &LoadOptions::default(), &Quiet).expect("a building")
+    {
         AnyScene::Solid(scene) => scene,
         AnyScene::Flat(_) => panic!("a building stands in space"),
     }
@@ -57,14 +58,27 @@ fn an_eye_that_sees_nothing_is_no_division_by_zero() {
     view.eye.position = scene.bounds().max + scene.bounds().size();
     view.eye.target = view.eye.position + scene.bounds().size();
     let judged = Truth::new(&scene, false, 1, WHITE).judge(&scene, &view, &[], &render(&scene, &view, &[]));
-    assert_eq!((judged.visible.len(), judged.coverage_ratio(), judged.overdraw(), judged.flip_mean), (0, 1.0, None, 0.0));
+    assert_eq!(
+        (judged.visible.len(), judged.coverage_ratio(), judged.overdraw(), judged.flip_mean),
+        (0, 1.0, None, 0.0)
+    );
     assert!(judged.is_exact());
 }
 
-fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>, method: &str, settings: &[(&str, &str)]) -> Arc<dyn Film<S>> {
+fn film<S: Methods>(
+    scene: &Arc<Scene<S>>,
+    view: &View<S>,
+    method: &str,
+    settings: &[(&str, &str)],
+) -> Arc<dyn Film<S>> {
     let settings = Settings(settings.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
     let entry = S::method(method).expect("a method");
-    entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled").record(view, usize::MAX).film
+    entry
+        .ready(scene, &settings, &Quiet)
+        .expect("settings")
+        .expect("not cancelled")
+        .record(view, usize::MAX)
+        .film
 }
 
 /// Every way to spoil a certificate that leaves it well-formed.
@@ -74,44 +88,84 @@ fn spoiled(certificate: &Certificate) -> Vec<(&'static str, Certificate)> {
         Claim::FacesAway { eye_distance } => vec![
             ("the sign", with(Claim::FacesAway { eye_distance: -eye_distance })),
             ("the distance", with(Claim::FacesAway { eye_distance: eye_distance * 1.5 })),
-            ("the primitive", Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() }),
+            (
+                "the primitive",
+                Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() },
+            ),
             ("the kind of subject", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
         ],
         Claim::Beyond { plane, far_corner, error, box_min, box_max } => {
-            let beyond = |far_corner, error, box_min, box_max| Claim::Beyond { plane: plane.clone(), far_corner, error, box_min, box_max };
-            let named = |plane: &str| Claim::Beyond { plane: plane.into(), far_corner, error, box_min: box_min.clone(), box_max: box_max.clone() };
-            let opposite = ["left", "right", "bottom", "top", "near", "far"].iter().position(|p| *p == plane).expect("a plane") ^ 1;
+            let beyond = |far_corner, error, box_min, box_max| Claim::Beyond {
+                plane: plane.clone(),
+                far_corner,
+                error,
+                box_min,
+                box_max,
+            };
+            let named = |plane: &str| Claim::Beyond {
+                plane: plane.into(),
+                far_corner,
+                error,
+                box_min: box_min.clone(),
+                box_max: box_max.clone(),
+            };
+            let opposite = ["left", "right", "bottom", "top", "near", "far"]
+                .iter()
+                .position(|p| *p == plane)
+                .expect("a plane")
+                ^ 1;
             let mut smaller = box_max.clone();
             smaller[0] = box_min[0] - 1.0;
             let grown = |side: &[f64], by: f64| side.iter().map(|v| v + by).collect::<Vec<f64>>();
             let (lower, larger) = (grown(&box_min, -1e6), grown(&box_max, 1e6));
             vec![
                 ("the sign", with(beyond(-far_corner, error, box_min.clone(), box_max.clone()))),
-                ("the distance", with(beyond(far_corner * 1.5 - 1.0, error, box_min.clone(), box_max.clone()))),
+                (
+                    "the distance",
+                    with(beyond(far_corner * 1.5 - 1.0, error, box_min.clone(), box_max.clone())),
+                ),
                 ("the error", with(beyond(far_corner, -far_corner * 2.0, box_min.clone(), box_max.clone()))),
                 ("a negative error", with(beyond(far_corner, -1e-6, box_min.clone(), box_max.clone()))),
                 ("the plane", with(named(["left", "right", "bottom", "top", "near", "far"][opposite]))),
                 ("a plane that is none", with(named("middle"))),
                 ("the node", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
-                ("a node that is none", Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() }),
+                (
+                    "a node that is none",
+                    Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() },
+                ),
                 ("a box that is too small", with(beyond(far_corner, error, box_min.clone(), smaller))),
                 ("a box of another shape", with(beyond(far_corner, error, lower, larger))),
                 ("the axes", with(beyond(far_corner, error, vec![0.0], box_max.clone()))),
             ]
         }
         Claim::Behind { box_min, box_max } => {
-            let behind = |box_min: &[f64], by: f64| Claim::Behind { box_min: box_min.to_vec(), box_max: box_max.iter().map(|v| v + by).collect() };
+            let behind = |box_min: &[f64], by: f64| Claim::Behind {
+                box_min: box_min.to_vec(),
+                box_max: box_max.iter().map(|v| v + by).collect(),
+            };
             vec![
-                ("the kind of subject", Certificate { subject: Subject::Prim(PrimId(0)), ..certificate.clone() }),
-                ("a node that is none", Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() }),
-                ("an object that is none", Certificate { subject: Subject::Object(ObjectId(u32::MAX)), ..certificate.clone() }),
+                (
+                    "the kind of subject",
+                    Certificate { subject: Subject::Prim(PrimId(0)), ..certificate.clone() },
+                ),
+                (
+                    "a node that is none",
+                    Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() },
+                ),
+                (
+                    "an object that is none",
+                    Certificate { subject: Subject::Object(ObjectId(u32::MAX)), ..certificate.clone() },
+                ),
                 ("the axes", with(behind(&[0.0], 0.0))),
                 ("a box that is too small", with(behind(&box_min, -1e3))),
             ]
         }
         Claim::Unseen => vec![
             ("the kind of subject", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
-            ("the primitive", Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() }),
+            (
+                "the primitive",
+                Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() },
+            ),
         ],
     }
 }
@@ -142,7 +196,10 @@ fn checker_tells_right_from_wrong<S: Methods + Drawable>(scene: &Arc<Scene<S>>) 
             turned.eye.fov *= 0.9;
             let other = Checker::new(scene, film.hierarchy(), &turned);
             let beyond = |c: &&Certificate| matches!(c.claim, Claim::Beyond { .. });
-            assert!(shown.iter().filter(beyond).all(|c| other.check(c).is_err()), "{method}: an eye that looks the other way");
+            assert!(
+                shown.iter().filter(beyond).all(|c| other.check(c).is_err()),
+                "{method}: an eye that looks the other way"
+            );
         }
     }
     assert!(tried > 200, "{tried}");
@@ -157,9 +214,13 @@ fn certificates_are_accepted_and_altered_ones_rejected_in_space() {
     checker_tells_right_from_wrong(&building());
 }
 
-/// Everything that `large-occluders` calls hidden in views of a scene is; and what is seen cannot be called hidden.
-/// Returns how many claims there were of boxes and of primitives.
-fn hidden_is_hidden<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>], settings: &[(&str, &str)]) -> [usize; 2] {
+/// Everything that `large-occluders` calls hidden in views of a scene is; and what is seen cannot be called
+/// hidden. Returns how many claims there were of boxes and of primitives.
+fn hidden_is_hidden<S: Methods + Drawable>(
+    scene: &Arc<Scene<S>>,
+    views: &[View<S>],
+    settings: &[(&str, &str)],
+) -> [usize; 2] {
     let mut claims = [0, 0];
     let one_sided = settings.contains(&("backface-culling", "true"));
     for view in views {
@@ -176,7 +237,9 @@ fn hidden_is_hidden<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<
         }
         let seen = |node: &NodeId| hierarchy.prims(*node).iter().any(|p| visible.binary_search(p).is_ok());
         for node in (0..hierarchy.node_count() as u32).map(NodeId).filter(seen) {
-            let (bounds, corner) = (hierarchy.bounds(node), |v: S::Vector| (0..S::Vector::AXES).map(|a| f64::from(v.get(a))).collect());
+            let (bounds, corner) = (hierarchy.bounds(node), |v: S::Vector| {
+                (0..S::Vector::AXES).map(|a| f64::from(v.get(a))).collect()
+            });
             let claim = Claim::Behind { box_min: corner(bounds.min), box_max: corner(bounds.max) };
             let why = checker.check(&Certificate { step: 1, subject: Subject::Node(node), claim });
             assert!(why.is_err(), "{}: node {node:?} is seen from {view:?}", scene.name());
@@ -191,10 +254,14 @@ fn what_large_occluders_hides_is_hidden_in_flatland() {
     let files = std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path());
     let (mut boxes, mut prims) = (0, 0);
     for file in files.filter(|p| p.extension().is_some_and(|e| e == "json")) {
-        let Ok(AnyScene::Flat(scene)) = load(&file.to_string_lossy(), &LoadOptions::default(), &Quiet) else { panic!("{}", file.display()) };
+        let Ok(AnyScene::Flat(scene)) = load(&file.to_string_lossy(), &LoadOptions::default(), &Quiet) else {
+            panic!("{}", file.display())
+        };
         let mut views = random_views(&scene, 3, 3);
         views.extend(scene.paths().iter().flat_map(|p| p.views.iter().step_by(11)));
-        for settings in [&[][..], &[("tree-height", "12"), ("detail-objects", "true")], &[("backface-culling", "true")]] {
+        for settings in
+            [&[][..], &[("tree-height", "12"), ("detail-objects", "true")], &[("backface-culling", "true")]]
+        {
             let claims = hidden_is_hidden(&scene, &views, settings);
             (boxes, prims) = (boxes + claims[0], prims + claims[1]);
         }
@@ -209,7 +276,9 @@ fn what_large_occluders_hides_is_hidden_in_space() {
     views.extend(scene.paths()[0].views.iter().step_by(60));
     views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
     let mut boxes = 0;
-    for settings in [&[("tree-height", "12")][..], &[("detail-objects", "true")], &[("backface-culling", "true")]] {
+    for settings in
+        [&[("tree-height", "12")][..], &[("detail-objects", "true")], &[("backface-culling", "true")]]
+    {
         boxes += hidden_is_hidden(&scene, &views, settings)[0];
     }
     assert!(boxes > 300, "{boxes}");
@@ -217,7 +286,11 @@ fn what_large_occluders_hides_is_hidden_in_space() {
 
 #[test]
 fn the_body_of_the_machine_room_is_hidden_on_the_first_half_of_the_flight() {
-    let Ok(AnyScene::Solid(scene)) = load("generate:machine-room?polygons=30000", &LoadOptions::default(), &Quiet) else { panic!("a room") };
+    let Ok(AnyScene::Solid(scene)) =
+        load("generate:machine-room?polygons=30000", &LoadOptions::default(), &Quiet)
+    else {
+        panic!("a room")
+    };
     let mut truth = Truth::new(&scene, false, 1, WHITE);
     let body = |view: &View<Solid>, truth: &mut Truth| {
         let visible = truth.look(&scene, &View { width: 256, height: 256, ..*view });
@@ -225,7 +298,8 @@ fn the_body_of_the_machine_room_is_hidden_on_the_first_half_of_the_flight() {
     };
     let views = &scene.paths()[0].views;
     for (k, view) in views.iter().enumerate().step_by(5) {
-        let looks_at_it = view.frustum().test(&cullscope::geometry::Aabb::of([view.eye.target]), 0x3f) == cullscope::geometry::FrustumTest::Inside;
+        let looks_at_it = view.frustum().test(&cullscope::geometry::Aabb::of([view.eye.target]), 0x3f)
+            == cullscope::geometry::FrustumTest::Inside;
         assert!(looks_at_it, "view {k}");
         let seen = body(view, &mut truth);
         // Before the third door nothing of it is seen, behind it nearly all of one side.

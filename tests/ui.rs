@@ -121,7 +121,8 @@ fn a_click_in_the_picture_selects() {
     let prim = stage.scene.live()[200];
     let middle = stage.scene.prim_points(prim).fold(glam::Vec2::ZERO, |sum, p| sum + p * 0.5);
     let scale = rect.height() / (2.0 * state.observer.distance);
-    let at = rect.center() + vec2(middle.x - state.observer.pivot[0], state.observer.pivot[1] - middle.y) * scale;
+    let at =
+        rect.center() + vec2(middle.x - state.observer.pivot[0], state.observer.pivot[1] - middle.y) * scale;
     h.hover_at(at);
     h.run_steps(1);
     h.drag_at(at);
@@ -142,7 +143,11 @@ fn flat_eye(h: &Harness<'_, App>) -> (View<Flat>, egui::Pos2, f32) {
     let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
     let scale = rect.height() / (2.0 * state.observer.distance);
     let eye = stage.view.eye.position;
-    (stage.view, rect.center() + vec2(eye.x - state.observer.pivot[0], state.observer.pivot[1] - eye.y) * scale, scale)
+    (
+        stage.view,
+        rect.center() + vec2(eye.x - state.observer.pivot[0], state.observer.pivot[1] - eye.y) * scale,
+        scale,
+    )
 }
 
 /// Drags the Eye to the right, in steps.
@@ -194,7 +199,11 @@ fn the_palette_runs_a_command_and_names_them_all() {
     press(&mut h, Modifiers::COMMAND, Key::K);
     assert_eq!(h.state().state.dialog, Dialog::Palette);
     for info in Action::ALL {
-        assert!(h.query_all_by_label_contains(info.title).next().is_some(), "{} is not in the palette", info.title);
+        assert!(
+            h.query_all_by_label_contains(info.title).next().is_some(),
+            "{} is not in the palette",
+            info.title
+        );
     }
     h.get_by_label("Command").type_text("dark theme");
     settle(&mut h);
@@ -233,7 +242,9 @@ fn the_start_screen_opens_an_example() {
     let begin = Start { fresh: true, ..Start::default() };
     let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).build_eframe(move |cc| App::new(cc, begin));
     settle(&mut h);
-    let first = h.get_all_by_label_contains("Open ").find(|n| n.accesskit_node().label().is_some_and(|l| l.contains(".json)")));
+    let first = h
+        .get_all_by_label_contains("Open ")
+        .find(|n| n.accesskit_node().label().is_some_and(|l| l.contains(".json)")));
     first.expect("an example").click();
     settle(&mut h);
     assert!(h.state().state.staged().is_some_and(|s| s.has_film()));
@@ -242,7 +253,13 @@ fn the_start_screen_opens_an_example() {
 #[test]
 fn layouts_dialogs_and_themes_are_shown_without_a_fault() {
     let mut h = window(FLAT);
-    for action in [Action::LayoutLecture, Action::LayoutFigure, Action::LayoutDebug, Action::ThemePrint, Action::ScaleUp] {
+    for action in [
+        Action::LayoutLecture,
+        Action::LayoutFigure,
+        Action::LayoutDebug,
+        Action::ThemePrint,
+        Action::ScaleUp,
+    ] {
         h.state_mut().state.apply(action);
         settle(&mut h);
         assert!(h.query_all_by_label_contains("Observer view").next().is_some(), "{action:?}");
@@ -265,7 +282,8 @@ fn colors(rgba: &[u8], width: usize, rect: egui::Rect) -> usize {
 #[test]
 fn both_pictures_of_space_are_drawn() {
     let start = start("generate:building?polygons=2000");
-    let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
+    let mut h =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
     settle(&mut h);
     assert!(h.state().state.staged().is_some_and(|s| s.has_film()), "{:?}", h.state().state.notices);
     press(&mut h, Modifiers::NONE, Key::End);
@@ -288,7 +306,10 @@ fn a_table_of_the_paper_is_measured_shown_and_stopped() {
     assert_eq!(h.state().state.dialog, Dialog::Tables);
     click(&mut h, "Table 1: polygons drawn");
     let measured = h.state().state.measured.clone().expect("a table");
-    assert_eq!((measured.report.name, measured.report.scenes[0].name.as_str()), ("coorg-teller-table-1", FLAT));
+    assert_eq!(
+        (measured.report.name, measured.report.scenes[0].name.as_str()),
+        ("coorg-teller-table-1", FLAT)
+    );
     assert_eq!(measured.report.table.number(0, "missed_triangles"), Some(0.0));
     h.get_by_label("Chart: Coorg and Teller 1997, Table 1: polygons drawn");
     h.get_by_label("134,832");

@@ -77,14 +77,27 @@ impl ViewRecord {
         let list = |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a)).collect();
         let e = &view.eye;
         let (eye, target, up) = (list(e.position), list(e.target), list(e.up));
-        Self { eye, target, up, fov_radians: e.fov, near: e.near, far: e.far, width: view.width, height: view.height }
+        Self {
+            eye,
+            target,
+            up,
+            fov_radians: e.fov,
+            near: e.near,
+            far: e.far,
+            width: view.width,
+            height: view.height,
+        }
     }
     fn view<S: Space>(&self) -> Option<View<S>> {
         let vector = |v: &[f32]| (v.len() == S::Vector::AXES).then(|| S::Vector::from_fn(|a| v[a]));
         let (position, target, up) = (vector(&self.eye)?, vector(&self.target)?, vector(&self.up)?);
         let eye = Eye { position, target, up, fov: self.fov_radians, near: self.near, far: self.far };
         let fits = |n: u32| (1..=16384).contains(&n);
-        (eye.fault().is_none() && fits(self.width) && fits(self.height)).then_some(View { eye, width: self.width, height: self.height })
+        (eye.fault().is_none() && fits(self.width) && fits(self.height)).then_some(View {
+            eye,
+            width: self.width,
+            height: self.height,
+        })
     }
     /// The view again; `None` if it could not see.
     pub fn any(&self) -> Option<AnyView> {

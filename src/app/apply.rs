@@ -90,19 +90,32 @@ impl State {
             Action::Redo => self.can_undo().1,
             Action::SelectBack => !self.selected_before.is_empty(),
             Action::SelectForward => !self.selected_after.is_empty(),
-            Action::Why | Action::SelectNone | Action::NextOnSelected | Action::PreviousOnSelected | Action::RunToCursor | Action::BackToCursor => {
-                self.selection != Subject::None
-            }
+            Action::Why
+            | Action::SelectNone
+            | Action::NextOnSelected
+            | Action::PreviousOnSelected
+            | Action::RunToCursor
+            | Action::BackToCursor => self.selection != Subject::None,
             Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
             Action::SelectCurrent => self.current_subject() != Subject::None,
             Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
             Action::EyeHere => matches!(self.stage, Some(Any::Solid(_))) && !self.is_eye_locked,
-            Action::Cancel => self.busy().is_some() || self.dialog != Dialog::None || !self.notices.is_empty(),
+            Action::Cancel => {
+                self.busy().is_some() || self.dialog != Dialog::None || !self.notices.is_empty()
+            }
             Action::ResetSettings => !self.settings.0.is_empty(),
             Action::Slower | Action::Faster | Action::ToggleDetail => true,
-            Action::Start | Action::Reload | Action::Save | Action::SaveAs | Action::ExportSvg | Action::ExportPdf | Action::ExportPng => open,
+            Action::Start
+            | Action::Reload
+            | Action::Save
+            | Action::SaveAs
+            | Action::ExportSvg
+            | Action::ExportPdf
+            | Action::ExportPng => open,
             Action::Report | Action::About | Action::FrameSelection | Action::Swap => open,
-            _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => self.bookmarks.len() > action as usize - Action::Bookmark1 as usize,
+            _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
+                self.bookmarks.len() > action as usize - Action::Bookmark1 as usize
+            }
             _ if action.info().menu == Menu::Step => !self.is_empty(),
             _ if action.info().menu == Menu::Edit => open,
             _ => true,
@@ -184,7 +197,8 @@ impl State {
             }
             Action::Why => {
                 let Some(stage) = self.staged() else { return true };
-                let step = super::why::why(stage, self.selection, usize::MAX).into_iter().find_map(|b| b.step);
+                let step =
+                    super::why::why(stage, self.selection, usize::MAX).into_iter().find_map(|b| b.step);
                 match step {
                     Some(step) => self.go_to(step),
                     None => self.tell("Nothing was decided about it in this film."),
@@ -206,7 +220,8 @@ impl State {
                 self.change(0, |s| {
                     if let Some(Any::Solid(stage)) = &mut s.stage {
                         let look = camera.view(1, 1).eye;
-                        (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) = (look.position, look.target, look.up);
+                        (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) =
+                            (look.position, look.target, look.up);
                     }
                 });
             }
@@ -279,7 +294,12 @@ impl State {
 
     fn wanted(&self) -> Option<Wanted> {
         let stage = self.stage.as_ref()?;
-        Some(Wanted { method: self.method.clone(), settings: self.settings.clone(), place: stage.get().place(), view: stage.view() })
+        Some(Wanted {
+            method: self.method.clone(),
+            settings: self.settings.clone(),
+            place: stage.get().place(),
+            view: stage.view(),
+        })
     }
 
     /// Changes something that culling depends on: undoable, and the film is recorded again.
@@ -302,19 +322,27 @@ impl State {
         let Some(stage) = &mut self.stage else { return };
         let flown = each!(stage, s => s.fly());
         let Some((frames, text)) = flown else {
-            return self.tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
+            return self
+                .tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
         };
         let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
-        let path = format!("{}-flight.views.json", self.staged().map_or("scene", |s| s.scene_name()).replace(['/', '\\', ' '], "-"));
+        let path = format!(
+            "{}-flight.views.json",
+            self.staged().map_or("scene", |s| s.scene_name()).replace(['/', '\\', ' '], "-")
+        );
         match super::session::write_file(&path, text.as_bytes()) {
-            Ok(()) => self.tell(format!("The flight of {frames} views is a path now, and was written to {path}.")),
+            Ok(()) => {
+                self.tell(format!("The flight of {frames} views is a path now, and was written to {path}."))
+            }
             Err(error) => self.fail(error.to_string()),
         }
     }
 
     fn undo(&mut self, back: bool) {
         let Some(now) = self.wanted() else { return };
-        let Some(wanted) = (if back { self.history.undo(now) } else { self.history.redo(now) }) else { return };
+        let Some(wanted) = (if back { self.history.undo(now) } else { self.history.redo(now) }) else {
+            return;
+        };
         if let Some(stage) = &mut self.stage {
             stage.go(wanted.place.0, wanted.place.1);
             stage.set_view(&wanted.view);

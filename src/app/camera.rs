@@ -51,7 +51,9 @@ impl ObserverCamera {
     }
     /// Orientation of the camera: its x axis points right, y up, z back to the observer.
     pub fn rotation(&self) -> Quat {
-        Quat::from_rotation_y(self.yaw) * Quat::from_rotation_x(-self.pitch) * Quat::from_rotation_z(self.roll)
+        Quat::from_rotation_y(self.yaw)
+            * Quat::from_rotation_x(-self.pitch)
+            * Quat::from_rotation_z(self.roll)
     }
     /// Where it stands in space.
     pub fn position(&self) -> Vec3 {
@@ -62,7 +64,11 @@ impl ObserverCamera {
         let near = (self.distance * 0.01).max(self.extent * 1e-5);
         let far = self.distance + self.extent * 2.0;
         let (position, up) = (self.position(), self.rotation() * Vec3::Y);
-        View { eye: Eye { position, target: Vec3::from(self.pivot), up, fov: FOV, near, far }, width: width.max(1), height: height.max(1) }
+        View {
+            eye: Eye { position, target: Vec3::from(self.pivot), up, fov: FOV, near, far },
+            width: width.max(1),
+            height: height.max(1),
+        }
     }
     /// Turns around the pivot.
     pub fn orbit(&mut self, yaw: f32, pitch: f32) {
@@ -114,7 +120,8 @@ mod tests {
 
     #[test]
     fn zoom_keeps_the_point_under_the_cursor() {
-        let mut camera = ObserverCamera { distance: 8.0, extent: 20.0, pivot: [1.0, 2.0, 3.0], ..Default::default() };
+        let mut camera =
+            ObserverCamera { distance: 8.0, extent: 20.0, pivot: [1.0, 2.0, 3.0], ..Default::default() };
         let (cursor, aspect) = (Vec2::new(0.4, -0.7), 1.5);
         let under = |c: &ObserverCamera| {
             let half = c.distance * (FOV * 0.5).tan();

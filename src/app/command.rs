@@ -63,7 +63,12 @@ macro_rules! actions {
         impl Action {
             /// Every action, in the order of menus.
             pub const ALL: &[Info] = &[$(Info {
-                action: Action::$action, name: $name, title: $title, keys: &[$($key),*], menu: Menu::$menu, help: $help,
+                action: Action::$action,
+                name: $name,
+                title: $title,
+                keys: &[$($key),*],
+                menu: Menu::$menu,
+                help: $help,
             },)*];
         }
     };
@@ -78,53 +83,72 @@ actions! {
     File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors.";
     File ExportPdf "export-pdf" "Export figure as PDF…" [] "Writes the picture on screen as a page.";
     File ExportPng "export-png" "Export figure as PNG…" ["Ctrl+E"] "Writes the picture on screen as pixels.";
-    File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is open.";
+    File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
+                                                       open.";
     File Quit "quit" "Quit" ["Ctrl+Q"] "Closes the explorer.";
 
     Edit Undo "undo" "Undo" ["Ctrl+Z"] "Takes back the last change of the Eye, the method or a parameter.";
     Edit Redo "redo" "Redo" ["Ctrl+Shift+Z", "Ctrl+Y"] "Does again what was taken back.";
     Edit SelectBack "selection-back" "Previous selection" ["Alt+Left"] "Selects what was selected before.";
-    Edit SelectForward "selection-forward" "Next selection" ["Alt+Right"] "Selects what was selected after that.";
+    Edit SelectForward "selection-forward" "Next selection" ["Alt+Right"] "Selects what was selected after \
+        that.";
     Edit SelectNone "select-none" "Select nothing" ["Ctrl+Shift+A"] "Clears the selection.";
-    Edit SelectCurrent "select-current" "Select what the step is about" ["C"] "Selects the node or primitive of the current step.";
-    Edit SelectParent "select-parent" "Select the node above" ["P"] "Selects the node above the selected one.";
+    Edit SelectCurrent "select-current" "Select what the step is about" ["C"] "Selects the node or primitive \
+        of the current step.";
+    Edit SelectParent "select-parent" "Select the node above" ["P"] "Selects the node above the selected \
+        one.";
     Edit SelectEye "select-eye" "Select the Eye" [] "Selects the Eye.";
     Edit Why "why" "Why is it so?" ["Y"] "Jumps to the step that decided the selected thing.";
-    Edit CopyEye "copy-eye" "Copy the Eye as text" ["Ctrl+L"] "Copies the Eye in the words of the command line.";
+    Edit CopyEye "copy-eye" "Copy the Eye as text" ["Ctrl+L"] "Copies the Eye in the words of the command \
+        line.";
     Edit EyeHome "eye-home" "Put the Eye back on its path" [] "Takes back every change of the Eye.";
     Edit EyeHere "eye-here" "Put the Eye where the Observer is" [] "Culling sees from where you look.";
     Edit LockEye "lock-eye" "Lock the Eye" ["L"] "A locked Eye cannot be moved by accident.";
-    Edit Flight "flight" "Record a flight" [] "Keeps every place of the Eye from now on; chosen again, they become a path of their own and a view file.";
+    Edit Flight "flight" "Record a flight" [] "Keeps every place of the Eye from now on; chosen again, they \
+                                               become a path of their own and a view file.";
     Edit ResetSettings "reset-parameters" "Reset the parameters" [] "Gives every parameter its default.";
 
     Step PlayPause "play" "Play or pause" ["Space"] "Plays the film from here, or stops.";
     Step Forward "step" "Step forward" ["Right"] "To the next event.";
     Step Back "step-back" "Step back" ["Left"] "To the event before.";
-    Step Over "step-over" "Step over" ["F10", "Shift+Right"] "Passes over all that happens below the next node.";
-    Step BackOver "step-back-over" "Step back over" ["Shift+F10", "Shift+Left"] "Passes back over the node that was just left.";
+    Step Over "step-over" "Step over" ["F10", "Shift+Right"] "Passes over all that happens below the next \
+        node.";
+    Step BackOver "step-back-over" "Step back over" ["Shift+F10", "Shift+Left"] "Passes back over the node \
+        that was just left.";
     Step Into "step-into" "Step into" ["F11"] "To the very next event, lines of pseudocode included.";
-    Step BackInto "step-back-into" "Step back into" ["Shift+F11"] "To the event before, lines of pseudocode included.";
+    Step BackInto "step-back-into" "Step back into" ["Shift+F11"] "To the event before, lines of pseudocode \
+        included.";
     Step Out "step-out" "Step out" ["Ctrl+F11", "Alt+Up"] "To the end of the node that is being looked at.";
-    Step BackOut "step-back-out" "Step back out" ["Ctrl+Shift+F11"] "To before the node that is being looked at.";
+    Step BackOut "step-back-out" "Step back out" ["Ctrl+Shift+F11"] "To before the node that is being looked \
+        at.";
     Step NextVerdict "next-verdict" "Next verdict" ["Ctrl+Right"] "To the next decision.";
     Step PreviousVerdict "previous-verdict" "Previous verdict" ["Ctrl+Left"] "To the decision before.";
     Step NextSame "next-same" "Next of this kind" ["N"] "To the next event of the same kind.";
-    Step PreviousSame "previous-same" "Previous of this kind" ["Shift+N"] "To the event of the same kind before.";
-    Step NextOnSelected "next-on-selected" "Next about the selection" ["K"] "To the next event about the selected thing.";
-    Step PreviousOnSelected "previous-on-selected" "Previous about the selection" ["Shift+K"] "To the event about the selected thing before.";
+    Step PreviousSame "previous-same" "Previous of this kind" ["Shift+N"] "To the event of the same kind \
+        before.";
+    Step NextOnSelected "next-on-selected" "Next about the selection" ["K"] "To the next event about the \
+        selected thing.";
+    Step PreviousOnSelected "previous-on-selected" "Previous about the selection" ["Shift+K"] "To the event \
+        about the selected thing before.";
     Step Run "run" "Run to breakpoint" ["F5"] "To the next breakpoint, or to the end.";
-    Step RunBack "run-back" "Run back to breakpoint" ["Shift+F5"] "Back to the last breakpoint, or to the beginning.";
-    Step RunToCursor "run-to-cursor" "Run to cursor" ["Ctrl+F10"] "To the next event about the selected thing, or to the end.";
-    Step BackToCursor "back-to-cursor" "Run back to cursor" ["Ctrl+Shift+F10"] "Back to the last event about the selected thing.";
-    Step Breakpoint "breakpoint" "Toggle breakpoint" ["F9"] "Stops whenever the selected thing, or this line, comes up; again to remove it.";
+    Step RunBack "run-back" "Run back to breakpoint" ["Shift+F5"] "Back to the last breakpoint, or to the \
+        beginning.";
+    Step RunToCursor "run-to-cursor" "Run to cursor" ["Ctrl+F10"] "To the next event about the selected \
+        thing, or to the end.";
+    Step BackToCursor "back-to-cursor" "Run back to cursor" ["Ctrl+Shift+F10"] "Back to the last event about \
+        the selected thing.";
+    Step Breakpoint "breakpoint" "Toggle breakpoint" ["F9"] "Stops whenever the selected thing, or this \
+        line, comes up; again to remove it.";
     Step First "first" "First event" ["Home"] "To the beginning of the film.";
     Step Last "last" "Last event" ["End"] "To the end of the film.";
     Step GoTo "go-to" "Go to step…" ["Ctrl+G"] "To the step with this number.";
-    Step PreviousFrame "previous-frame" "Previous view of the path" ["["] "The Eye goes one view back along its path.";
+    Step PreviousFrame "previous-frame" "Previous view of the path" ["["] "The Eye goes one view back along \
+        its path.";
     Step NextFrame "next-frame" "Next view of the path" ["]"] "The Eye goes one view on along its path.";
     Step Slower "slower" "Play slower" ["Minus"] "Halves the speed.";
     Step Faster "faster" "Play faster" ["Plus"] "Doubles the speed.";
-    Step Bookmark "bookmark" "Bookmark this step" ["Ctrl+B"] "Keeps this step to come back to; again to remove it.";
+    Step Bookmark "bookmark" "Bookmark this step" ["Ctrl+B"] "Keeps this step to come back to; again to \
+        remove it.";
     Step Bookmark1 "bookmark-1" "Go to bookmark 1" ["Ctrl+1"] "To the first bookmark.";
     Step Bookmark2 "bookmark-2" "Go to bookmark 2" ["Ctrl+2"] "To the second bookmark.";
     Step Bookmark3 "bookmark-3" "Go to bookmark 3" ["Ctrl+3"] "To the third bookmark.";
@@ -135,14 +159,17 @@ actions! {
     Step Bookmark8 "bookmark-8" "Go to bookmark 8" ["Ctrl+8"] "To the eighth bookmark.";
     Step Bookmark9 "bookmark-9" "Go to bookmark 9" ["Ctrl+9"] "To the ninth bookmark.";
     Step Bookmark10 "bookmark-10" "Go to bookmark 10" ["Ctrl+0"] "To the tenth bookmark.";
-    Step PresentNext "present-next" "Next slide" ["PageDown"] "To the next bookmark; without bookmarks, to the next verdict.";
-    Step PresentPrevious "present-previous" "Previous slide" ["PageUp"] "To the bookmark before; without bookmarks, to the verdict before.";
+    Step PresentNext "present-next" "Next slide" ["PageDown"] "To the next bookmark; without bookmarks, to \
+        the next verdict.";
+    Step PresentPrevious "present-previous" "Previous slide" ["PageUp"] "To the bookmark before; without \
+        bookmarks, to the verdict before.";
     Step ToggleDetail "detail" "Steps: coarse or full" ["G"] "Coarse steps pass over lines of pseudocode.";
 
     View Find "find" "Find in events" ["Ctrl+F"] "Filters the event tree.";
     View FoldAll "fold-all" "Fold all nodes" [] "Folds every node of the event tree.";
     View UnfoldAll "unfold-all" "Unfold all nodes" [] "Unfolds every node of the event tree.";
-    View FrameSelection "frame-selection" "Frame the selection" ["F"] "Brings the selected thing, or everything, into the picture.";
+    View FrameSelection "frame-selection" "Frame the selection" ["F"] "Brings the selected thing, or \
+        everything, into the picture.";
     View Swap "swap" "Swap Eye view and Observer view" ["Tab"] "Look through the Eye, or from outside.";
     View ShowPrims "show-primitives" "Show primitives" [] "Shows or hides the scene.";
     View ShowNodes "show-nodes" "Show node boxes" ["B"] "Shows or hides the boxes of the index.";
@@ -156,11 +183,14 @@ actions! {
     View ThemeDark "theme-dark" "Dark theme" [] "Light on dark.";
     View ThemePrint "theme-print" "Print theme" [] "Black on white, as figures are printed.";
     View LayoutDebug "layout-debug" "Layout: debug" ["Alt+1"] "All panels.";
-    View LayoutLecture "layout-lecture" "Layout: lecture" ["Alt+2"] "Big type, few panels, the step in a caption.";
+    View LayoutLecture "layout-lecture" "Layout: lecture" ["Alt+2"] "Big type, few panels, the step in a \
+        caption.";
     View LayoutFigure "layout-figure" "Layout: figure" ["Alt+3"] "The picture alone, as it is exported.";
-    View LayoutPictures "layout-pictures" "Layout: pictures" ["Alt+4"] "The method's own pictures (a pyramid, lists, a timeline) beside the scene.";
+    View LayoutPictures "layout-pictures" "Layout: pictures" ["Alt+4"] "The method's own pictures (a \
+        pyramid, lists, a timeline) beside the scene.";
     View ResetLayout "reset-layout" "Reset layout" ["Alt+0"] "Puts every panel back.";
-    View Tables "paper-table" "Paper tables…" [] "Measures the tables of the method's paper, beside the paper's own figures.";
+    View Tables "paper-table" "Paper tables…" [] "Measures the tables of the method's paper, beside the \
+                                                  paper's own figures.";
     View ScaleUp "scale-up" "Larger" ["Ctrl+Plus", "Ctrl+Equals"] "Everything larger.";
     View ScaleDown "scale-down" "Smaller" ["Ctrl+Minus"] "Everything smaller.";
     View ScaleReset "scale-reset" "Normal size" [] "Everything in its normal size.";
@@ -255,7 +285,9 @@ pub fn fuzzy(typed: &str, title: &str) -> Option<i32> {
     for c in typed.to_lowercase().chars().filter(|c| !c.is_whitespace()) {
         let found = at + title[at..].iter().position(|&t| t == c)?;
         let begins = found == 0 || !title[found - 1].is_alphanumeric();
-        score += if begins { 8 } else { 1 } + if last == found.checked_sub(1) && last.is_some() { 6 } else { 0 } - (found - at) as i32 / 4;
+        score += if begins { 8 } else { 1 }
+            + if last == found.checked_sub(1) && last.is_some() { 6 } else { 0 }
+            - (found - at) as i32 / 4;
         last = Some(found);
         at = found + 1;
     }
@@ -282,7 +314,9 @@ mod tests {
     #[test]
     fn the_palette_prefers_beginnings_of_words() {
         let best = |typed: &str| {
-            let scored = Action::ALL.iter().filter_map(|i| Some((fuzzy(typed, i.title)?, std::cmp::Reverse(i.action))));
+            let scored = Action::ALL
+                .iter()
+                .filter_map(|i| Some((fuzzy(typed, i.title)?, std::cmp::Reverse(i.action))));
             scored.max().map(|(_, a)| a.0)
         };
         assert_eq!(best("step ov"), Some(Action::Over));

@@ -21,8 +21,8 @@ pub const VECTOR_PRIMS: usize = 5000;
 const LIMIT_BYTES: u64 = 256 << 20;
 
 impl State {
-    /// The present picture as a page; `aspect` is that of the Observer's window, width over height. `pixels` are
-    /// the Observer's picture of a scene that is too large for vectors.
+    /// The present picture as a page; `aspect` is that of the Observer's window, width over height. `pixels`
+    /// are the Observer's picture of a scene that is too large for vectors.
     pub fn figure(&self, aspect: f32, pixels: Option<Pixels>) -> Option<Drawing> {
         let (stage, look) = (self.staged()?, self.look());
         let aspect = aspect.clamp(0.2, 5.0);
@@ -32,7 +32,10 @@ impl State {
                 let film = s.recorded.as_ref()?;
                 let half = Vec2::new(self.observer.distance * aspect, self.observer.distance);
                 let center = Vec2::new(self.observer.pivot[0], self.observer.pivot[1]);
-                Picture::Flat(figure::world(&*film.film, &film.stamps, self.step, &look), Aabb { min: center - half, max: center + half })
+                Picture::Flat(
+                    figure::world(&*film.film, &film.stamps, self.step, &look),
+                    Aabb { min: center - half, max: center + half },
+                )
             }
             (Any::Solid(s), None) => {
                 let film = s.recorded.as_ref()?;
@@ -43,24 +46,45 @@ impl State {
         let label = format!("step {} of {}", self.step, self.len());
         let content = panels(WIDTH_PT, 1, &[Panel { label, picture }]);
         let card = stage.card()?;
-        let knobs = stage.film_knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
-        let caption = format!("{}, {}: {} {}s; {knobs}. {}", card.name, stage.scene_name(), stage.prim_count(), stage.prim_name(), self.sentence());
-        let page = Page { paper: Paper::TwoColumns, title: card.name.to_owned(), legend: page::legend(&content), caption };
+        let knobs =
+            stage.film_knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
+        let caption = format!(
+            "{}, {}: {} {}s; {knobs}. {}",
+            card.name,
+            stage.scene_name(),
+            stage.prim_count(),
+            stage.prim_name(),
+            self.sentence()
+        );
+        let page = Page {
+            paper: Paper::TwoColumns,
+            title: card.name.to_owned(),
+            legend: page::legend(&content),
+            caption,
+        };
         Some(page.compose(&content))
     }
 
     /// Writes the present picture as `svg`, `pdf` or `png` into the working folder and says where.
     pub fn export(&mut self, format: &str, aspect: f32, pixels: Option<Pixels>) {
-        let Some(drawing) = self.figure(aspect, pixels) else { return self.fail("There is nothing to export yet.") };
+        let Some(drawing) = self.figure(aspect, pixels) else {
+            return self.fail("There is nothing to export yet.");
+        };
         let recipe = self.session().text();
         let bytes = match format {
-            "svg" => Ok(render::svg(&drawing, Theme::Print, &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() }).into_bytes()),
+            "svg" => Ok(render::svg(
+                &drawing,
+                Theme::Print,
+                &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() },
+            )
+            .into_bytes()),
             "pdf" => render::pdf(&drawing, Theme::Print, Some(&recipe)),
             _ => render::png(&drawing, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
         };
         let scene = self.staged().map_or("figure", |s| s.scene_name()).replace(['/', '\\', ' '], "-");
         let path = format!("{scene}-{}-step-{}.{format}", self.method, self.step);
-        match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string())) {
+        match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
+        {
             Ok(()) => self.tell(format!("The figure was written to {path}.")),
             Err(error) => self.fail(error),
         }

@@ -72,7 +72,8 @@ impl Filter {
 
 impl Term {
     fn parse(word: &str) -> Result<Self, FilterError> {
-        let number = |text: &str| text.parse().map_err(|_| FilterError(format!("`{word}`: expected a number")));
+        let number =
+            |text: &str| text.parse().map_err(|_| FilterError(format!("`{word}`: expected a number")));
         if let Some(text) = word.strip_prefix("depth>") {
             return Ok(Self::Deeper(number(text)? as usize));
         }
@@ -85,15 +86,20 @@ impl Term {
             "verdict" => Ok(Self::Verdict(value.to_lowercase())),
             "node" => number(value).map(Self::Node),
             "prim" | "triangle" | "segment" => number(value).map(Self::Prim),
-            "under" => Ok(value.parse().map_or_else(|_| Self::UnderObject(value.to_lowercase()), Self::UnderNode)),
+            "under" => {
+                Ok(value.parse().map_or_else(|_| Self::UnderObject(value.to_lowercase()), Self::UnderNode))
+            }
             "line" => Ok(Self::Line(value.to_lowercase())),
-            _ => Err(FilterError(format!("`{key}:` is not known; there are kind: verdict: node: prim: under: line: depth> depth<"))),
+            _ => Err(FilterError(format!(
+                "`{key}:` is not known; there are kind: verdict: node: prim: under: line: depth> depth<"
+            ))),
         }
     }
     /// Events between entering and leaving a node.
     fn range(&self, stage: &dyn Staged) -> Option<(usize, usize)> {
         let Self::UnderNode(node) = self else { return None };
-        let entered = (*node < stage.node_count() as u32).then(|| stage.node_entered(NodeId(*node))).flatten()? - 1;
+        let entered =
+            (*node < stage.node_count() as u32).then(|| stage.node_entered(NodeId(*node))).flatten()? - 1;
         Some((entered, stage.moves()?.over(stage.events(), entered, crate::trace::Detail::Full)))
     }
 }
@@ -109,18 +115,26 @@ impl Applied<'_> {
     /// Whether event `at` passes.
     pub fn passes(&self, at: usize) -> bool {
         let event = self.stage.events()[at];
-        self.filter.terms.iter().zip(&self.ranges).all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
+        self.filter
+            .terms
+            .iter()
+            .zip(&self.ranges)
+            .all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
     }
     fn holds(&self, term: &Term, range: Option<(usize, usize)>, at: usize, event: Event) -> bool {
         let depth = || self.stage.moves().map_or(0, |m| m.depth(at));
         match term {
             Term::Kind(kind) => kind_name(self.stage, at, event).to_lowercase().contains(kind),
-            Term::Verdict(verdict) => verdict_of(event).is_some_and(|v| v.name().starts_with(verdict.as_str())),
+            Term::Verdict(verdict) => {
+                verdict_of(event).is_some_and(|v| v.name().starts_with(verdict.as_str()))
+            }
             Term::Node(n) => subject_at(self.stage, at) == Subject::Node(NodeId(*n)),
             Term::Prim(p) => subject_at(self.stage, at) == Subject::Prim(PrimId(*p)),
             Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
             Term::UnderObject(name) => match subject_at(self.stage, at) {
-                Subject::Prim(p) => self.stage.object_name(self.stage.object_of(p)).to_lowercase().contains(name),
+                Subject::Prim(p) => {
+                    self.stage.object_name(self.stage.object_of(p)).to_lowercase().contains(name)
+                }
                 _ => false,
             },
             Term::Line(text) => match (event, self.stage.card()) {

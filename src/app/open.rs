@@ -16,7 +16,11 @@ pub struct Example {
 }
 
 /// Loads a scene and, if named, a view file. The error is one line.
-pub(super) fn load(source: &str, views: Option<&str>, progress: &dyn Progress) -> Result<(AnyScene, Option<AnyPath>), String> {
+pub(super) fn load(
+    source: &str,
+    views: Option<&str>,
+    progress: &dyn Progress,
+) -> Result<(AnyScene, Option<AnyPath>), String> {
     let found = scene::load(source, &LoadOptions::default(), progress).or_else(|error| inside(source, error));
     let scene = found.map_err(|e| e.to_string())?;
     let path = views.map(|v| scene::read_views_for(v, &scene)).transpose().map_err(|e| e.to_string())?;
@@ -77,7 +81,8 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 fn is_scene(path: &Path) -> bool {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_model = [".obj", ".gltf", ".glb"].iter().any(|e| name.ends_with(e));
-    is_model || (name.ends_with(".json") && !name.ends_with(".views.json") && !name.ends_with(".session.json"))
+    is_model
+        || (name.ends_with(".json") && !name.ends_with(".views.json") && !name.ends_with(".session.json"))
 }
 
 fn example(path: &Path) -> Example {
@@ -90,11 +95,17 @@ fn example(path: &Path) -> Example {
     if is_flat && std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() < DESCRIPTION_BYTES) {
         let text = std::fs::read_to_string(path).unwrap_or_default();
         let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-        let word = |key: &str| said.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
+        let word =
+            |key: &str| said.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
         name = word("title").unwrap_or(name);
         summary = word("teaches").unwrap_or(summary);
-    } else if let Some(line) = path.parent().and_then(|p| std::fs::read_to_string(p.join("SOURCE.txt")).ok()) {
-        let told = line.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with("Name:")).unwrap_or_default();
+    } else if let Some(line) = path.parent().and_then(|p| std::fs::read_to_string(p.join("SOURCE.txt")).ok())
+    {
+        let told = line
+            .lines()
+            .map(str::trim)
+            .find(|l| !l.is_empty() && !l.starts_with("Name:"))
+            .unwrap_or_default();
         let told = told.split_once(": ").map_or(told, |(_, rest)| rest);
         summary = format!("{space}. {}", told.split([',', ';', '(']).next().unwrap_or_default().trim());
     }

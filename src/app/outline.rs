@@ -50,8 +50,12 @@ impl Outline {
     /// Unfolds what hides event `at`.
     pub fn reveal(&mut self, stage: &dyn Staged, at: usize) {
         let Some(moves) = stage.moves() else { return };
-        let hiding: Vec<u32> =
-            self.folded.iter().copied().filter(|&f| (f as usize) < at && at < moves.over(stage.events(), f as usize, Detail::Full)).collect();
+        let hiding: Vec<u32> = self
+            .folded
+            .iter()
+            .copied()
+            .filter(|&f| (f as usize) < at && at < moves.over(stage.events(), f as usize, Detail::Full))
+            .collect();
         if !hiding.is_empty() {
             hiding.iter().for_each(|f| {
                 self.folded.remove(f);

@@ -16,14 +16,19 @@ impl Stage<Flat> {
         }
         let Some(recorded) = &self.recorded else { return Subject::None };
         let hierarchy = recorded.film.hierarchy();
-        let holds = |&n: &NodeId| recorded.stamps.entered(n) as usize <= step && hierarchy.bounds(n).contains(at);
+        let holds =
+            |&n: &NodeId| recorded.stamps.entered(n) as usize <= step && hierarchy.bounds(n).contains(at);
         let nodes = (0..hierarchy.node_count() as u32).map(NodeId).filter(holds);
-        nodes.max_by_key(|&n| (hierarchy.level(n), n)).filter(|n| n.0 > 0).map_or(Subject::None, Subject::Node)
+        nodes
+            .max_by_key(|&n| (hierarchy.level(n), n))
+            .filter(|n| n.0 > 0)
+            .map_or(Subject::None, Subject::Node)
     }
     /// For each column of the Eye's image, from left to right, the nearest segment and its view depth.
     pub fn image(&self) -> Vec<Option<(PrimId, f32)>> {
         let target = raster::render(&*self.scene, &self.view, self.scene.live());
-        let cell = |(&item, &depth): (&u32, &f32)| (item != Target::NONE).then(|| (PrimId(item), 1.0 / depth));
+        let cell =
+            |(&item, &depth): (&u32, &f32)| (item != Target::NONE).then(|| (PrimId(item), 1.0 / depth));
         target.item.iter().zip(&target.depth).map(cell).collect()
     }
 }

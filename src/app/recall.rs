@@ -113,7 +113,8 @@ impl State {
         self.detail = if session.coarse { Detail::Coarse } else { Detail::Full };
         self.filter = session.filter.clone();
         let end = self.len();
-        self.bookmarks = session.bookmarks.iter().filter(|b| b.step <= end && b.observer.is_sound()).cloned().collect();
+        self.bookmarks =
+            session.bookmarks.iter().filter(|b| b.step <= end && b.observer.is_sound()).cloned().collect();
         self.bookmarks.sort_by_key(|b| b.step);
         if let Some(observer) = session.observer.filter(|o| o.is_sound()) {
             self.observer = observer;

@@ -66,7 +66,16 @@ pub struct Shown {
 impl Default for Shown {
     fn default() -> Self {
         let word = String::new;
-        Self { prims: true, nodes: true, eye: true, evidence: true, surface: word(), theme: word(), layout: word(), scale: 1.0 }
+        Self {
+            prims: true,
+            nodes: true,
+            eye: true,
+            evidence: true,
+            surface: word(),
+            theme: word(),
+            layout: word(),
+            scale: 1.0,
+        }
     }
 }
 
@@ -173,7 +182,8 @@ impl Session {
     /// # Errors
     /// If it is none, or too new.
     pub fn parse(text: &str, path: &str) -> Result<Self, SessionError> {
-        let session: Self = serde_json::from_str(text).map_err(|why| SessionError::Syntax { path: path.into(), why })?;
+        let session: Self =
+            serde_json::from_str(text).map_err(|why| SessionError::Syntax { path: path.into(), why })?;
         if session.cullscope_session > VERSION {
             return Err(SessionError::TooNew { path: path.into(), found: session.cullscope_session });
         }

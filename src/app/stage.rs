@@ -52,7 +52,8 @@ pub struct Stage<S: Space> {
 impl<S: Space> Stage<S> {
     /// Puts a scene on stage, with its own view paths or one view that frames it.
     pub fn new(scene: Arc<Scene<S>>, own: Option<ViewPath<S>>, serial: u64) -> Self {
-        let mut paths: Vec<_> = own.into_iter().chain(scene.paths().iter().cloned()).filter(|p| !p.views.is_empty()).collect();
+        let mut paths: Vec<_> =
+            own.into_iter().chain(scene.paths().iter().cloned()).filter(|p| !p.views.is_empty()).collect();
         if paths.is_empty() {
             let view = framing_view(&scene.bounds(), DEFAULT_IMAGE_PX[0], DEFAULT_IMAGE_PX[1]);
             paths.push(ViewPath { name: "overview".into(), views: vec![view] });
@@ -70,8 +71,8 @@ impl<S: Space> Stage<S> {
         self.frame = frame.min(self.views().len() - 1);
         self.view = self.views()[self.frame];
     }
-    /// Begins a flight at the present view (`None`), or ends it: the number of its views, and the view file's text if the Eye was
-    /// moved at all. It is then the last path, and followed from its first view.
+    /// Begins a flight at the present view (`None`), or ends it: the number of its views, and the view file's
+    /// text if the Eye was moved at all. It is then the last path, and followed from its first view.
     pub fn fly(&mut self) -> Option<(usize, Option<String>)> {
         let Some(views) = self.flight.take() else {
             self.flight = Some(vec![self.view]);
@@ -245,7 +246,10 @@ impl<S: Methods> Staged for Stage<S> {
         self.recorded.as_ref().map_or(&[], |r| r.film.pictures())
     }
     fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing {
-        self.recorded.as_ref().filter(|_| which < self.pictures().len()).map_or(Drawing::default(), |r| r.film.picture(step, which, scale))
+        self.recorded
+            .as_ref()
+            .filter(|_| which < self.pictures().len())
+            .map_or(Drawing::default(), |r| r.film.picture(step, which, scale))
     }
     fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String> {
         self.recorded.as_ref()?.film.probe(step, which, at)
@@ -266,10 +270,16 @@ impl<S: Methods> Staged for Stage<S> {
         self.recorded.as_ref().map(|r| &*r.moves)
     }
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
-        self.recorded.as_ref().filter(|_| at < self.events().len()).map_or(("", vec![]), |r| r.film.fields(at))
+        self.recorded
+            .as_ref()
+            .filter(|_| at < self.events().len())
+            .map_or(("", vec![]), |r| r.film.fields(at))
     }
     fn sentence(&self, at: usize) -> String {
-        self.recorded.as_ref().filter(|_| at < self.events().len()).map_or(String::new(), |r| r.film.sentence(at))
+        self.recorded
+            .as_ref()
+            .filter(|_| at < self.events().len())
+            .map_or(String::new(), |r| r.film.sentence(at))
     }
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
         let mut to = Drawing::default();
@@ -314,7 +324,9 @@ impl<S: Methods> Staged for Stage<S> {
         (stamp.step != crate::trace::Stamp::NEVER).then_some((stamp.step as usize, stamp.verdict))
     }
     fn node_entered(&self, node: NodeId) -> Option<usize> {
-        Some(self.recorded.as_ref()?.stamps.entered(node)).filter(|&s| s != crate::trace::Stamp::NEVER).map(|s| s as usize)
+        Some(self.recorded.as_ref()?.stamps.entered(node))
+            .filter(|&s| s != crate::trace::Stamp::NEVER)
+            .map(|s| s as usize)
     }
     fn prim_decision(&self, prim: PrimId) -> Option<(usize, Verdict)> {
         let stamp = self.recorded.as_ref()?.stamps.prims()[prim.at()];
@@ -339,7 +351,8 @@ impl<S: Methods> Staged for Stage<S> {
         self.view != self.views()[self.frame]
     }
     fn eye_text(&self) -> String {
-        let list = |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a).to_string()).collect::<Vec<_>>().join(",");
+        let list =
+            |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a).to_string()).collect::<Vec<_>>().join(",");
         let (v, e) = (&self.view, &self.view.eye);
         let up = if S::Vector::AXES == 3 { format!(" --up {}", list(e.up)) } else { String::new() };
         format!(
@@ -364,9 +377,15 @@ impl<S: Methods> Stage<S> {
     }
     fn prim_facts(&self, prim: PrimId) -> Vec<(&'static str, String)> {
         let scene = &self.scene;
-        let mut facts = vec![("id", prim.to_string()), ("object", self.object_name(scene.object_of(prim)).to_owned())];
+        let mut facts =
+            vec![("id", prim.to_string()), ("object", self.object_name(scene.object_of(prim)).to_owned())];
         facts.push(("material", scene.materials()[scene.material_of(prim).at()].name.clone()));
-        facts.extend(scene.prim_points(prim).zip(["corner a", "corner b", "corner c"]).map(|(p, name)| (name, Self::vector(p))));
+        facts.extend(
+            scene
+                .prim_points(prim)
+                .zip(["corner a", "corner b", "corner c"])
+                .map(|(p, name)| (name, Self::vector(p))),
+        );
         if let Some(leaf) = self.leaf_of(prim) {
             facts.push(("in node", leaf.to_string()));
         }
@@ -386,9 +405,14 @@ impl<S: Methods> Stage<S> {
         ]
     }
     fn object_facts(&self, object: ObjectId) -> Vec<(&'static str, String)> {
-        let prims: Vec<_> = self.scene.live().iter().filter(|&&p| self.scene.object_of(p) == object).collect();
-        let bounds = prims.iter().fold(Aabb::empty(), |b: Aabb<S::Vector>, &&p| b.union(self.scene.prim_bounds(p)));
-        let mut facts = vec![("name", self.object_name(object).to_owned()), ("holds", format!("{} {}s", prims.len(), S::PRIM))];
+        let prims: Vec<_> =
+            self.scene.live().iter().filter(|&&p| self.scene.object_of(p) == object).collect();
+        let bounds =
+            prims.iter().fold(Aabb::empty(), |b: Aabb<S::Vector>, &&p| b.union(self.scene.prim_bounds(p)));
+        let mut facts = vec![
+            ("name", self.object_name(object).to_owned()),
+            ("holds", format!("{} {}s", prims.len(), S::PRIM)),
+        ];
         if !bounds.is_empty() {
             facts.push(("box", Self::box_text(&bounds)));
         }

@@ -117,7 +117,16 @@ pub struct Shown {
 
 impl Default for Shown {
     fn default() -> Self {
-        Self { prims: true, nodes: true, eye: true, evidence: true, surface: Surface::Solid, theme: Theme::Light, layout: Layout::Debug, scale: 1.0 }
+        Self {
+            prims: true,
+            nodes: true,
+            eye: true,
+            evidence: true,
+            surface: Surface::Solid,
+            theme: Theme::Light,
+            layout: Layout::Debug,
+            scale: 1.0,
+        }
     }
 }
 
@@ -294,7 +303,9 @@ impl State {
     pub fn sentence(&self) -> String {
         match (self.staged(), self.current()) {
             (None, _) => "Nothing is open.".into(),
-            (Some(stage), _) if !stage.has_film() => format!("{} is open; nothing is recorded yet.", stage.scene_name()),
+            (Some(stage), _) if !stage.has_film() => {
+                format!("{} is open; nothing is recorded yet.", stage.scene_name())
+            }
             (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
             (Some(stage), Some(at)) => stage.sentence(at),
         }
@@ -309,7 +320,10 @@ impl State {
         let Some(stage) = self.staged() else { return Subject::None };
         let Some(at) = self.current() else { return Subject::None };
         match super::filter::subject_at(stage, at) {
-            Subject::None => stage.moves().and_then(|m| m.stack(stage.events(), self.step).last().copied()).map_or(Subject::None, Subject::Node),
+            Subject::None => stage
+                .moves()
+                .and_then(|m| m.stack(stage.events(), self.step).last().copied())
+                .map_or(Subject::None, Subject::Node),
             subject => subject,
         }
     }

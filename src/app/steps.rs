@@ -37,7 +37,10 @@ impl State {
                 let kind = kind_name(stage, at?, events[at?]);
                 self.seek(action == Action::NextSame, |i| kind_name(stage, i, events[i]) == kind)
             }
-            Action::NextOnSelected | Action::PreviousOnSelected | Action::RunToCursor | Action::BackToCursor => {
+            Action::NextOnSelected
+            | Action::PreviousOnSelected
+            | Action::RunToCursor
+            | Action::BackToCursor => {
                 let wanted = Some(self.selection).filter(|s| *s != Subject::None)?;
                 let forward = matches!(action, Action::NextOnSelected | Action::RunToCursor);
                 self.seek(forward, |i| subject_at(stage, i) == wanted)
@@ -91,7 +94,9 @@ impl State {
             }
             Action::Slower => self.speed = (self.speed * 0.5).max(0.25),
             Action::Faster => self.speed = (self.speed * 2.0).min(1e6),
-            Action::ToggleDetail => self.detail = if self.detail == Detail::Full { Detail::Coarse } else { Detail::Full },
+            Action::ToggleDetail => {
+                self.detail = if self.detail == Detail::Full { Detail::Coarse } else { Detail::Full }
+            }
             Action::GoTo => self.dialog = Dialog::GoTo,
             Action::Breakpoint => self.toggle_breakpoint(),
             Action::Bookmark => self.toggle_bookmark(),
@@ -145,7 +150,8 @@ impl State {
             }
             None => {
                 let at = self.bookmarks.partition_point(|b| b.step < self.step);
-                self.bookmarks.insert(at, Bookmark { step: self.step, note: String::new(), observer: self.observer });
+                self.bookmarks
+                    .insert(at, Bookmark { step: self.step, note: String::new(), observer: self.observer });
             }
         }
     }

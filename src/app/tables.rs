@@ -1,5 +1,5 @@
-//! The papers' tables in the explorer: an experiment runs on the worker, on the open scene or on the default ones, and
-//! its table and chart stay until the next one.
+//! The papers' tables in the explorer: an experiment runs on the worker, on the open scene or on the default
+//! ones, and its table and chart stay until the next one.
 
 use std::sync::Arc;
 
@@ -45,7 +45,12 @@ pub fn tables() -> impl Iterator<Item = (&'static str, &'static str, &'static st
 }
 
 /// Runs on the worker.
-pub(super) fn measure(name: &str, scene: Option<AnyScene>, settings: Settings, progress: &dyn Progress) -> Result<Measured, String> {
+pub(super) fn measure(
+    name: &str,
+    scene: Option<AnyScene>,
+    settings: Settings,
+    progress: &dyn Progress,
+) -> Result<Measured, String> {
     let experiment = Experiment::named(name).ok_or_else(|| format!("there is no table `{name}`"))?;
     let mut start = 0.0;
     let mut scenes: Vec<AnyScene> = scene.into_iter().collect();
@@ -98,17 +103,25 @@ impl State {
     }
 
     fn export_table(&mut self, format: &str) {
-        let Some(measured) = self.measured.clone() else { return self.fail("There is no table to export yet.") };
+        let Some(measured) = self.measured.clone() else {
+            return self.fail("There is no table to export yet.");
+        };
         let Measured { report, chart } = &*measured;
         let recipe = format!("cullscope paper {} --frames {}", report.name, report.frames);
         let bytes = match format {
             "csv" => Ok(report.table.csv().into_bytes()),
-            "svg" => Ok(render::svg(chart, Theme::Print, &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() }).into_bytes()),
+            "svg" => Ok(render::svg(
+                chart,
+                Theme::Print,
+                &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() },
+            )
+            .into_bytes()),
             "pdf" => render::pdf(chart, Theme::Print, Some(&recipe)),
             _ => render::png(chart, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
         };
         let path = format!("{}.{format}", report.name);
-        match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string())) {
+        match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
+        {
             Ok(()) => self.tell(format!("The table was written to {path}.")),
             Err(error) => self.fail(error),
         }

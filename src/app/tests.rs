@@ -48,7 +48,10 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
     let text = std::fs::read_to_string(&name).expect("a view file");
     std::fs::remove_file(&name).expect("a file of our own");
     let Some(Any::Flat(stage)) = &state.stage else { panic!("a flat stage") };
-    assert_eq!(stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())), Some(("flight", flown.as_slice())));
+    assert_eq!(
+        stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())),
+        Some(("flight", flown.as_slice()))
+    );
     assert_eq!(place(&state), Some((before, 0)));
     assert!(text.contains("\"views\"") && text.matches("\"eye\"").count() == 5, "{text}");
     state.block_until_idle();
@@ -164,7 +167,11 @@ fn a_bad_parameter_is_told_and_the_film_stays() {
     let events = state.len();
     state.apply(Command::Set("tree-height".into(), "enormous".into(), 0));
     state.block_until_idle();
-    assert!(state.notices.iter().any(|n| n.is_error && n.text.contains("tree-height")), "{:?}", state.notices);
+    assert!(
+        state.notices.iter().any(|n| n.is_error && n.text.contains("tree-height")),
+        "{:?}",
+        state.notices
+    );
     assert_eq!(state.len(), events);
 }
 
@@ -277,7 +284,10 @@ fn a_session_brings_everything_back() {
     assert_eq!(other.session(), session, "{:?}", other.notices);
     assert_eq!(seen(&other), seen(&state));
     assert!(Session::parse("{}", "x").is_err());
-    assert!(Session::parse(&session.text().replace("\"cullscope_session\": 1", "\"cullscope_session\": 9"), "x").is_err());
+    assert!(
+        Session::parse(&session.text().replace("\"cullscope_session\": 1", "\"cullscope_session\": 9"), "x")
+            .is_err()
+    );
 }
 
 #[test]
@@ -327,7 +337,10 @@ fn the_start_runs_its_commands_once_loaded() {
     let mut state = State::new();
     state.start(&Start { scene: Some(FLAT.into()), commands, ..Start::default() }, None);
     state.block_until_idle();
-    assert_eq!((state.method.as_str(), state.step, state.selection), ("z-buffer", 12, Subject::Prim(PrimId(3))));
+    assert_eq!(
+        (state.method.as_str(), state.step, state.selection),
+        ("z-buffer", 12, Subject::Prim(PrimId(3)))
+    );
     assert_eq!(state.shown.theme, Theme::Dark);
 }
 

@@ -27,9 +27,18 @@ pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
     match subject {
         Subject::Node(node) if node.at() < stage.node_count() => why_node(stage, node, step),
         Subject::Prim(prim) if stage.has_prim(prim) => why_prim(stage, prim, step),
-        Subject::Object(object) => vec![because(format!("“{}” is an object; select one of its parts to see why.", stage.object_name(object)), None)],
-        Subject::Eye => vec![because("This is the Eye: what culling sees with. Drag it, and the frame is culled again.", None)],
-        Subject::Plane(_) => vec![because("This is a plane of the view frustum. What lies wholly behind one plane cannot be in view.", None)],
+        Subject::Object(object) => vec![because(
+            format!("“{}” is an object; select one of its parts to see why.", stage.object_name(object)),
+            None,
+        )],
+        Subject::Eye => vec![because(
+            "This is the Eye: what culling sees with. Drag it, and the frame is culled again.",
+            None,
+        )],
+        Subject::Plane(_) => vec![because(
+            "This is a plane of the view frustum. What lies wholly behind one plane cannot be in view.",
+            None,
+        )],
         _ => vec![],
     }
 }
@@ -43,13 +52,23 @@ fn name(stage: &dyn Staged, prim: PrimId) -> String {
 fn why_prim(stage: &dyn Staged, prim: PrimId, step: usize) -> Vec<Because> {
     let name = name(stage, prim);
     match stage.prim_decision(prim) {
-        None if stage.lost() > 0 => vec![because(format!("Nothing is known of {name}: the film is capped and ends before it was decided."), None)],
-        None => vec![because(format!("Nothing was ever said about {name}: this method does not look at it."), None)],
+        None if stage.lost() > 0 => vec![because(
+            format!("Nothing is known of {name}: the film is capped and ends before it was decided."),
+            None,
+        )],
+        None => vec![because(
+            format!("Nothing was ever said about {name}: this method does not look at it."),
+            None,
+        )],
         Some((at, verdict)) if at > step => {
-            vec![because(format!("At step {step} nothing is known of {name} yet. It will be {}.", spoken(verdict)), Some(at))]
+            vec![because(
+                format!("At step {step} nothing is known of {name} yet. It will be {}.", spoken(verdict)),
+                Some(at),
+            )]
         }
         Some((at, verdict)) => {
-            let mut lines = vec![because(format!("The {name} is {} since step {at}.", spoken(verdict)), Some(at))];
+            let mut lines =
+                vec![because(format!("The {name} is {} since step {at}.", spoken(verdict)), Some(at))];
             match stage.events()[at - 1] {
                 Event::DecidedNode(node, _) => {
                     lines.push(because(
@@ -73,13 +92,20 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
         if at > step {
             let text = match stage.node_entered(node) {
                 Some(entered) if entered <= step => {
-                    format!("Node {node} was entered at step {entered} and is not decided yet. It will be {}.", spoken(verdict))
+                    format!(
+                        "Node {node} was entered at step {entered} and is not decided yet. It will be {}.",
+                        spoken(verdict)
+                    )
                 }
-                _ => format!("At step {step} node {node} has not been reached yet. It will be {}.", spoken(verdict)),
+                _ => format!(
+                    "At step {step} node {node} has not been reached yet. It will be {}.",
+                    spoken(verdict)
+                ),
             };
             return vec![because(text, Some(at))];
         }
-        let mut lines = vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
+        let mut lines =
+            vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
         lines.extend(evidence(stage, at));
         return lines;
     }
@@ -91,15 +117,24 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
     match above {
         Some((n, at, verdict)) if at <= step => {
             let mut lines = vec![because(
-                format!("Node {node} was never visited: node {n} above it is {} as a whole since step {at}.", spoken(verdict)),
+                format!(
+                    "Node {node} was never visited: node {n} above it is {} as a whole since step {at}.",
+                    spoken(verdict)
+                ),
                 Some(at),
             )];
             lines.extend(evidence(stage, at));
             lines
         }
-        Some((n, at, verdict)) => vec![because(format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict)), Some(at))],
+        Some((n, at, verdict)) => vec![because(
+            format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict)),
+            Some(at),
+        )],
         None if stage.node_entered(node).is_some_and(|e| e <= step) => {
-            vec![because(format!("Node {node} was entered; nothing was decided about it as a whole."), stage.node_entered(node))]
+            vec![because(
+                format!("Node {node} was entered; nothing was decided about it as a whole."),
+                stage.node_entered(node),
+            )]
         }
         None => vec![because(format!("This method says nothing about node {node}."), None)],
     }
@@ -109,8 +144,10 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
 fn evidence(stage: &dyn Staged, at: usize) -> Vec<Because> {
     let decision = at - 1;
     let first = decision.saturating_sub(EVIDENCE_REACH);
-    let noted =
-        (first..decision).rev().take_while(|&i| verdict_of(stage.events()[i]).is_none()).find(|&i| matches!(stage.events()[i], Event::Noted(_)));
+    let noted = (first..decision)
+        .rev()
+        .take_while(|&i| verdict_of(stage.events()[i]).is_none())
+        .find(|&i| matches!(stage.events()[i], Event::Noted(_)));
     noted.into_iter().chain([decision]).map(|i| because(stage.sentence(i), Some(i + 1))).collect()
 }
 

@@ -114,7 +114,12 @@ impl Worker {
     pub(super) fn start() -> Self {
         let (jobs, inbox) = channel::<(u64, Job)>();
         let (outbox, done) = channel();
-        let shared = Arc::new(Shared { wanted: AtomicU64::new(0), fraction: AtomicU32::new(0), what: Mutex::new(""), wake: Mutex::new(None) });
+        let shared = Arc::new(Shared {
+            wanted: AtomicU64::new(0),
+            fraction: AtomicU32::new(0),
+            what: Mutex::new(""),
+            wake: Mutex::new(None),
+        });
         let mine = shared.clone();
         thread::spawn(move || {
             let mut bench = Bench::default();
@@ -164,7 +169,11 @@ impl Worker {
     /// The next wanted answer; with `wait`, blocks until it is there (if anything was asked).
     pub(super) fn answer(&mut self, wait: bool) -> Option<Done> {
         loop {
-            let got = if wait && self.open.is_some() { self.done.recv().ok()? } else { self.done.try_recv().ok()? };
+            let got = if wait && self.open.is_some() {
+                self.done.recv().ok()?
+            } else {
+                self.done.try_recv().ok()?
+            };
             if got.0 == self.asked && self.open.is_some() {
                 self.open = None;
                 return Some(got.1);
@@ -173,7 +182,8 @@ impl Worker {
     }
 }
 
-/// What the worker keeps between jobs: the built index of each space, so that a moved Eye is recorded at once.
+/// What the worker keeps between jobs: the built index of each space, so that a moved Eye is recorded at
+/// once.
 #[derive(Default)]
 struct Bench {
     flat: Option<Ready<Flat>>,
@@ -229,7 +239,9 @@ fn record<S: Methods + Drawable>(
     ticket: &Ticket,
     wrap: fn(Recorded<S>) -> AnyRecorded,
 ) -> Done {
-    let fits = |r: &Ready<S>| r.scene_serial == request.scene_serial && r.method == request.method && r.settings == request.settings;
+    let fits = |r: &Ready<S>| {
+        r.scene_serial == request.scene_serial && r.method == request.method && r.settings == request.settings
+    };
     if !ready.as_ref().is_some_and(fits) {
         *ready = None;
         let Some(method) = S::method(&request.method) else {
@@ -243,7 +255,12 @@ fn record<S: Methods + Drawable>(
                     Ok(run) => run,
                     Err(error) => return Done::RecordFailed(error.to_string()),
                 };
-                *ready = Some(Ready { scene_serial: request.scene_serial, method: request.method, settings: request.settings, run });
+                *ready = Some(Ready {
+                    scene_serial: request.scene_serial,
+                    method: request.method,
+                    settings: request.settings,
+                    run,
+                });
             }
         }
     }
@@ -265,5 +282,11 @@ fn record<S: Methods + Drawable>(
     ticket.report(0.8, "reading the film");
     let stamps = Arc::new(Stamps::new(&*recording.film));
     let moves = Arc::new(Moves::new(recording.film.events()));
-    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, drawn: recording.list.prims.len(), serial }))
+    Done::Recorded(wrap(Recorded {
+        film: recording.film,
+        stamps,
+        moves,
+        drawn: recording.list.prims.len(),
+        serial,
+    }))
 }

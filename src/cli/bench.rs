@@ -1,4 +1,5 @@
-//! `cullscope bench occlusion`: occluders rasterized and boxes asked for, on an input that other programs read too.
+//! `cullscope bench occlusion`: occluders rasterized and boxes asked for, on an input that other programs
+//! read too.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,10 @@ pub(super) enum Command {
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  cullscope bench occlusion --mesh city.obj --boxes boxes.txt --cams cams.txt --size 1024x1024 --repeat 9\n\nBoxes: a line each, minx miny minz maxx maxy maxz. Cameras: a line each, 20 numbers: the row-major M of clip = M (x, y, z, 1)\n(w = view depth), the near plane's w, the eye. Front faces are counter-clockwise; back faces are culled."
+    after_help = "Example:\n  cullscope bench occlusion --mesh city.obj --boxes boxes.txt --cams cams.txt \
+                  --size 1024x1024 --repeat 9\n\nBoxes: a line each, minx miny minz maxx maxy maxz. Cameras: \
+                  a line each, 20 numbers: the row-major M of clip = M (x, y, z, 1)\n(w = view depth), the \
+                  near plane's w, the eye. Front faces are counter-clockwise; back faces are culled."
 )]
 pub(super) struct Args {
     /// Occluders, an OBJ file
@@ -45,7 +49,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Times every camera is drawn; the median counts
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 5,
+        value_parser = clap::value_parser!(u32).range(1..=1000)
+    )]
     repeat: u32,
     /// Write a byte a box and camera: 0 visible, 1 occluded, 3 outside
     #[arg(long, value_name = "FILE")]
@@ -57,7 +66,11 @@ const FINER: u32 = 2;
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Command::Occlusion(args) = command;
-    let mut settings = Settings([("coherence", "false"), ("backface-culling", "true")].map(|(k, v)| (k.to_owned(), v.to_owned())).into());
+    let mut settings = Settings(
+        [("coherence", "false"), ("backface-culling", "true")]
+            .map(|(k, v)| (k.to_owned(), v.to_owned()))
+            .into(),
+    );
     settings.0.extend(methods::settings(&args.set)?.0);
     // Words that are off are told before files are read.
     <Solid as Methods>::method(&args.method).map(|m| m.knobs(&settings)).transpose()?;
@@ -66,14 +79,20 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     };
     let origin = mesh.origin();
     let place = |p: &[f64]| (glam::dvec3(p[0], p[1], p[2]) - origin).as_vec3();
-    let boxes = lines(&args.boxes, 6)?.into_iter().map(|b| Aabb { min: place(&b[..3]), max: place(&b[3..]) }).collect::<Vec<Aabb<Vec3>>>();
+    let boxes = lines(&args.boxes, 6)?
+        .into_iter()
+        .map(|b| Aabb { min: place(&b[..3]), max: place(&b[3..]) })
+        .collect::<Vec<Aabb<Vec3>>>();
     let cams = lines(&args.cams, 20)?;
     let all = boxes.iter().fold(mesh.bounds(), |sum, b| sum.union(*b));
     let views = cams.iter().enumerate().map(|(i, c)| {
-        view(c, place(&c[17..]), &all, args.size).map_err(|why| CliError::work(format!("{} line {}", args.cams.display(), i + 1), why))
+        view(c, place(&c[17..]), &all, args.size)
+            .map_err(|why| CliError::work(format!("{} line {}", args.cams.display(), i + 1), why))
     });
     let views = views.collect::<Result<Vec<_>, _>>()?;
-    let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else { return Err(CliError::Interrupted) };
+    let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else {
+        return Err(CliError::Interrupted);
+    };
     occluders.draw_depths_only(true);
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
@@ -88,10 +107,16 @@ fn lines(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, CliError> {
     let text = fs::read_to_string(path).map_err(|e| CliError::work(name.as_str(), reason(&e)))?;
     let mut all = Vec::new();
     for (i, line) in text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.starts_with('#')) {
-        let numbers: Option<Vec<f64>> = line.split_whitespace().map(|w| w.parse().ok().filter(|v: &f64| v.is_finite())).collect();
+        let numbers: Option<Vec<f64>> =
+            line.split_whitespace().map(|w| w.parse().ok().filter(|v: &f64| v.is_finite())).collect();
         match numbers.filter(|n| n.len() == count) {
             Some(numbers) => all.push(numbers),
-            None => return Err(CliError::work(format!("{name} line {}", i + 1), format!("expected {count} finite numbers"))),
+            None => {
+                return Err(CliError::work(
+                    format!("{name} line {}", i + 1),
+                    format!("expected {count} finite numbers"),
+                ));
+            }
         }
     }
     if all.is_empty() { Err(CliError::work(name, "holds no line of numbers")) } else { Ok(all) }
@@ -101,16 +126,29 @@ fn lines(path: &Path, count: usize) -> Result<Vec<Vec<f64>>, CliError> {
 fn view(c: &[f64], eye: Vec3, all: &Aabb<Vec3>, [width, height]: [u32; 2]) -> Result<View<Solid>, String> {
     let row = |i: usize| glam::dvec3(c[4 * i], c[4 * i + 1], c[4 * i + 2]);
     let (x, y, w) = (row(0), row(1), row(3));
-    if (w.length() - 1.0).abs() > 1e-3 || x.dot(w).abs() > 1e-3 * x.length() || y.dot(w).abs() > 1e-3 * y.length() {
+    if (w.length() - 1.0).abs() > 1e-3
+        || x.dot(w).abs() > 1e-3 * x.length()
+        || y.dot(w).abs() > 1e-3 * y.length()
+    {
         return Err("the matrix is not that of a perspective whose w is the view depth".into());
     }
     let aspect = f64::from(width) / f64::from(height);
     if (y.length() / x.length() / aspect - 1.0).abs() > 0.01 {
-        return Err(format!("pixels are not square at {width}x{height}: the matrix is for an aspect of {:.4}", y.length() / x.length()));
+        return Err(format!(
+            "pixels are not square at {width}x{height}: the matrix is for an aspect of {:.4}",
+            y.length() / x.length()
+        ));
     }
     let far = all.corners().map(|p| p.distance(eye)).fold(0.0, f32::max) * 1.01 + 1.0;
     let fov = (2.0 * (1.0 / y.length()).atan()) as f32;
-    let eye = Eye { position: eye, target: eye + w.as_vec3(), up: y.normalize().as_vec3(), fov, near: c[16] as f32, far };
+    let eye = Eye {
+        position: eye,
+        target: eye + w.as_vec3(),
+        up: y.normalize().as_vec3(),
+        fov,
+        near: c[16] as f32,
+        far,
+    };
     eye.fault().map_or(Ok(View { eye, width, height }), |why| Err(why.to_owned()))
 }
 
@@ -122,7 +160,13 @@ struct Measured {
     false_count: usize,
 }
 
-fn measure(occluders: &mut Obscurer<Solid>, mesh: &Arc<Scene<Solid>>, views: &[View<Solid>], boxes: &[Aabb<Vec3>], repeat: usize) -> Measured {
+fn measure(
+    occluders: &mut Obscurer<Solid>,
+    mesh: &Arc<Scene<Solid>>,
+    views: &[View<Solid>],
+    boxes: &[Aabb<Vec3>],
+    repeat: usize,
+) -> Measured {
     let mut measured = Measured { render_ms: 0.0, query_ns: 0.0, answers: Vec::new(), false_count: 0 };
     let n = views.len() as f64;
     for view in views {
@@ -142,19 +186,34 @@ fn measure(occluders: &mut Obscurer<Solid>, mesh: &Arc<Scene<Solid>>, views: &[V
     measured
 }
 
-/// How many of the boxes called hidden show at a sample of a finer image: where a ray through a pixel's center enters the box
-/// before it meets what is drawn there.
-fn wrongly_hidden(mesh: &Scene<Solid>, view: &View<Solid>, boxes: &[Aabb<Vec3>], answers: &[Option<bool>]) -> usize {
+/// How many of the boxes called hidden show at a sample of a finer image: where a ray through a pixel's
+/// center enters the box before it meets what is drawn there.
+fn wrongly_hidden(
+    mesh: &Scene<Solid>,
+    view: &View<Solid>,
+    boxes: &[Aabb<Vec3>],
+    answers: &[Option<bool>],
+) -> usize {
     let fine = View { width: view.width * FINER, height: view.height * FINER, ..*view };
     let mut image = Target::new(&fine);
-    Solid::draw(&mut image, mesh, &fine, mesh.live(), &Options { backface_culling: true, threads: 0, ..Options::default() });
+    Solid::draw(
+        &mut image,
+        mesh,
+        &fine,
+        mesh.live(),
+        &Options { backface_culling: true, threads: 0, ..Options::default() },
+    );
     let hidden = boxes.iter().zip(answers).filter(|(_, a)| **a == Some(true)).map(|(b, _)| b);
     hidden.filter(|b| shows(&fine, b, &image)).count()
 }
 
 fn shows(view: &View<Solid>, bounds: &Aabb<Vec3>, image: &Target) -> bool {
     let projection = view.projection();
-    let Footprint::Seen(seen) = project_box(&projection, bounds, view.eye.near, view.eye.far, view.width, view.height) else { return true };
+    let Footprint::Seen(seen) =
+        project_box(&projection, bounds, view.eye.near, view.eye.far, view.width, view.height)
+    else {
+        return true;
+    };
     let [x, y, forward] = [0, 1, 2].map(|i| projection.rows[i].as_dvec3());
     let (low, high) = ((bounds.min - projection.eye).as_dvec3(), (bounds.max - projection.eye).as_dvec3());
     let at = |column: u32, row: u32| {
@@ -173,9 +232,13 @@ impl Measured {
     fn line(&self, triangles: usize) -> String {
         let count = |v: u8| self.answers.iter().filter(|a| **a == v).count();
         let in_view = (count(0) + count(1)).max(1);
-        let hash = self.answers.iter().fold(0xcbf2_9ce4_8422_2325u64, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+        let hash = self
+            .answers
+            .iter()
+            .fold(0xcbf2_9ce4_8422_2325u64, |h, &b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
         format!(
-            "RESULT render_ms={:.4} ns_per_tri_in={:.3} ns_per_query={:.2} pct_occluded_of_infrustum={:.3} false={} hash={hash:016x}",
+            "RESULT render_ms={:.4} ns_per_tri_in={:.3} ns_per_query={:.2} pct_occluded_of_infrustum={:.3} \
+             false={} hash={hash:016x}",
             self.render_ms,
             self.render_ms * 1e6 / triangles.max(1) as f64,
             self.query_ns,

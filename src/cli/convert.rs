@@ -44,7 +44,8 @@ fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
 
 /// A name that survives as one word of a line.
 fn word(name: &str) -> String {
-    let kept: String = name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect();
+    let kept: String =
+        name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect();
     if kept.is_empty() { "_".into() } else { kept }
 }
 
@@ -100,12 +101,19 @@ fn flat_json(scene: &Scene<Flat>) -> String {
     let about = scene.about();
     let mut head = Map::new();
     head.insert("name".into(), scene.name().into());
-    for (key, text) in [("title", &about.title), ("teaches", &about.teaches), ("source", &about.credit), ("licence", &about.license)] {
+    for (key, text) in [
+        ("title", &about.title),
+        ("teaches", &about.teaches),
+        ("source", &about.credit),
+        ("licence", &about.license),
+    ] {
         if !text.is_empty() {
             head.insert(key.into(), text.as_str().into());
         }
     }
-    let ids = |o: usize| (0..scene.prim_count() as u32).filter(move |p| scene.object_of(PrimId(*p)) == ObjectId(o as u32));
+    let ids = |o: usize| {
+        (0..scene.prim_count() as u32).filter(move |p| scene.object_of(PrimId(*p)) == ObjectId(o as u32))
+    };
     let objects: Vec<Vec<u32>> = (0..scene.objects().len()).map(|o| ids(o).collect()).collect();
     head.insert("object_names".into(), scene.objects().iter().map(|o| Json::from(&*o.name)).collect());
     head.insert("colors".into(), colors(scene, &objects));
@@ -127,7 +135,10 @@ fn flat_json(scene: &Scene<Flat>) -> String {
             .iter()
             .map(|e| {
                 let list = |prims: &[PrimId]| prims.iter().map(|p| p.0).collect::<Vec<_>>();
-                json!({ "eye": e.eye, "frame": e.frame, "visible": list(&e.visible), "hidden": list(&e.hidden), "outside": list(&e.outside) })
+                let [visible, hidden, outside] = [&e.visible, &e.hidden, &e.outside].map(|prims| list(prims));
+                json!({
+                    "eye": e.eye, "frame": e.frame, "visible": visible, "hidden": hidden, "outside": outside,
+                })
             })
             .collect(),
     );
@@ -138,11 +149,16 @@ fn flat_json(scene: &Scene<Flat>) -> String {
         let _ = writeln!(text, "{}: {value},", Json::from(key.as_str()));
     }
     let lines = |list: Vec<String>| list.join(",\n");
-    let _ = writeln!(text, "\"objects\": [\n{}\n],", lines(objects.iter().map(|o| json!(o).to_string()).collect()));
+    let _ = writeln!(
+        text,
+        "\"objects\": [\n{}\n],",
+        lines(objects.iter().map(|o| json!(o).to_string()).collect())
+    );
     let segments = (0..scene.prim_count() as u32).map(|p| {
         // A dropped segment keeps its id as one without length.
         let ends: Vec<f32> = scene.prim_points(PrimId(p)).flat_map(|v| [v.x, v.y]).collect();
-        json!(if ends.is_empty() { vec![number(0.0); 4] } else { ends.into_iter().map(number).collect() }).to_string()
+        json!(if ends.is_empty() { vec![number(0.0); 4] } else { ends.into_iter().map(number).collect() })
+            .to_string()
     });
     let _ = writeln!(text, "\"segments\": [\n{}\n]\n}}", lines(segments.collect()));
     text
@@ -153,7 +169,9 @@ fn colors(scene: &Scene<Flat>, objects: &[Vec<u32>]) -> Json {
     let mut colors = BTreeMap::new();
     for (object, prims) in scene.objects().iter().zip(objects) {
         if let Some(first) = prims.first() {
-            colors.entry(object.name.clone()).or_insert_with(|| scene.color_of(PrimId(*first)).map(number).to_vec());
+            colors
+                .entry(object.name.clone())
+                .or_insert_with(|| scene.color_of(PrimId(*first)).map(number).to_vec());
         }
     }
     json!(colors)
@@ -165,6 +183,9 @@ fn motions(scene: &Scene<Flat>) -> Json {
         let degrees = (2.0 * f64::from(pose.rotation[2]).atan2(f64::from(pose.rotation[3]))).to_degrees();
         json!([number(pose.translation[0]), number(pose.translation[1]), (degrees * 1e4).round() / 1e4])
     };
-    let moving = scene.objects().iter().filter_map(|o| Some((o.name.clone(), o.motion.as_ref()?.iter().map(frame).collect::<Vec<_>>())));
+    let moving = scene
+        .objects()
+        .iter()
+        .filter_map(|o| Some((o.name.clone(), o.motion.as_ref()?.iter().map(frame).collect::<Vec<_>>())));
     json!(moving.collect::<BTreeMap<_, _>>())
 }

@@ -22,9 +22,9 @@ use crate::scene::{AnyScene, Progress, Scene};
 use crate::truth::Truth;
 
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  cullscope cull scenes3d/freedoom_e1m1.obj --method frustum --set tree-height=10 --truth --ids --image kept.png\n\nTimes are wall clock on one thread unless --threads says otherwise; measure with a release build."
-)]
+#[command(after_help = "Example:\n  cullscope cull scenes3d/freedoom_e1m1.obj --method frustum --set \
+                  tree-height=10 --truth --ids --image kept.png\n\nTimes are wall clock on one thread unless \
+                  --threads says otherwise; measure with a release build.")]
 pub(super) struct Args {
     #[command(flatten)]
     task: Task,
@@ -41,7 +41,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE.json")]
     out: Option<PathBuf>,
     /// Threads that draw
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..=256)
+    )]
     threads: u32,
 }
 
@@ -92,7 +97,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let Ready { mut run, path, build_ms, bar } = args.task.ready(scene)?;
-    let pool = (args.threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
+    let pool = (args.threads > 1)
+        .then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
     let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
     let mut work = || frames(args, scene, &mut *run, &path.views, &bar);
     let frames = match &pool {
@@ -114,10 +120,18 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
 
 /// Every frame twice: timed, then counted, each time from no memory, so that what a method keeps from frame
 /// to frame is what it would keep.
-fn frames<S: World>(args: &Args, scene: &Scene<S>, run: &mut dyn Run<S>, views: &[View<S>], bar: &Bar) -> Result<Vec<Frame>, CliError> {
-    let backface_culling = run.knobs().iter().any(|(k, v)| k.name == "backface-culling" && v.to_string() == "true");
+fn frames<S: World>(
+    args: &Args,
+    scene: &Scene<S>,
+    run: &mut dyn Run<S>,
+    views: &[View<S>],
+    bar: &Bar,
+) -> Result<Vec<Frame>, CliError> {
+    let backface_culling =
+        run.knobs().iter().any(|(k, v)| k.name == "backface-culling" && v.to_string() == "true");
     let background = Theme::Print.flat_linear(Role::Paper);
-    let mut truth = args.truth.then(|| Truth::new(scene, backface_culling, args.threads as usize, background));
+    let mut truth =
+        args.truth.then(|| Truth::new(scene, backface_culling, args.threads as usize, background));
     let mut target = Target::default();
     let options = Options { threads: args.threads as usize, ..Options::default() };
     let mut frames = Vec::with_capacity(views.len());

@@ -76,7 +76,8 @@ impl CliError {
     }
     /// The whole message for standard error: one line, or two with the help.
     pub fn message(&self) -> String {
-        let one_line = |text: &str| text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>();
+        let one_line =
+            |text: &str| text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect::<String>();
         let mut text = format!("error: {}\n", one_line(&self.to_string()));
         if let Some(help) = self.help() {
             text += &format!("help: {}\n", one_line(help));

@@ -9,7 +9,9 @@ use crate::geometry::{Flat, Solid};
 
 #[derive(clap::Args, Default)]
 #[command(
-    after_help = "Examples:\n  cullscope explore                                            what was open last\n  cullscope explore scenes2d/street.json --method frustum --set tree-height=6\n  cullscope explore model.obj --view walk.views.json"
+    after_help = "Examples:\n  cullscope explore                                            what was open \
+                  last\n  cullscope explore scenes2d/street.json --method frustum --set tree-height=6\n  \
+                  cullscope explore model.obj --view walk.views.json"
 )]
 pub(super) struct Args {
     /// Scene to open: .obj, .gltf, .glb, a flatland .json, or generate:NAME[?key=value&…]
@@ -32,7 +34,8 @@ pub(super) struct Args {
     /// Neither read nor write what was open last
     #[arg(long)]
     fresh: bool,
-    /// Run a command of the explorer once the scene is there, such as last, theme-dark, go-to:40; may be given several times
+    /// Run a command of the explorer once the scene is there, such as last, theme-dark, go-to:40; may be
+    /// given several times
     #[arg(long = "do", value_name = "COMMAND")]
     commands: Vec<String>,
     /// Write a picture of the window and quit
@@ -45,9 +48,14 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let start = start(args)?;
-    if cfg!(all(unix, not(target_os = "macos"))) && ["DISPLAY", "WAYLAND_DISPLAY"].iter().all(|v| std::env::var_os(v).is_none_or(|v| v.is_empty())) {
+    if cfg!(all(unix, not(target_os = "macos")))
+        && ["DISPLAY", "WAYLAND_DISPLAY"].iter().all(|v| std::env::var_os(v).is_none_or(|v| v.is_empty()))
+    {
         return Err(CliError::work("display", "there is none: neither DISPLAY nor WAYLAND_DISPLAY is set")
-            .with_help("cull, step and figure work without a display; on a machine with a screen run this in a desktop session"));
+            .with_help(
+                "cull, step and figure work without a display; on a machine with a screen run this in \
+                        a desktop session",
+            ));
     }
     open(start)
 }
@@ -83,22 +91,29 @@ fn start(args: &Args) -> Result<Start, CliError> {
 
 fn size(text: &str) -> Result<[u32; 2], CliError> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    sides
-        .filter(|s: &[u32; 2]| s.iter().all(|v| (200..=8192).contains(v)))
-        .ok_or_else(|| CliError::words("--size", format!("`{text}` is not of the form 1280x800, with 200 to 8192 pixels a side")))
+    sides.filter(|s: &[u32; 2]| s.iter().all(|v| (200..=8192).contains(v))).ok_or_else(|| {
+        CliError::words(
+            "--size",
+            format!("`{text}` is not of the form 1280x800, with 200 to 8192 pixels a side"),
+        )
+    })
 }
 
 #[cfg(feature = "gui")]
 fn open(start: Start) -> Result<(), CliError> {
     // The window library panics where a system library is missing; that is no fault of ours to report.
-    let help = "on Debian and Ubuntu `make run` installs what a window needs; cull, step and figure work without one";
+    let help = "on Debian and Ubuntu `make run` installs what a window needs; cull, step and figure work \
+                without one";
     match std::panic::catch_unwind(|| crate::views::window::run(start)) {
         Ok(result) => result.map_err(|e| CliError::work("window", e.to_string()).with_help(help)),
-        Err(_) => Err(CliError::work("window", "it could not be opened; the reason stands above").with_help(help)),
+        Err(_) => {
+            Err(CliError::work("window", "it could not be opened; the reason stands above").with_help(help))
+        }
     }
 }
 
 #[cfg(not(feature = "gui"))]
 fn open(_: Start) -> Result<(), CliError> {
-    Err(CliError::work("explore", "this program was built without its window").with_help("build with the feature `gui`, which is on by default"))
+    Err(CliError::work("explore", "this program was built without its window")
+        .with_help("build with the feature `gui`, which is on by default"))
 }

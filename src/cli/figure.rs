@@ -15,7 +15,8 @@ use crate::scene::Progress;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  cullscope figure frustum-steps --format svg,pdf --theme print --out figures\n  cullscope figure --list\n  cullscope figure --all"
+    after_help = "Example:\n  cullscope figure frustum-steps --format svg,pdf --theme print --out figures\n  \
+                  cullscope figure --list\n  cullscope figure --all"
 )]
 pub(super) struct Args {
     /// Which figures; --list names them
@@ -81,7 +82,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let drawing = figure.drawing(&|role| theme.flat_linear(role))?;
         let recipe = format!("cullscope figure {} --theme {}", figure.name, theme.name());
         for format in &formats {
-            let (bytes, extension) = bytes(&drawing, theme, *format, &recipe).map_err(|e| CliError::work(figure.name, e.to_string()))?;
+            let (bytes, extension) = bytes(&drawing, theme, *format, &recipe)
+                .map_err(|e| CliError::work(figure.name, e.to_string()))?;
             let path = args.out.join(format!("{}.{extension}", figure.name));
             output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
             output::print(format!("{}\n", path.display()).as_bytes())?;
@@ -96,19 +98,25 @@ fn chosen(args: &Args) -> Result<Vec<&'static Builtin>, CliError> {
         return Ok(BUILTIN.iter().collect());
     }
     if args.names.is_empty() {
-        return Err(CliError::words("figure", "no figure is named").with_help(format!("give a NAME or --all; figures: {}", known.join(", "))));
+        return Err(CliError::words("figure", "no figure is named")
+            .with_help(format!("give a NAME or --all; figures: {}", known.join(", "))));
     }
     let find = |name: &String| {
-        BUILTIN
-            .iter()
-            .find(|f| f.name == name)
-            .ok_or_else(|| CliError::words(name.as_str(), "there is no such figure").with_help(suggest::help(name, &known, "figures")))
+        BUILTIN.iter().find(|f| f.name == name).ok_or_else(|| {
+            CliError::words(name.as_str(), "there is no such figure")
+                .with_help(suggest::help(name, &known, "figures"))
+        })
     };
     args.names.iter().map(find).collect()
 }
 
 /// A drawing as the bytes of a file, and the file's extension.
-pub(super) fn bytes(drawing: &Drawing, theme: Theme, format: Format, recipe: &str) -> Result<(Vec<u8>, &'static str), RenderError> {
+pub(super) fn bytes(
+    drawing: &Drawing,
+    theme: Theme,
+    format: Format,
+    recipe: &str,
+) -> Result<(Vec<u8>, &'static str), RenderError> {
     Ok(match format {
         Format::Svg => {
             let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };

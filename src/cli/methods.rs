@@ -45,7 +45,11 @@ struct Param {
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let methods = all()?;
-    let text = if args.json { json_text(&json!({ "cullscope": env!("CARGO_PKG_VERSION"), "methods": methods })) } else { table(&methods) };
+    let text = if args.json {
+        json_text(&json!({ "cullscope": env!("CARGO_PKG_VERSION"), "methods": methods }))
+    } else {
+        table(&methods)
+    };
     output::print(text.as_bytes())
 }
 
@@ -53,7 +57,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 pub(super) fn find<S: World>(key: &str) -> Result<&'static dyn Entry<S>, CliError> {
     S::method(key).ok_or_else(|| {
         let keys: Vec<_> = S::methods().iter().map(|m| m.card().key).collect();
-        CliError::words("--method", format!("there is no method `{key}` in {}", S::NAME)).with_help(suggest::help(key, &keys, "methods"))
+        CliError::words("--method", format!("there is no method `{key}` in {}", S::NAME))
+            .with_help(suggest::help(key, &keys, "methods"))
     })
 }
 
@@ -91,7 +96,8 @@ fn add<S: World>(list: &mut Vec<Listed>) -> Result<(), CliError> {
             known.spaces.push(S::NAME);
             continue;
         }
-        let params = entry.knobs(&Settings::default())?.iter().map(|(knob, value)| param(knob, value)).collect();
+        let params =
+            entry.knobs(&Settings::default())?.iter().map(|(knob, value)| param(knob, value)).collect();
         list.push(Listed { key, name, summary, paper, doi, conservative, spaces: vec![S::NAME], params });
     }
     Ok(())
@@ -104,7 +110,15 @@ fn param(knob: &Knob, value: &KnobValue) -> Param {
         KnobValue::Budget(_) => ("budget", json!(["0", "4294967295", "0%", "100%", "0.001ms", "3600000ms"])),
         KnobValue::Choice(_, options) => ("choice", json!(options)),
     };
-    Param { name: knob.name, r#type, unit: knob.unit, range, default: knob_json(value), meaning: knob.meaning, source: knob.source }
+    Param {
+        name: knob.name,
+        r#type,
+        unit: knob.unit,
+        range,
+        default: knob_json(value),
+        meaning: knob.meaning,
+        source: knob.source,
+    }
 }
 
 fn table(methods: &[Listed]) -> String {
@@ -112,7 +126,15 @@ fn table(methods: &[Listed]) -> String {
     for m in methods {
         let kind = if m.conservative { "conservative" } else { "not conservative" };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}: {} ({kind}; {})\n  {}\n  {}", m.key, m.name, m.spaces.join(", "), m.summary, m.paper);
+        let _ = writeln!(
+            text,
+            "{}: {} ({kind}; {})\n  {}\n  {}",
+            m.key,
+            m.name,
+            m.spaces.join(", "),
+            m.summary,
+            m.paper
+        );
         for p in &m.params {
             let range = match (p.r#type, &p.range) {
                 ("integer", Json::Array(ends)) => format!("{} to {} {}", ends[0], ends[1], p.unit),

@@ -36,7 +36,10 @@ pub(super) fn say(line: &str) {
 
 /// Lets `fill` write to `out`, or to standard output if there is none. What `fill` says of `Ok(false)` is
 /// an interruption: a file is then not kept.
-pub(super) fn emit(out: Option<&Path>, fill: impl FnOnce(&mut dyn Write) -> io::Result<bool>) -> Result<(), CliError> {
+pub(super) fn emit(
+    out: Option<&Path>,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<bool>,
+) -> Result<(), CliError> {
     let Some(path) = out else {
         let mut to = BufWriter::with_capacity(1 << 16, io::stdout().lock());
         let done = fill(&mut to).and_then(|done| to.flush().map(|()| done));
@@ -50,14 +53,18 @@ pub(super) fn emit(out: Option<&Path>, fill: impl FnOnce(&mut dyn Write) -> io::
 }
 
 /// Writes a file whole or not at all.
-pub(super) fn write_file(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<bool>) -> Result<(), CliError> {
+pub(super) fn write_file(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<bool>,
+) -> Result<(), CliError> {
     let name = path.display().to_string();
     // A device or pipe has no beside.
     let special = fs::metadata(path).is_ok_and(|m| !m.is_file());
     let beside = Beside::new(path, special);
     let file = fs::File::create(&beside.path).map_err(|e| CliError::write(&name, &e))?;
     let mut to = BufWriter::with_capacity(1 << 16, file);
-    let done = fill(&mut to).and_then(|done| to.flush().map(|()| done)).map_err(|e| CliError::write(&name, &e))?;
+    let done =
+        fill(&mut to).and_then(|done| to.flush().map(|()| done)).map_err(|e| CliError::write(&name, &e))?;
     if !done {
         return Err(CliError::Interrupted);
     }

@@ -17,7 +17,10 @@ use crate::scene::{AnyScene, LoadOptions, Part};
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  cullscope paper coorg-teller-table-1\n  cullscope paper coorg-teller-table-3 --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n\nA file for each format but text, which is printed. Times are wall clock on one thread; measure with a release build."
+    after_help = "Example:\n  cullscope paper coorg-teller-table-1\n  cullscope paper coorg-teller-table-3 \
+                  --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n\nA \
+                  file for each format but text, which is printed. Times are wall clock on one thread; \
+                  measure with a release build."
 )]
 pub(super) struct Args {
     /// Which tables; --list names them
@@ -29,12 +32,17 @@ pub(super) struct Args {
     /// List the tables instead
     #[arg(long)]
     list: bool,
-    /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]; may be given several times [default:
-    /// generated scenes that are likened to the paper's]
+    /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]; may be given several
+    /// times [default: generated scenes that are likened to the paper's]
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     /// Frames that are measured on each scene
-    #[arg(long, value_name = "N", default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 240,
+        value_parser = clap::value_parser!(u32).range(1..=100_000)
+    )]
     frames: u32,
     /// A parameter of the method; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
@@ -72,7 +80,9 @@ enum Format {
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
     let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX))
+    both.ok_or_else(|| {
+        format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX)
+    })
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
@@ -85,16 +95,24 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         return output::print(text.as_bytes());
     }
     let experiments = chosen(args)?;
-    let setup = Setup { frames: args.frames as usize, settings: settings(&args.set)?, check_every: args.check_every as usize, size_px: args.size };
+    let setup = Setup {
+        frames: args.frames as usize,
+        settings: settings(&args.set)?,
+        check_every: args.check_every as usize,
+        size_px: args.size,
+    };
     for experiment in &experiments {
         experiment.check(&setup.settings).map_err(explained)?;
     }
     let formats: BTreeSet<Format> = args.format.iter().copied().collect();
-    let open = |sources: &[&str]| sources.iter().map(|s| scene::open(s, &LoadOptions::default())).collect::<Result<Vec<_>, _>>();
+    let open = |sources: &[&str]| {
+        sources.iter().map(|s| scene::open(s, &LoadOptions::default())).collect::<Result<Vec<_>, _>>()
+    };
     let named = open(&args.scene.iter().map(String::as_str).collect::<Vec<_>>())?;
     let mut own: (&[&str], Vec<AnyScene>) = (&[], vec![]);
     if formats.iter().any(|f| *f != Format::Text) {
-        fs::create_dir_all(&args.out).map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
+        fs::create_dir_all(&args.out)
+            .map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
     }
     for (i, experiment) in experiments.iter().enumerate() {
         let n = experiments.len() as f32;
@@ -123,7 +141,8 @@ fn explained(error: PaperError) -> CliError {
 /// The call that makes the same again.
 fn recipe(args: &Args, experiment: &Experiment) -> String {
     let mut text = format!("cullscope paper {} --frames {}", experiment.name, args.frames);
-    let mut add = |option: &str, words: &[String]| words.iter().for_each(|w| text += &format!(" {option} {w}"));
+    let mut add =
+        |option: &str, words: &[String]| words.iter().for_each(|w| text += &format!(" {option} {w}"));
     add("--scene", &args.scene);
     add("--set", &args.set);
     text
@@ -133,7 +152,9 @@ fn write(report: &Report, format: Format, folder: &Path, recipe: &str) -> Result
     let failed = |e: RenderError| CliError::work(report.name, e.to_string());
     let painted = |format| {
         let drawing = chart(report.title, &report.plots, &report.caption());
-        figure::bytes(&drawing, Theme::Print, format, recipe).map(|(bytes, extension)| (extension, bytes)).map_err(failed)
+        figure::bytes(&drawing, Theme::Print, format, recipe)
+            .map(|(bytes, extension)| (extension, bytes))
+            .map_err(failed)
     };
     let (extension, bytes) = match format {
         Format::Text => return output::print((report.text() + "\n").as_bytes()),
@@ -155,10 +176,14 @@ fn chosen(args: &Args) -> Result<Vec<&'static Experiment>, CliError> {
         return Ok(EXPERIMENTS.iter().collect());
     }
     if args.names.is_empty() {
-        return Err(CliError::words("paper", "no table is named").with_help(format!("give a NAME or --all; tables: {}", known.join(", "))));
+        return Err(CliError::words("paper", "no table is named")
+            .with_help(format!("give a NAME or --all; tables: {}", known.join(", "))));
     }
     let find = |name: &String| {
-        let missing = || CliError::words(name.as_str(), "there is no such table").with_help(suggest::help(name, &known, "tables"));
+        let missing = || {
+            CliError::words(name.as_str(), "there is no such table")
+                .with_help(suggest::help(name, &known, "tables"))
+        };
         Experiment::named(name).ok_or_else(missing)
     };
     args.names.iter().map(find).collect()

@@ -51,7 +51,9 @@ impl Progress for Bar {
         let mut bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
         let bar = bar.get_or_insert_with(|| {
             let bar = ProgressBar::with_draw_target(Some(PARTS), ProgressDrawTarget::stderr());
-            let style = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  about {eta} left (Ctrl-C stops)");
+            let style = ProgressStyle::with_template(
+                "{msg} [{bar:30}] {percent:>3} %  about {eta} left (Ctrl-C stops)",
+            );
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
             bar
         });
@@ -65,7 +67,9 @@ impl Progress for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        if let Some(bar) = self.bar.take().and_then(|b| b.into_inner().unwrap_or_else(PoisonError::into_inner)) {
+        if let Some(bar) =
+            self.bar.take().and_then(|b| b.into_inner().unwrap_or_else(PoisonError::into_inner))
+        {
             bar.finish_and_clear();
         }
     }

@@ -37,7 +37,9 @@ impl SceneArgs {
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
     /// Print counts, bounds, groups, materials, memory, and what was dropped and why
-    #[command(after_help = "Example:\n  cullscope scene info scenes3d/freedoom_e1m1/freedoom_e1m1.obj --json")]
+    #[command(
+        after_help = "Example:\n  cullscope scene info scenes3d/freedoom_e1m1/freedoom_e1m1.obj --json"
+    )]
     Info {
         /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]
         #[arg(value_name = "SCENE")]
@@ -47,11 +49,13 @@ pub(super) enum Command {
         json: bool,
     },
     /// List the built-in generators
-    #[command(after_help = "Example:\n  cullscope scene generators\n  cullscope scene info 'generate:building?seed=7'")]
+    #[command(after_help = "Example:\n  cullscope scene generators\n  cullscope scene info \
+                      'generate:building?seed=7'")]
     Generators,
     /// Write a scene as OBJ with materials and views, or as a flatland JSON file; primitive ids stay
     #[command(
-        after_help = "Example:\n  cullscope scene convert model.glb model.obj\n  cullscope scene convert survey.obj near-origin.obj --recenter always"
+        after_help = "Example:\n  cullscope scene convert model.glb model.obj\n  cullscope scene convert \
+                      survey.obj near-origin.obj --recenter always"
     )]
     Convert {
         /// What is read
@@ -82,7 +86,11 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
         Command::Convert { scene, out, recenter } => {
             let recentered = *recenter == Move::Always;
             let recenter = if recentered { Recenter::Always } else { Recenter::Auto };
-            convert::write(&open(scene, &LoadOptions { recenter, ..LoadOptions::default() })?, out, recentered)
+            convert::write(
+                &open(scene, &LoadOptions { recenter, ..LoadOptions::default() })?,
+                out,
+                recentered,
+            )
         }
     }
 }
@@ -103,14 +111,24 @@ fn explained(source: &str, error: SceneError) -> CliError {
         let text = error.to_string();
         let why = text.strip_prefix(source).and_then(|t| t.strip_prefix(": ")).unwrap_or(&text);
         let made = CliError::words(source, why);
-        return if names.contains(&name) { made } else { made.with_help(suggest::help(name, &names, "generators")) };
+        return if names.contains(&name) {
+            made
+        } else {
+            made.with_help(suggest::help(name, &names, "generators"))
+        };
     }
-    let missing = matches!(&error, SceneError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound) || !Path::new(source).exists();
+    let missing = matches!(&error, SceneError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound)
+        || !Path::new(source).exists();
     let near = if missing { neighbor(Path::new(source)) } else { None };
     match near {
-        Some(near) => CliError::work(source, "there is no such file").with_help(format!("did you mean `{near}`?")),
-        None if missing => CliError::work(source, "there is no such file")
-            .with_help("a scene is a path to .obj, .gltf, .glb or a flatland .json, or generate:NAME (see `cullscope scene generators`)"),
+        Some(near) => CliError::work(source, "there is no such file").with_help(format!(
+            "did you mean \
+            `{near}`?"
+        )),
+        None if missing => CliError::work(source, "there is no such file").with_help(
+            "a scene is a path to .obj, .gltf, .glb or a flatland .json, or generate:NAME (see \
+                        `cullscope scene generators`)",
+        ),
         None => error.into(),
     }
 }
@@ -118,7 +136,9 @@ fn explained(source: &str, error: SceneError) -> CliError {
 /// The file in the same folder whose name is nearest.
 fn neighbor(path: &Path) -> Option<String> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let names = std::fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.file_name().to_string_lossy().into_owned()));
+    let names = std::fs::read_dir(folder)
+        .ok()?
+        .filter_map(|e| Some(e.ok()?.file_name().to_string_lossy().into_owned()));
     let names: BTreeSet<String> = names.take(10_000).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let near = suggest::nearest(&path.file_name()?.to_string_lossy(), &names)?;
@@ -156,8 +176,11 @@ struct PathInfo {
 }
 
 fn info<S: World>(scene: &Arc<Scene<S>>, json: bool) -> Result<(), CliError> {
-    let corner = |v: S::Vector| (0..S::Vector::AXES).map(|a| f64::from(v.get(a)) + scene.origin()[a]).collect::<Vec<_>>();
-    let groups: BTreeSet<String> = scene.objects().iter().map(|o| o.group.clone()).filter(|g| !g.is_empty()).collect();
+    let corner = |v: S::Vector| {
+        (0..S::Vector::AXES).map(|a| f64::from(v.get(a)) + scene.origin()[a]).collect::<Vec<_>>()
+    };
+    let groups: BTreeSet<String> =
+        scene.objects().iter().map(|o| o.group.clone()).filter(|g| !g.is_empty()).collect();
     let info = Info {
         cullscope: env!("CARGO_PKG_VERSION"),
         scene: scene.source().to_owned(),
@@ -174,7 +197,11 @@ fn info<S: World>(scene: &Arc<Scene<S>>, json: bool) -> Result<(), CliError> {
         bounds: [corner(scene.bounds().min), corner(scene.bounds().max)],
         origin: scene.origin().to_array(),
         moving_objects: scene.objects().iter().filter(|o| o.motion.is_some()).count(),
-        paths: scene.paths().iter().map(|p| PathInfo { name: p.name.clone(), views: p.views.len() }).collect(),
+        paths: scene
+            .paths()
+            .iter()
+            .map(|p| PathInfo { name: p.name.clone(), views: p.views.len() })
+            .collect(),
         memory_bytes: scene.memory_bytes(),
         sha256: scene.hash_hex(),
         notes: scene.report().notes.clone(),
@@ -191,7 +218,13 @@ fn table<S: World>(info: &Info) -> String {
         let _ = writeln!(text, "{key:<11}{value}");
     };
     let joined = |list: &[f64]| list.iter().map(|v| format!("{v:.4}")).collect::<Vec<_>>().join(", ");
-    let listed = |list: &[String]| if list.len() > 12 { format!(" ({}, …)", list[..12].join(", ")) } else { format!(" ({})", list.join(", ")) };
+    let listed = |list: &[String]| {
+        if list.len() > 12 {
+            format!(" ({}, …)", list[..12].join(", "))
+        } else {
+            format!(" ({})", list.join(", "))
+        }
+    };
     row("scene", format!("{} ({}, {})", info.scene, info.name, info.space));
     row(&format!("{}s", S::PRIM), format!("{} ({} live)", info.triangles, info.live));
     for (why, count) in &info.dropped {
@@ -200,7 +233,14 @@ fn table<S: World>(info: &Info) -> String {
     row("points", info.points.to_string());
     row("faces", format!("{} convex polygons", info.faces));
     row("objects", format!("{} ({} moving)", info.objects, info.moving_objects));
-    row("groups", if info.groups.is_empty() { "0".into() } else { info.groups.len().to_string() + &listed(&info.groups) });
+    row(
+        "groups",
+        if info.groups.is_empty() {
+            "0".into()
+        } else {
+            info.groups.len().to_string() + &listed(&info.groups)
+        },
+    );
     row("materials", info.materials.to_string());
     row("bounds", format!("[{}] to [{}]", joined(&info.bounds[0]), joined(&info.bounds[1])));
     if info.origin != [0.0; 3] {

@@ -19,7 +19,8 @@ pub(super) const FILM_CAP: usize = 10_000_000;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  cullscope step scenes2d/street.json --method frustum --detail coarse --out street.jsonl\n  cullscope trace check street.jsonl"
+    after_help = "Example:\n  cullscope step scenes2d/street.json --method frustum --detail coarse --out \
+                  street.jsonl\n  cullscope trace check street.jsonl"
 )]
 pub(super) struct Args {
     #[command(flatten)]
@@ -47,7 +48,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let Ready { mut run, path, bar, .. } = args.task.ready(scene)?;
-    if let Some((_, time)) = run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_)))) {
+    if let Some((_, time)) =
+        run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_))))
+    {
         let why = "what fits into a time differs from run to run, and a trace must not";
         return Err(CliError::words(format!("--set budget={time}"), why)
             .with_help("give a number of primitives; `cullscope cull` prints how many were drawn"));
@@ -62,7 +65,8 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
         write_header(&header, &mut to)?;
         for (frame, view) in path.views.iter().enumerate() {
             let film = run.record(view, FILM_CAP).film;
-            let (done, part, events) = (frame as f32, 1.0 / path.views.len() as f32, film.events().len().max(1) as f32);
+            let (done, part, events) =
+                (frame as f32, 1.0 / path.views.len() as f32, film.events().len().max(1) as f32);
             let stop = |at: usize| {
                 bar.report((done + at as f32 / events) * part, "writing steps");
                 bar.cancelled()
@@ -76,10 +80,21 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     })
 }
 
-fn header<S: World>(scene: &Scene<S>, method: &str, params: Map<String, Json>, path: &ViewPath<S>, detail: &str) -> Header {
+fn header<S: World>(
+    scene: &Scene<S>,
+    method: &str,
+    params: Map<String, Json>,
+    path: &ViewPath<S>,
+    detail: &str,
+) -> Header {
     // The text of a view file is an object.
     let view = serde_json::from_str(&write_views(path, scene.origin())).unwrap_or_default();
-    let more = [("space", S::NAME), ("scene_sha256", &scene.hash_hex()), ("cullscope", env!("CARGO_PKG_VERSION")), ("detail", detail)];
+    let more = [
+        ("space", S::NAME),
+        ("scene_sha256", &scene.hash_hex()),
+        ("cullscope", env!("CARGO_PKG_VERSION")),
+        ("detail", detail),
+    ];
     let more = more.iter().map(|(key, value)| ((*key).to_owned(), Json::from(*value))).collect();
     Header { scene: scene.source().to_owned(), method: method.to_owned(), params, view, more }
 }

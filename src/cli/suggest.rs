@@ -9,12 +9,16 @@ pub(super) fn help(word: &str, known: &[&str], what: &str) -> String {
     }
 }
 
-/// The known word with the fewest edits, if those are at most a third of the word, or one that it begins or ends.
+/// The known word with the fewest edits, if those are at most a third of the word, or one that it begins or
+/// ends.
 pub(super) fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let word = word.to_lowercase();
     let scored = known.iter().map(|k| (edits(&word, &k.to_lowercase()), *k));
-    let near = scored.min().filter(|(edits, k)| *edits <= word.chars().count().max(k.chars().count()).div_ceil(3));
-    near.map(|(_, k)| k).or_else(|| known.iter().copied().find(|k| word.len() >= 3 && (k.starts_with(&word) || k.ends_with(&word))))
+    let near =
+        scored.min().filter(|(edits, k)| *edits <= word.chars().count().max(k.chars().count()).div_ceil(3));
+    near.map(|(_, k)| k).or_else(|| {
+        known.iter().copied().find(|k| word.len() >= 3 && (k.starts_with(&word) || k.ends_with(&word)))
+    })
 }
 
 /// Insertions, deletions, replacements and swaps of neighbors that turn `a` into `b` (Damerau 1964,

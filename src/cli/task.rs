@@ -58,7 +58,10 @@ impl Task {
         let run = paced(run?.ok_or(CliError::Interrupted)?, scene)?;
         if let (Some(path), None) = (&self.preprocess, saved) {
             let Some(bytes) = run.save() else {
-                return Err(CliError::words("--preprocess", format!("the method `{}` has nothing that takes long to build", run.card().key)));
+                return Err(CliError::words(
+                    "--preprocess",
+                    format!("the method `{}` has nothing that takes long to build", run.card().key),
+                ));
             };
             output::write_file(path, |to| to.write_all(&bytes).map(|()| true))?;
         }
@@ -75,7 +78,9 @@ impl Task {
         let file = self.preprocess.as_deref().unwrap_or(Path::new("")).display().to_string();
         match error {
             RestoreError::Setting(error) => error.clone().into(),
-            RestoreError::Saved(why) => CliError::work(file, why.clone()).with_help("delete the file, and it is made anew"),
+            RestoreError::Saved(why) => {
+                CliError::work(file, why.clone()).with_help("delete the file, and it is made anew")
+            }
         }
     }
 }

@@ -1,4 +1,5 @@
-//! `cullscope trace check`: whether a recorded run keeps to the trace format, and on demand whether it is true.
+//! `cullscope trace check`: whether a recorded run keeps to the trace format, and on demand whether it is
+//! true.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
@@ -20,12 +21,15 @@ use crate::truth::certificate::check_film;
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
     /// Validate a trace and name its first bad line
-    #[command(after_help = "Example:\n  cullscope trace check run.jsonl\n  cullscope trace check run.jsonl --prove")]
+    #[command(
+        after_help = "Example:\n  cullscope trace check run.jsonl\n  cullscope trace check run.jsonl --prove"
+    )]
     Check {
         /// A trace, as `cullscope step` writes it
         #[arg(value_name = "FILE")]
         file: String,
-        /// Run its method again on its scene: every line must be the same, and what was called outside or hidden must be
+        /// Run its method again on its scene: every line must be the same, and what was called outside or
+        /// hidden must be
         #[arg(long)]
         prove: bool,
     },
@@ -33,9 +37,13 @@ pub(super) enum Command {
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Command::Check { file, prove } = command;
-    let summary = format::check(read(file)?).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))?;
+    let summary =
+        format::check(read(file)?).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))?;
     let (method, scene) = (&summary.header.method, &summary.header.scene);
-    let text = format!("{file}: valid: {} events in {} frames of `{method}` on {scene}\n", summary.events, summary.frames);
+    let text = format!(
+        "{file}: valid: {} events in {} frames of `{method}` on {scene}\n",
+        summary.events, summary.frames
+    );
     if !prove {
         return output::print(text.as_bytes());
     }
@@ -50,10 +58,14 @@ fn read(file: &str) -> Result<BufReader<File>, CliError> {
     File::open(file).map(BufReader::new).map_err(|e| CliError::work(file, reason(&e)))
 }
 
-/// Runs what the header says, compares it with the file line by line, and checks the certificates of every frame.
+/// Runs what the header says, compares it with the file line by line, and checks the certificates of every
+/// frame.
 fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Result<String, CliError> {
     if header.more.get("scene_sha256").is_some_and(|hash| *hash != scene.hash_hex()) {
-        return Err(CliError::work(file, format!("{} is not the scene of this trace any more", header.scene)));
+        return Err(CliError::work(
+            file,
+            format!("{} is not the scene of this trace any more", header.scene),
+        ));
     }
     let text = |value: &Json| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     let settings = Settings(header.params.iter().map(|(key, value)| (key.clone(), text(value))).collect());
@@ -61,9 +73,13 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
     let path: ViewPath<S> = parse_views(view.as_bytes(), file, scene.origin())?;
     let bar = Bar::new();
     let mut run = find::<S>(&header.method)?.ready(scene, &settings, &bar)?.ok_or(CliError::Interrupted)?;
-    let detail = if header.more.get("detail").is_some_and(|d| d == "coarse") { Detail::Coarse } else { Detail::Full };
+    let detail =
+        if header.more.get("detail").is_some_and(|d| d == "coarse") { Detail::Coarse } else { Detail::Full };
     let mut same = Same { theirs: read(file)?, line: 1, buffer: Vec::new() };
-    let differs = |e: io::Error| CliError::work(file, reason(&e)).with_help("the trace was made by another version, with a preprocess, or altered");
+    let differs = |e: io::Error| {
+        CliError::work(file, reason(&e))
+            .with_help("the trace was made by another version, with a preprocess, or altered")
+    };
     write_header(header, &mut same).map_err(differs)?;
     let (mut certificates, mut lost) = (0, 0);
     for (frame, view) in path.views.iter().enumerate() {
@@ -72,12 +88,17 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
             return Err(CliError::Interrupted);
         }
         let film = run.record(view, FILM_CAP).film;
-        certificates += check_film(&*film).map_err(|e| CliError::work(format!("{file}: frame {frame}"), e.to_string()))?;
+        certificates += check_film(&*film)
+            .map_err(|e| CliError::work(format!("{file}: frame {frame}"), e.to_string()))?;
         lost += film.lost();
         write_film(&*film, frame as u64, detail, &mut same, &|_| false).map_err(differs)?;
     }
     same.end().map_err(differs)?;
-    let unseen = if lost > 0 { format!("; {lost} events past the {FILM_CAP} of a frame were not looked at") } else { String::new() };
+    let unseen = if lost > 0 {
+        format!("; {lost} events past the {FILM_CAP} of a frame were not looked at")
+    } else {
+        String::new()
+    };
     Ok(format!("{file}: proven: {certificates} certificates in {} frames{unseen}\n", path.views.len()))
 }
 
@@ -94,7 +115,11 @@ impl<R: Read> Same<R> {
     }
     /// That nothing follows.
     fn end(mut self) -> io::Result<()> {
-        if self.theirs.read(&mut [0])? == 0 { Ok(()) } else { Err(self.differs("and what follows is not told by the method")) }
+        if self.theirs.read(&mut [0])? == 0 {
+            Ok(())
+        } else {
+            Err(self.differs("and what follows is not told by the method"))
+        }
     }
 }
 

@@ -18,13 +18,24 @@ pub(super) struct ViewArgs {
     #[arg(long, value_name = "NAME", conflicts_with_all = ["random_views", "eye"])]
     path: Option<String>,
     /// So many random views, the same for the same --seed
-    #[arg(long, value_name = "N", conflicts_with = "eye", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "eye",
+        value_parser = clap::value_parser!(u32).range(1..=100_000)
+    )]
     random_views: Option<u32>,
     /// Seed of random views
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// A single view: where the eye stands
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "target", value_parser = numbers)]
+    #[arg(
+        long,
+        value_name = "X,Y[,Z]",
+        allow_hyphen_values = true,
+        requires = "target",
+        value_parser = numbers
+    )]
     eye: Option<Numbers>,
     /// What it looks at
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, requires = "eye", value_parser = numbers)]
@@ -52,14 +63,20 @@ struct Numbers(Vec<f64>);
 
 fn numbers(text: &str) -> Result<Numbers, String> {
     let one = |part: &str| part.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-    text.split(',').map(one).collect::<Option<_>>().map(Numbers).ok_or_else(|| "expected numbers such as 1.5,0,-2".into())
+    text.split(',')
+        .map(one)
+        .collect::<Option<_>>()
+        .map(Numbers)
+        .ok_or_else(|| "expected numbers such as 1.5,0,-2".into())
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, "1"));
     let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
     let both = side(width).zip(side(height));
-    both.ok_or_else(|| format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX))
+    both.ok_or_else(|| {
+        format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX)
+    })
 }
 
 impl ViewArgs {
@@ -67,7 +84,8 @@ impl ViewArgs {
     pub fn views<S: World>(&self, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
         let flat = S::Vector::AXES == 2;
         if flat && self.size.is_some_and(|(_, height)| height != 1) {
-            return Err(CliError::words("--size", "a flatland image has height 1").with_help("give the width alone, such as --size 1024"));
+            return Err(CliError::words("--size", "a flatland image has height 1")
+                .with_help("give the width alone, such as --size 1024"));
         }
         let mut path = self.chosen(scene)?;
         if let Some((width, height)) = self.size {
@@ -84,7 +102,12 @@ impl ViewArgs {
             return Ok(read_views(file, scene.origin())?);
         }
         if let Some(name) = &self.path {
-            return scene.paths().iter().find(|p| p.name == *name).cloned().ok_or_else(|| no_path(scene, name));
+            return scene
+                .paths()
+                .iter()
+                .find(|p| p.name == *name)
+                .cloned()
+                .ok_or_else(|| no_path(scene, name));
         }
         if let Some(count) = self.random_views {
             let views = random_views(scene, count as usize, self.seed);
@@ -100,12 +123,21 @@ impl ViewArgs {
         }))
     }
 
-    fn single<S: World>(&self, scene: &Scene<S>, eye: &Numbers, width: u32, height: u32) -> Result<View<S>, CliError> {
+    fn single<S: World>(
+        &self,
+        scene: &Scene<S>,
+        eye: &Numbers,
+        width: u32,
+        height: u32,
+    ) -> Result<View<S>, CliError> {
         let flat = S::Vector::AXES == 2;
         let vector = |option: &str, given: &Numbers, origin: DVec3| {
             if given.0.len() != S::Vector::AXES {
                 let (want, got) = (S::Vector::AXES, given.0.len());
-                return Err(CliError::words(option, format!("needs {want} numbers in {}, not {got}", S::NAME)));
+                return Err(CliError::words(
+                    option,
+                    format!("needs {want} numbers in {}, not {got}", S::NAME),
+                ));
             }
             Ok(S::Vector::from_fn(|a| (given.0[a] - origin[a]) as f32))
         };
@@ -133,17 +165,28 @@ impl ViewArgs {
 fn no_path<S: World>(scene: &Scene<S>, name: &str) -> CliError {
     let names: Vec<&str> = scene.paths().iter().map(|p| p.name.as_str()).collect();
     let error = CliError::words("--path", format!("the scene brought no path `{name}`"));
-    if names.is_empty() { error.with_help("it brought none; give --view FILE") } else { error.with_help(suggest::help(name, &names, "paths")) }
+    if names.is_empty() {
+        error.with_help("it brought none; give --view FILE")
+    } else {
+        error.with_help(suggest::help(name, &names, "paths"))
+    }
 }
 
 /// A view in the words of the command line, so that it can be given again.
 fn in_words<S: World>(view: &View<S>, origin: DVec3) -> String {
     let vector = |v: S::Vector, origin: DVec3| {
-        let number = |a: usize| if origin[a] == 0.0 { v.get(a).to_string() } else { (f64::from(v.get(a)) + origin[a]).to_string() };
+        let number = |a: usize| {
+            if origin[a] == 0.0 {
+                v.get(a).to_string()
+            } else {
+                (f64::from(v.get(a)) + origin[a]).to_string()
+            }
+        };
         (0..S::Vector::AXES).map(number).collect::<Vec<_>>().join(",")
     };
     let eye = &view.eye;
-    let up = if S::Vector::AXES == 3 { format!(" --up {}", vector(eye.up, DVec3::ZERO)) } else { String::new() };
+    let up =
+        if S::Vector::AXES == 3 { format!(" --up {}", vector(eye.up, DVec3::ZERO)) } else { String::new() };
     format!(
         "--eye {} --target {}{up} --fov {:.3} --near {} --far {} --size {}x{}",
         vector(eye.position, origin),

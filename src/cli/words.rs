@@ -16,16 +16,24 @@ pub(super) fn explain(error: &Error) -> Result<(), CliError> {
     let value = get(ContextKind::InvalidValue).unwrap_or_default();
     let made = match error.kind() {
         ErrorKind::UnknownArgument => CliError::words(name, "there is no such option here"),
-        ErrorKind::InvalidSubcommand => CliError::words(get(ContextKind::InvalidSubcommand).unwrap_or_default(), "there is no such command"),
-        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => CliError::words("the call", "a command is missing"),
-        ErrorKind::MissingRequiredArgument => CliError::words(argument.unwrap_or_default(), "needed here, but not given"),
+        ErrorKind::InvalidSubcommand => CliError::words(
+            get(ContextKind::InvalidSubcommand).unwrap_or_default(),
+            "there is no such command",
+        ),
+        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            CliError::words("the call", "a command is missing")
+        }
+        ErrorKind::MissingRequiredArgument => {
+            CliError::words(argument.unwrap_or_default(), "needed here, but not given")
+        }
         ErrorKind::InvalidValue if value.is_empty() => CliError::words(name, "its value is missing"),
         ErrorKind::InvalidValue => {
             let valid = get(ContextKind::ValidValue).unwrap_or_default();
             CliError::words(name, format!("`{value}` is not one of {valid}"))
         }
         ErrorKind::ValueValidation => {
-            let why = std::error::Error::source(error).map_or_else(|| "does not fit".to_owned(), ToString::to_string);
+            let why = std::error::Error::source(error)
+                .map_or_else(|| "does not fit".to_owned(), ToString::to_string);
             CliError::words(name, format!("`{value}`: {why}"))
         }
         ErrorKind::ArgumentConflict => {
@@ -48,7 +56,8 @@ fn tip(error: &Error) -> Option<String> {
     let near = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue];
     let near = near.iter().find_map(|k| error.get(*k)).map(flat).filter(|t| !t.is_empty());
     let usage = error.get(ContextKind::Usage).map(flat).filter(|t| !t.is_empty());
-    near.map(|near| format!("did you mean `{near}`?")).or_else(|| usage.map(|u| u.split_whitespace().collect::<Vec<_>>().join(" ")))
+    near.map(|near| format!("did you mean `{near}`?"))
+        .or_else(|| usage.map(|u| u.split_whitespace().collect::<Vec<_>>().join(" ")))
 }
 
 fn flat(value: &ContextValue) -> String {

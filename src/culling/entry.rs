@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex};
 
 use super::knobs::{Apply, Collect, SetBudget};
 use super::{
-    Budget, Card, DrawList, Event, Field, Knob, KnobValue, Knobs, Limit, Method, Note, Recorder, SettingError, Settings, Tally, Unobserved, Verdict,
+    Budget, Card, DrawList, Event, Field, Knob, KnobValue, Knobs, Limit, Method, Note, Recorder,
+    SettingError, Settings, Tally, Unobserved, Verdict,
 };
 use crate::drawing::Drawing;
 use crate::geometry::{Space, View};
@@ -26,7 +27,12 @@ pub trait Entry<S: Space>: Sync {
     ///
     /// # Errors
     /// As [`Entry::knobs`].
-    fn ready(&self, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Box<dyn Run<S>>>, SettingError>;
+    fn ready(
+        &self,
+        scene: &Arc<Scene<S>>,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Option<Box<dyn Run<S>>>, SettingError>;
     /// As [`Entry::ready`], with the part of the index that [`Run::save`] returned earlier.
     ///
     /// # Errors
@@ -71,7 +77,8 @@ pub trait Run<S: Space>: Send {
     fn save(&self) -> Option<Vec<u8>>;
     /// Whether earlier frames can matter at all.
     fn remembers(&self) -> bool;
-    /// Sets what ends the frames to come early, until it is set anew or everything is forgotten; whether the method asks it.
+    /// Sets what ends the frames to come early, until it is set anew or everything is forgotten; whether the
+    /// method asks it.
     fn limit(&mut self, limit: Option<Limit>) -> bool;
     /// Sets the budget, if the method has one; the index stays.
     fn set_budget(&mut self, budget: Budget);
@@ -149,7 +156,12 @@ impl<S: Space, M: Method<S>> Entry<S> for Of<M> {
     fn knobs(&self, settings: &Settings) -> Result<Vec<(Knob, KnobValue)>, SettingError> {
         params::<S, M>(settings).map(|p| listed::<S, M>(&p))
     }
-    fn ready(&self, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Box<dyn Run<S>>>, SettingError> {
+    fn ready(
+        &self,
+        scene: &Arc<Scene<S>>,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Option<Box<dyn Run<S>>>, SettingError> {
         let params = params::<S, M>(settings)?;
         Ok(M::build(scene, &params, progress).map(|index| Bound::<S, M>::boxed(scene, index, params)))
     }
@@ -244,7 +256,10 @@ impl<S: Space, M: Method<S>> Reel<S, M> {
     /// The notes among the first `step` events.
     fn notes_before(&self, step: usize) -> &[M::Note] {
         let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let last = events.iter().rev().find_map(|e| if let Event::Noted(i) = e { Some(*i as usize + 1) } else { None });
+        let last = events
+            .iter()
+            .rev()
+            .find_map(|e| if let Event::Noted(i) = e { Some(*i as usize + 1) } else { None });
         &self.recorder.notes[..last.unwrap_or(0)]
     }
     /// Large state after the first `seen` notes.
@@ -304,14 +319,18 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     }
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
         match self.recorder.events[at] {
-            Event::Noted(i) => (self.recorder.notes[i as usize].kind(), self.recorder.notes[i as usize].fields()),
+            Event::Noted(i) => {
+                (self.recorder.notes[i as usize].kind(), self.recorder.notes[i as usize].fields())
+            }
             event => super::event::fields(event, M::CARD.code),
         }
     }
     fn sentence(&self, at: usize) -> String {
         match self.recorder.events[at] {
             Event::Noted(i) => self.recorder.notes[i as usize].sentence(&self.scene),
-            Event::Line(i) => format!("Line {}: {}", M::CARD.code[i as usize].label, M::CARD.code[i as usize].text.trim()),
+            Event::Line(i) => {
+                format!("Line {}: {}", M::CARD.code[i as usize].label, M::CARD.code[i as usize].text.trim())
+            }
             Event::FrameBegan => format!("A frame of {} begins: nothing is decided yet.", M::CARD.name),
             Event::Entered(n) => {
                 let (below, level) = (counted::<S>(self.index.held(n)), self.index.level(n));
@@ -325,9 +344,12 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     }
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>) {
         let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let dense = self.dense_after(if size_of::<M::Dense>() == 0 { 0 } else { self.notes_before(step).len() });
+        let dense =
+            self.dense_after(if size_of::<M::Dense>() == 0 { 0 } else { self.notes_before(step).len() });
         // A decision is shown together with the evidence right before it.
-        let note = events.iter().rev().take(3).find_map(|e| if let Event::Noted(i) = e { Some(&self.recorder.notes[*i as usize]) } else { None });
+        let note = events.iter().rev().take(3).find_map(|e| {
+            if let Event::Noted(i) = e { Some(&self.recorder.notes[*i as usize]) } else { None }
+        });
         M::explain(&dense, &self.scene, &self.index, &self.view, note, to);
     }
     fn pictures(&self) -> &'static [&'static str] {
@@ -350,12 +372,18 @@ fn counted<S: Space>(n: usize) -> String {
 fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String {
     let below = counted::<S>(below);
     match verdict {
-        Verdict::Outside => format!("Node {node} is outside the view and dropped with all below it: {below}."),
+        Verdict::Outside => {
+            format!("Node {node} is outside the view and dropped with all below it: {below}.")
+        }
         Verdict::Hidden => format!("Node {node} is hidden and dropped with all below it: {below}."),
-        Verdict::Partial => format!("Node {node} cannot be decided as a whole; its parts are looked at one by one."),
+        Verdict::Partial => {
+            format!("Node {node} cannot be decided as a whole; its parts are looked at one by one.")
+        }
         Verdict::Visible => format!("Node {node} is kept with all below it: {below}."),
         Verdict::Approximated => format!("A stand-in is drawn for node {node} and all below it: {below}."),
-        Verdict::OverBudget => format!("Node {node} is left out with all below it, {below}: the budget is spent."),
+        Verdict::OverBudget => {
+            format!("Node {node} is left out with all below it, {below}: the budget is spent.")
+        }
     }
 }
 

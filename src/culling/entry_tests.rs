@@ -39,13 +39,29 @@ impl Method<Flat> for Remember {
     type Memory = ();
     type Note = Came;
     type Dense = Vec<u32>;
-    const CARD: Card = Card { key: "remember", name: "Remember", summary: "", paper: "", doi: "", conservative: true, code: &[] };
+    const CARD: Card = Card {
+        key: "remember",
+        name: "Remember",
+        summary: "",
+        paper: "",
+        doi: "",
+        conservative: true,
+        code: &[],
+    };
 
     fn knobs((): &mut (), _: &mut dyn Knobs) {}
     fn build(scene: &Arc<Scene<Flat>>, (): &(), _: &dyn Progress) -> Option<Whole<Flat>> {
         Some(Whole::new(scene.clone()))
     }
-    fn cull<O: Observer<Came>>(_: &Whole<Flat>, scene: &Scene<Flat>, view: &View<Flat>, (): &(), (): &mut (), out: &mut DrawList, watch: &mut O) {
+    fn cull<O: Observer<Came>>(
+        _: &Whole<Flat>,
+        scene: &Scene<Flat>,
+        view: &View<Flat>,
+        (): &(),
+        (): &mut (),
+        out: &mut DrawList,
+        watch: &mut O,
+    ) {
         let mut dense = Self::dense(scene, view);
         for &prim in scene.live() {
             Self::apply(&mut dense, scene, &Came(prim));
@@ -60,9 +76,21 @@ impl Method<Flat> for Remember {
     fn apply(dense: &mut Vec<u32>, _: &Scene<Flat>, Came(prim): &Came) {
         dense.push(prim.0);
     }
-    fn explain(dense: &Vec<u32>, scene: &Scene<Flat>, _: &Whole<Flat>, _: &View<Flat>, note: Option<&Came>, to: &mut Drawing<glam::Vec2>) {
+    fn explain(
+        dense: &Vec<u32>,
+        scene: &Scene<Flat>,
+        _: &Whole<Flat>,
+        _: &View<Flat>,
+        note: Option<&Came>,
+        to: &mut Drawing<glam::Vec2>,
+    ) {
         for &p in dense {
-            to.line(Layer::Evidence, Role::Evidence, Subject::Prim(PrimId(p)), scene.prim_points(PrimId(p)).collect::<Vec<_>>());
+            to.line(
+                Layer::Evidence,
+                Role::Evidence,
+                Subject::Prim(PrimId(p)),
+                scene.prim_points(PrimId(p)).collect::<Vec<_>>(),
+            );
         }
         to.title = format!("{:?}", note.map(|n| n.0));
     }
@@ -73,7 +101,8 @@ fn keyframes_do_not_change_any_step_whatever_the_order() {
     let scene = samples::soup::<Flat>(1, 300);
     let view = framing_view::<Flat>(&scene.bounds(), 32, 1);
     let film = || {
-        let mut run = Of::<Remember>::NEW.ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+        let mut run =
+            Of::<Remember>::NEW.ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
         run.record(&view, usize::MAX).film
     };
     let draw = |film: &dyn Film<Flat>, step| {

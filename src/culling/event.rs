@@ -68,7 +68,10 @@ pub(super) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, V
         Event::FrameBegan => ("FrameBegan", vec![]),
         Event::Entered(n) => ("NodeEntered", vec![integer("node", n.0)]),
         Event::Left(n) => ("NodeLeft", vec![integer("node", n.0)]),
-        Event::Queued(n, key) => ("NodeQueued", vec![integer("node", n.0), Field { name: "priority", value: Value::Number(key.into()) }]),
+        Event::Queued(n, key) => (
+            "NodeQueued",
+            vec![integer("node", n.0), Field { name: "priority", value: Value::Number(key.into()) }],
+        ),
         Event::DecidedNode(n, v) => ("NodeDecided", vec![integer("node", n.0), word("verdict", v.name())]),
         Event::DecidedPrim(p, v) => ("PrimDecided", vec![integer("prim", p.0), word("verdict", v.name())]),
         Event::Line(i) => ("LineReached", vec![word("text", code[i as usize].text.trim())]),
@@ -79,8 +82,8 @@ pub(super) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, V
 /// Listens to a run. It cannot answer: nothing is returned and no state is seen, so a watched run and
 /// an unwatched one cannot differ.
 pub trait Observer<Note> {
-    /// Whether anybody hears: for leaving out work that only tells, and for leaving the order of work open, where nobody does. Never
-    /// for what is decided.
+    /// Whether anybody hears: for leaving out work that only tells, and for leaving the order of work open,
+    /// where nobody does. Never for what is decided.
     const LISTENS: bool = true;
     /// A fact in the shared vocabulary.
     fn event(&mut self, event: Event);
@@ -141,7 +144,11 @@ impl Tally {
     /// All counts by name.
     pub fn named(&self) -> BTreeMap<&'static str, u64> {
         let mut all: BTreeMap<_, _> = self.own.iter().copied().collect();
-        all.extend([("nodes_entered", self.nodes_entered), ("nodes_decided", self.nodes_decided), ("prims_decided", self.prims_decided)]);
+        all.extend([
+            ("nodes_entered", self.nodes_entered),
+            ("nodes_decided", self.nodes_decided),
+            ("prims_decided", self.prims_decided),
+        ]);
         all
     }
 }
@@ -223,10 +230,23 @@ mod tests {
     fn own_counts_are_found_by_address_and_by_text() {
         let mut tally = Tally { nodes_entered: 2, ..Tally::default() };
         let elsewhere: &'static str = Box::leak("planes_tested".to_owned().into_boxed_str());
-        for (name, by) in [("planes_tested", 3), ("boxes_tested", 1), (elsewhere, 4), ("planes_tested", 5), (&elsewhere[..6], 7)] {
+        for (name, by) in [
+            ("planes_tested", 3),
+            ("boxes_tested", 1),
+            (elsewhere, 4),
+            ("planes_tested", 5),
+            (&elsewhere[..6], 7),
+        ] {
             tally.add(name, by);
         }
-        let want = [("boxes_tested", 1), ("nodes_decided", 0), ("nodes_entered", 2), ("planes", 7), ("planes_tested", 12), ("prims_decided", 0)];
+        let want = [
+            ("boxes_tested", 1),
+            ("nodes_decided", 0),
+            ("nodes_entered", 2),
+            ("planes", 7),
+            ("planes_tested", 12),
+            ("prims_decided", 0),
+        ];
         assert_eq!(tally.named(), BTreeMap::from(want));
         let mut other = Tally { nodes_entered: 2, ..Tally::default() };
         for (name, by) in [("boxes_tested", 1), ("planes", 7), ("planes_tested", 12)] {

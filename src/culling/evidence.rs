@@ -25,7 +25,13 @@ pub struct Tested<S: Space> {
 
 impl<S: Space> Tested<S> {
     /// The operands of `frustum.test(bounds, planes)`, which returned `result`.
-    pub fn of(subject: Subject, frustum: &Frustum<S::Vector>, bounds: &Aabb<S::Vector>, planes: u8, result: FrustumTest) -> Self {
+    pub fn of(
+        subject: Subject,
+        frustum: &Frustum<S::Vector>,
+        bounds: &Aabb<S::Vector>,
+        planes: u8,
+        result: FrustumTest,
+    ) -> Self {
         let mut tested = Self {
             subject,
             bounds: *bounds,
@@ -49,7 +55,11 @@ impl<S: Space> Tested<S> {
     }
     /// The test that decided: the one that says outside, or else the one with the least margin.
     fn decisive(&self) -> Option<PlaneTest> {
-        if self.outside { self.tests().last().copied() } else { self.tests().iter().copied().min_by(|a, b| a.near_corner.total_cmp(&b.near_corner)) }
+        if self.outside {
+            self.tests().last().copied()
+        } else {
+            self.tests().iter().copied().min_by(|a, b| a.near_corner.total_cmp(&b.near_corner))
+        }
     }
     fn name(&self) -> String {
         match self.subject {
@@ -87,7 +97,12 @@ impl<S: Space> Tested<S> {
             _ => integer("subject", 0),
         };
         let list = |f: fn(&PlaneTest) -> f64| Value::List(self.tests().iter().map(f).collect());
-        let planes = self.tests().iter().map(|t| Frustum::<S::Vector>::plane_name(t.plane as usize)).collect::<Vec<_>>().join(" ");
+        let planes = self
+            .tests()
+            .iter()
+            .map(|t| Frustum::<S::Vector>::plane_name(t.plane as usize))
+            .collect::<Vec<_>>()
+            .join(" ");
         vec![
             id,
             Field { name: "result", value: Value::Word(self.result().into()) },
@@ -105,17 +120,27 @@ impl<S: Space> Tested<S> {
         let plane = |t: &PlaneTest| Frustum::<S::Vector>::plane_name(t.plane as usize);
         match (self.outside, self.cutting, self.decisive()) {
             (true, _, Some(t)) => format!(
-                "{name} lies outside the {} plane: even its corner that reaches farthest in is {} units outside (rounding could account for {}).",
+                "{name} lies outside the {} plane: even its corner that reaches farthest in is {} units \
+                 outside (rounding could account for {}).",
                 plane(&t),
                 short(-t.far_corner),
                 short(t.error)
             ),
             (_, 0, Some(t)) => {
-                format!("{name} lies inside every plane tested; the closest is the {} plane, {} units away.", plane(&t), short(t.near_corner))
+                format!(
+                    "{name} lies inside every plane tested; the closest is the {} plane, {} units away.",
+                    plane(&t),
+                    short(t.near_corner)
+                )
             }
             (_, 0, None) => format!("{name} lies inside all planes: its parents already did."),
             _ => {
-                let cut: Vec<_> = self.tests().iter().filter(|t| self.cutting >> t.plane & 1 == 1).map(|t| plane(t).to_owned()).collect();
+                let cut: Vec<_> = self
+                    .tests()
+                    .iter()
+                    .filter(|t| self.cutting >> t.plane & 1 == 1)
+                    .map(|t| plane(t).to_owned())
+                    .collect();
                 let (plural, verb) = if cut.len() == 1 { ("", "cuts") } else { ("s", "cut") };
                 let cut = match cut.split_last() {
                     Some((last, [])) => last.clone(),
@@ -151,12 +176,18 @@ impl<S: Space> Tested<S> {
         // The corner that decided, and its distance from the plane.
         let (normal, _) = frustum.plane(test.plane as usize);
         let inward = if self.outside { normal } else { -normal };
-        let corner = S::Vector::from_fn(|a| if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) });
+        let corner = S::Vector::from_fn(|a| {
+            if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) }
+        });
         let distance = if self.outside { test.far_corner } else { test.near_corner };
         let foot = corner - normal * distance;
         to.line(Layer::Evidence, Role::Evidence, Subject::None, [corner, foot]);
         to.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Dot { at: corner, radius_pt: 2.5 });
-        label(to, (corner + foot) * 0.5, format!("{} units {}", short(distance.abs()), if distance < 0.0 { "outside" } else { "inside" }));
+        label(
+            to,
+            (corner + foot) * 0.5,
+            format!("{} units {}", short(distance.abs()), if distance < 0.0 { "outside" } else { "inside" }),
+        );
     }
 }
 
@@ -173,7 +204,10 @@ impl Facing {
     pub fn of<S: Space>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> Self {
         let normal = scene.normal(prim);
         let corner = scene.prim_points(prim).next().unwrap_or_default();
-        Self { prim, eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE) }
+        Self {
+            prim,
+            eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE),
+        }
     }
     pub(super) fn tally(tally: &mut Tally) {
         tally.add("orientations_tested", 1);
@@ -182,14 +216,25 @@ impl Facing {
         vec![integer("prim", self.prim.0), number("eye_distance_units", self.eye_distance.into())]
     }
     pub(super) fn sentence<S: Space>(&self) -> String {
-        let (side, verdict) = if self.eye_distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
-        format!("The eye is {} units {side} the plane of {} {}, so it faces {verdict} the eye.", short(self.eye_distance.abs()), S::PRIM, self.prim)
+        let (side, verdict) =
+            if self.eye_distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
+        format!(
+            "The eye is {} units {side} the plane of {} {}, so it faces {verdict} the eye.",
+            short(self.eye_distance.abs()),
+            S::PRIM,
+            self.prim
+        )
     }
     pub(super) fn draw<S: Space>(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
         outline(scene, self.prim, to);
         let (center, normal) = (middle(scene, self.prim), scene.normal(self.prim));
         let length = 0.25 * (view.eye.position - center).length() / normal.length().max(f32::MIN_POSITIVE);
-        to.push(Layer::Evidence, Role::Evidence, Subject::Prim(self.prim), Mark::Arrow(center, center + normal * length));
+        to.push(
+            Layer::Evidence,
+            Role::Evidence,
+            Subject::Prim(self.prim),
+            Mark::Arrow(center, center + normal * length),
+        );
         to.line(Layer::Evidence, Role::Faint, Subject::None, [center, view.eye.position]);
     }
 }

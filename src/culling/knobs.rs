@@ -20,7 +20,12 @@ pub struct Knob {
 
 impl Knob {
     /// A parameter by its name, unit, meaning and source.
-    pub const fn new(name: &'static str, unit: &'static str, meaning: &'static str, source: &'static str) -> Self {
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        meaning: &'static str,
+        source: &'static str,
+    ) -> Self {
         Self { name, unit, meaning, source }
     }
 }
@@ -44,7 +49,8 @@ pub enum Budget {
     Count(u32),
     /// A share of the scene's primitives, 0 to 100.
     Percent(f32),
-    /// Until so much time has passed since the frame began, above 0. The one who runs the method keeps it, by a [`super::Limit`].
+    /// Until so much time has passed since the frame began, above 0. The one who runs the method keeps it, by
+    /// a [`super::Limit`].
     Milliseconds(f32),
 }
 
@@ -74,10 +80,22 @@ impl FromStr for Budget {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let expected = "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms";
         if let Some(time) = text.strip_suffix("ms") {
-            return time.trim().parse().ok().filter(|t: &f32| *t > 0.0 && t.is_finite()).map(Self::Milliseconds).ok_or(expected);
+            return time
+                .trim()
+                .parse()
+                .ok()
+                .filter(|t: &f32| *t > 0.0 && t.is_finite())
+                .map(Self::Milliseconds)
+                .ok_or(expected);
         }
         match text.strip_suffix('%') {
-            Some(share) => share.trim().parse().ok().filter(|p| (0.0..=100.0).contains(p)).map(Self::Percent).ok_or(expected),
+            Some(share) => share
+                .trim()
+                .parse()
+                .ok()
+                .filter(|p| (0.0..=100.0).contains(p))
+                .map(Self::Percent)
+                .ok_or(expected),
             None => text.parse().map(Self::Count).map_err(|_| expected),
         }
     }
@@ -193,12 +211,19 @@ pub(super) struct Apply<'a> {
 }
 
 impl Apply<'_> {
-    fn set<T: FromStr>(&mut self, knob: Knob, expected: impl FnOnce() -> String, fits: impl Fn(&T) -> bool, value: &mut T) {
+    fn set<T: FromStr>(
+        &mut self,
+        knob: Knob,
+        expected: impl FnOnce() -> String,
+        fits: impl Fn(&T) -> bool,
+        value: &mut T,
+    ) {
         let Some(text) = self.settings.0.get(knob.name) else { return };
         match text.parse().ok().filter(fits) {
             Some(v) => *value = v,
             None => {
-                let error = SettingError::BadValue { key: knob.name, value: text.clone(), expected: expected() };
+                let error =
+                    SettingError::BadValue { key: knob.name, value: text.clone(), expected: expected() };
                 self.error.get_or_insert(error);
             }
         }
@@ -214,11 +239,21 @@ impl Knobs for Apply<'_> {
         self.set(knob, || "true or false".into(), |_| true, value);
     }
     fn budget(&mut self, knob: Knob, value: &mut Budget) {
-        self.set(knob, || "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms".into(), |_| true, value);
+        self.set(
+            knob,
+            || "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms".into(),
+            |_| true,
+            value,
+        );
     }
     fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
         let mut word = options[*value].to_owned();
-        self.set(knob, || format!("one of {}", options.join(", ")), |w: &String| options.contains(&w.as_str()), &mut word);
+        self.set(
+            knob,
+            || format!("one of {}", options.join(", ")),
+            |w: &String| options.contains(&w.as_str()),
+            &mut word,
+        );
         *value = options.iter().position(|o| *o == word).unwrap_or(*value);
     }
 }
@@ -228,7 +263,8 @@ pub(super) fn backface_knob(knobs: &mut dyn Knobs, value: &mut bool) {
     let knob = Knob {
         name: "backface-culling",
         unit: "",
-        meaning: "primitives have one side: those that face away from the eye are neither drawn nor part of the truth",
+        meaning: "primitives have one side: those that face away from the eye are neither drawn nor part of \
+                  the truth",
         source: "Klosowski and Silva 2000, Section 5",
     };
     knobs.switch(knob, value);

@@ -53,8 +53,8 @@ impl DrawList {
     }
 }
 
-/// Ends a frame from outside, such as at a deadline: told the primitives drawn since it was told last, it says whether that
-/// is enough.
+/// Ends a frame from outside, such as at a deadline: told the primitives drawn since it was told last, it
+/// says whether that is enough.
 pub type Limit = Arc<dyn Fn(&[PrimId]) -> bool + Send + Sync>;
 
 /// A value of a note's field.
@@ -110,7 +110,8 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     fn knobs(params: &mut Self::Params, knobs: &mut dyn Knobs);
     /// Scene to index; `None` when cancelled.
     fn build(scene: &Arc<Scene<S>>, params: &Self::Params, progress: &dyn Progress) -> Option<Self::Index>;
-    /// The part of the index that took long to build, as bytes that [`Method::restore`] reads; `None` if none did.
+    /// The part of the index that took long to build, as bytes that [`Method::restore`] reads; `None` if none
+    /// did.
     fn save(_: &Self::Index) -> Option<Vec<u8>> {
         None
     }
@@ -118,7 +119,12 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     ///
     /// # Errors
     /// Why the bytes do not fit the scene and the parameters.
-    fn restore(_: &Arc<Scene<S>>, _: &Self::Params, _: &[u8], _: &dyn Progress) -> Result<Option<Self::Index>, String> {
+    fn restore(
+        _: &Arc<Scene<S>>,
+        _: &Self::Params,
+        _: &[u8],
+        _: &dyn Progress,
+    ) -> Result<Option<Self::Index>, String> {
         Err("this method keeps no preprocess".into())
     }
     /// The method. There is no second copy of this function.
@@ -150,7 +156,13 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     const PICTURES: &'static [&'static str] = &[];
     /// Draws picture `which < PICTURES.len()` at one step, in paper coordinates with its size: from the large
     /// state and all notes up to that step, the current one last.
-    fn picture(_dense: &Self::Dense, _view: &View<S>, _notes: &[Self::Note], _which: usize, _scale: DepthScale) -> Drawing {
+    fn picture(
+        _dense: &Self::Dense,
+        _view: &View<S>,
+        _notes: &[Self::Note],
+        _which: usize,
+        _scale: DepthScale,
+    ) -> Drawing {
         Drawing::default()
     }
     /// What is under a point of that picture, in words.
@@ -159,5 +171,12 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     }
     /// Draws, in world coordinates, what is private to the method at one step: its large state, and
     /// the evidence of the current note.
-    fn explain(dense: &Self::Dense, scene: &Scene<S>, index: &Self::Index, view: &View<S>, note: Option<&Self::Note>, to: &mut Drawing<S::Vector>);
+    fn explain(
+        dense: &Self::Dense,
+        scene: &Scene<S>,
+        index: &Self::Index,
+        view: &View<S>,
+        note: Option<&Self::Note>,
+        to: &mut Drawing<S::Vector>,
+    );
 }

@@ -64,10 +64,19 @@ fn read(bytes: &[u8]) -> Table {
     let metrics = font.metrics(size, location);
     let widths = font.glyph_metrics(size, location);
     let em = f32::from(metrics.units_per_em);
-    let glyph = |id: skrifa::GlyphId| Glyph { id: id.to_u32() as u16, advance: widths.advance_width(id).unwrap_or(0.0) / em };
-    let mut glyphs: Vec<(char, Glyph)> = font.charmap().mappings().filter_map(|(c, id)| Some((char::from_u32(c)?, glyph(id)))).collect();
+    let glyph = |id: skrifa::GlyphId| Glyph {
+        id: id.to_u32() as u16,
+        advance: widths.advance_width(id).unwrap_or(0.0) / em,
+    };
+    let mut glyphs: Vec<(char, Glyph)> =
+        font.charmap().mappings().filter_map(|(c, id)| Some((char::from_u32(c)?, glyph(id)))).collect();
     glyphs.sort_by_key(|g| g.0);
-    Table { glyphs, missing: glyph(skrifa::GlyphId::new(0)), ascent: metrics.ascent / em, descent: -metrics.descent / em }
+    Table {
+        glyphs,
+        missing: glyph(skrifa::GlyphId::new(0)),
+        ascent: metrics.ascent / em,
+        descent: -metrics.descent / em,
+    }
 }
 
 /// The glyph of a character; glyph 0 (a box) if the font lacks it.
@@ -159,7 +168,8 @@ pub fn elide(text: &str, font: Font, size_pt: f32, max_pt: f32) -> String {
     let chars: Vec<char> = text.chars().collect();
     for kept in (0..chars.len()).rev() {
         let head = kept.div_ceil(2);
-        let short: String = chars[..head].iter().chain(&['…']).chain(&chars[chars.len() - (kept - head)..]).collect();
+        let short: String =
+            chars[..head].iter().chain(&['…']).chain(&chars[chars.len() - (kept - head)..]).collect();
         if width_pt(&short, font, size_pt) <= max_pt {
             return short;
         }
@@ -188,7 +198,11 @@ mod tests {
     fn widths_are_those_of_the_fonts() {
         // Mono: every advance is 600 of 1000 units.
         assert!((width_pt("i−W", Font::Mono, 10.0) - 18.0).abs() < 1e-4);
-        assert_eq!(glyph(Font::Regular, '1').advance, glyph(Font::Regular, '8').advance, "digits are tabular");
+        assert_eq!(
+            glyph(Font::Regular, '1').advance,
+            glyph(Font::Regular, '8').advance,
+            "digits are tabular"
+        );
         assert!(width_pt("Visible", Font::Bold, 10.0) > width_pt("Visible", Font::Regular, 10.0));
         assert!(ascent(Font::Regular) > 0.9 && descent(Font::Regular) > 0.2);
         assert!(covers(Font::Regular, '⁻') && !covers(Font::Regular, '漢'));
@@ -199,7 +213,8 @@ mod tests {
         let mut rng = Pcg32::seed_from_u64(7);
         for _ in 0..300 {
             let n = rng.next_u32() % 60;
-            let text: String = (0..n).map(|_| ['a', 'W', ' ', '−', 'i', ' ', 'ö'][rng.next_u32() as usize % 7]).collect();
+            let text: String =
+                (0..n).map(|_| ['a', 'W', ' ', '−', 'i', ' ', 'ö'][rng.next_u32() as usize % 7]).collect();
             let max = 12.0 + (rng.next_u32() % 100) as f32;
             let lines = wrap(&text, Font::Regular, 8.0, max);
             assert!(lines.iter().all(|l| width_pt(l, Font::Regular, 8.0) <= max), "{lines:?} in {max}");

@@ -73,8 +73,16 @@ pub enum Role {
 
 impl Role {
     /// The states of a primitive or node, which a picture must keep apart without color too.
-    pub const STATES: [Role; 8] =
-        [Role::Undecided, Role::Partial, Role::Visible, Role::Hidden, Role::Outside, Role::Occluder, Role::Approximated, Role::Wrong];
+    pub const STATES: [Role; 8] = [
+        Role::Undecided,
+        Role::Partial,
+        Role::Visible,
+        Role::Hidden,
+        Role::Outside,
+        Role::Occluder,
+        Role::Approximated,
+        Role::Wrong,
+    ];
     /// Every role, in the order of legends.
     pub const ALL: [Role; 16] = [
         Role::Ink,
@@ -298,8 +306,21 @@ impl<P> Drawing<P> {
         self.push(layer, role, subject, Mark::Line { points: points.into(), closed: true });
     }
     /// Adds text in the regular font.
-    pub fn text(&mut self, layer: Layer, role: Role, at: P, size_pt: f32, anchor: Anchor, text: impl Into<String>) {
-        self.push(layer, role, Subject::None, Mark::Text { at, text: text.into(), size_pt, anchor, font: Font::Regular });
+    pub fn text(
+        &mut self,
+        layer: Layer,
+        role: Role,
+        at: P,
+        size_pt: f32,
+        anchor: Anchor,
+        text: impl Into<String>,
+    ) {
+        self.push(
+            layer,
+            role,
+            Subject::None,
+            Mark::Text { at, text: text.into(), size_pt, anchor, font: Font::Regular },
+        );
     }
     /// Items in the order in which they are painted: by layer, then as added.
     pub fn painted(&self) -> Vec<&Item<P>> {

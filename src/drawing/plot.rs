@@ -1,4 +1,5 @@
-//! A chart as a value: series of numbers with what they mean. `measure` makes them, `figure` puts them on paper.
+//! A chart as a value: series of numbers with what they mean. `measure` makes them, `figure` puts them on
+//! paper.
 
 use super::Role;
 

@@ -61,8 +61,8 @@ fn power_label(exponent: i32) -> String {
     format!("10{}", raised.collect::<String>())
 }
 
-/// Draws a bar of a round length with its label above it, its left end at `at`, no longer than `most_pt`; returns the
-/// rectangle that it takes.
+/// Draws a bar of a round length with its label above it, its left end at `at`, no longer than `most_pt`;
+/// returns the rectangle that it takes.
 pub fn scale_bar(to: &mut Drawing, at: Vec2, pt_per_unit: f32, most_pt: f32, unit: &str) -> [Vec2; 2] {
     const SIZE_PT: f32 = 7.0;
     const TICK_PT: f32 = 2.5;
@@ -74,7 +74,8 @@ pub fn scale_bar(to: &mut Drawing, at: Vec2, pt_per_unit: f32, most_pt: f32, uni
     }
     let label = format!("{} {unit}", tick_label(length, length));
     let middle = (at + end) / 2.0 - vec2(0.0, TICK_PT + 2.0);
-    let [a, b] = metrics::text_box(middle, label.trim_end(), crate::drawing::Font::Regular, SIZE_PT, Anchor::Middle);
+    let [a, b] =
+        metrics::text_box(middle, label.trim_end(), crate::drawing::Font::Regular, SIZE_PT, Anchor::Middle);
     to.text(Layer::Labels, Role::Ink, middle, SIZE_PT, Anchor::Middle, label.trim_end());
     [a.min(at - vec2(0.0, TICK_PT)), b.max(end + vec2(0.0, TICK_PT))]
 }
@@ -96,7 +97,10 @@ impl Axis {
     /// An axis that takes in all values, its ends round; an axis from 0 to 1 if there are none.
     pub fn of(label: impl Into<String>, values: impl IntoIterator<Item = f64>, logarithmic: bool) -> Self {
         let usable = |x: &f64| x.is_finite() && (!logarithmic || *x > 0.0);
-        let (low, high) = values.into_iter().filter(usable).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        let (low, high) = values
+            .into_iter()
+            .filter(usable)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         let label = label.into();
         if low > high {
             return Self { label, low: if logarithmic { 0.1 } else { 0.0 }, high: 1.0, logarithmic };
@@ -132,23 +136,36 @@ impl Axis {
     }
 }
 
-/// Draws the frame, grid and labels of a chart and returns the rectangle of its data; `min` and `max` are the corners of
-/// all that it takes.
+/// Draws the frame, grid and labels of a chart and returns the rectangle of its data; `min` and `max` are the
+/// corners of all that it takes.
 pub fn axes(to: &mut Drawing, x: &Axis, y: &Axis, min: Vec2, max: Vec2) -> [Vec2; 2] {
-    let marks: Vec<(f32, String)> = x.marks(6).into_iter().map(|(value, text)| (x.place(value), text)).collect();
+    let marks: Vec<(f32, String)> =
+        x.marks(6).into_iter().map(|(value, text)| (x.place(value), text)).collect();
     axes_with(to, &marks, &x.label, true, y, [min, max])
 }
 
 /// Size of the labels of axes.
 const SIZE_PT: f32 = 7.0;
 
-/// As [`axes`], with these marks along x: place from 0 to 1 and label, of several lines if there are line breaks in it;
+/// As [`axes`], with these marks along x: place from 0 to 1 and label, of several lines if there are line
+/// breaks in it;
 /// `grid`: with a line up from each.
-pub fn axes_with(to: &mut Drawing, x_marks: &[(f32, String)], x_label: &str, grid: bool, y: &Axis, [min, max]: [Vec2; 2]) -> [Vec2; 2] {
+pub fn axes_with(
+    to: &mut Drawing,
+    x_marks: &[(f32, String)],
+    x_label: &str,
+    grid: bool,
+    y: &Axis,
+    [min, max]: [Vec2; 2],
+) -> [Vec2; 2] {
     let y_marks = y.marks(6);
-    let widest = y_marks.iter().map(|(_, text)| metrics::width_pt(text, crate::drawing::Font::Regular, SIZE_PT)).fold(0.0, f32::max);
+    let widest = y_marks
+        .iter()
+        .map(|(_, text)| metrics::width_pt(text, crate::drawing::Font::Regular, SIZE_PT))
+        .fold(0.0, f32::max);
     let lines = x_marks.iter().map(|(_, text)| text.split('\n').count()).max().unwrap_or(1);
-    let below = SIZE_PT * (1.8 + 1.2 * (lines as f32 - 1.0)) + if x_label.is_empty() { 0.0 } else { SIZE_PT * 1.2 };
+    let below =
+        SIZE_PT * (1.8 + 1.2 * (lines as f32 - 1.0)) + if x_label.is_empty() { 0.0 } else { SIZE_PT * 1.2 };
     // The label of the y axis stands above it, so that no text is turned.
     let inner = [min + vec2(widest + 4.0, SIZE_PT * 2.0), max - vec2(SIZE_PT * 1.5, below)];
     let size = (inner[1] - inner[0]).max(Vec2::ONE);
@@ -159,7 +176,14 @@ pub fn axes_with(to: &mut Drawing, x_marks: &[(f32, String)], x_label: &str, gri
             to.line(Layer::Ground, Role::Faint, Subject::None, [p, vec2(p.x, inner[0].y)]);
         }
         for (i, line) in text.split('\n').enumerate() {
-            to.text(Layer::Labels, Role::Ink, p + vec2(0.0, SIZE_PT * 1.2 * (i as f32 + 1.0)), SIZE_PT, Anchor::Middle, line);
+            to.text(
+                Layer::Labels,
+                Role::Ink,
+                p + vec2(0.0, SIZE_PT * 1.2 * (i as f32 + 1.0)),
+                SIZE_PT,
+                Anchor::Middle,
+                line,
+            );
         }
     }
     for (value, text) in &y_marks {
@@ -170,7 +194,14 @@ pub fn axes_with(to: &mut Drawing, x_marks: &[(f32, String)], x_label: &str, gri
     let corners = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
     to.push(Layer::Ground, Role::Ink, Subject::None, Mark::Line { points: corners.to_vec(), closed: true });
     if !x_label.is_empty() {
-        to.text(Layer::Labels, Role::Ink, vec2(inner[1].x, max.y - SIZE_PT * 0.4), SIZE_PT, Anchor::End, x_label);
+        to.text(
+            Layer::Labels,
+            Role::Ink,
+            vec2(inner[1].x, max.y - SIZE_PT * 0.4),
+            SIZE_PT,
+            Anchor::End,
+            x_label,
+        );
     }
     to.text(Layer::Labels, Role::Ink, vec2(min.x, min.y + SIZE_PT), SIZE_PT, Anchor::Start, y.label.clone());
     inner
@@ -182,7 +213,17 @@ mod tests {
 
     #[test]
     fn round_numbers_are_round() {
-        for (x, below) in [(1.0, 1.0), (1.99, 1.0), (2.0, 2.0), (4.9, 2.0), (5.0, 5.0), (9.99, 5.0), (0.07, 0.05), (1234.0, 1000.0), (1e-9, 1e-9)] {
+        for (x, below) in [
+            (1.0, 1.0),
+            (1.99, 1.0),
+            (2.0, 2.0),
+            (4.9, 2.0),
+            (5.0, 5.0),
+            (9.99, 5.0),
+            (0.07, 0.05),
+            (1234.0, 1000.0),
+            (1e-9, 1e-9),
+        ] {
             let got = round_below(x);
             assert!((got / below - 1.0).abs() < 1e-9, "{x}: {got}");
         }
@@ -204,7 +245,11 @@ mod tests {
                 assert!(t.iter().all(|x| *x >= low - 1e-9 && *x <= high * (1.0 + 1e-9) + 1e-9));
             }
         }
-        assert!(ticks(1.0, 1.0, 5).is_empty() && ticks(f64::NAN, 1.0, 5).is_empty() && ticks(0.0, 1.0, 0).is_empty());
+        assert!(
+            ticks(1.0, 1.0, 5).is_empty()
+                && ticks(f64::NAN, 1.0, 5).is_empty()
+                && ticks(0.0, 1.0, 0).is_empty()
+        );
     }
 
     #[test]
@@ -226,9 +271,13 @@ mod tests {
         assert_eq!(log.marks(6).len(), 4);
         let far = Axis::of("s", [1e-9, 1e12], true).marks(5);
         assert!(far.len() <= 5 && far[0].1 == "10⁻⁹", "{far:?}");
-        for empty in
-            [Axis::of("", [], false), Axis::of("", [], true), Axis::of("", [7.0], false), Axis::of("", [10.0], true), Axis::of("", [0.0; 2], false)]
-        {
+        for empty in [
+            Axis::of("", [], false),
+            Axis::of("", [], true),
+            Axis::of("", [7.0], false),
+            Axis::of("", [10.0], true),
+            Axis::of("", [0.0; 2], false),
+        ] {
             assert!(empty.low < empty.high, "{empty:?}");
             assert!(!empty.marks(5).is_empty());
         }

@@ -48,12 +48,36 @@ pub(super) type Row = (&'static str, &'static str, fn(Tint) -> Result<Drawing, S
 
 /// All built-in figures, in the order of lists.
 pub static BUILTIN: &[Builtin] = &[
-    Builtin { name: "kd-tree-levels", summary: "A kD-tree over a street, level by level", make: kd_tree_levels },
-    Builtin { name: "frustum-tests", summary: "The three results of a box against the frustum, with their operands", make: frustum_tests },
-    Builtin { name: "frustum-steps", summary: "Four moments of view-frustum culling over a kD-tree", make: frustum_steps },
-    Builtin { name: "baselines-flatland", summary: "The three baselines on the same game level", make: baselines_flatland },
-    Builtin { name: "frustum-space", summary: "View-frustum culling of an office floor, seen from outside", make: frustum_space },
-    Builtin { name: "item-buffer", summary: "What the Eye sees: shaded image, item buffer and depth", make: item_buffer },
+    Builtin {
+        name: "kd-tree-levels",
+        summary: "A kD-tree over a street, level by level",
+        make: kd_tree_levels,
+    },
+    Builtin {
+        name: "frustum-tests",
+        summary: "The three results of a box against the frustum, with their operands",
+        make: frustum_tests,
+    },
+    Builtin {
+        name: "frustum-steps",
+        summary: "Four moments of view-frustum culling over a kD-tree",
+        make: frustum_steps,
+    },
+    Builtin {
+        name: "baselines-flatland",
+        summary: "The three baselines on the same game level",
+        make: baselines_flatland,
+    },
+    Builtin {
+        name: "frustum-space",
+        summary: "View-frustum culling of an office floor, seen from outside",
+        make: frustum_space,
+    },
+    Builtin {
+        name: "item-buffer",
+        summary: "What the Eye sees: shaded image, item buffer and depth",
+        make: item_buffer,
+    },
     Builtin::of_paper(coorg_teller::FIGURES, 0),
     Builtin::of_paper(coorg_teller::FIGURES, 1),
     Builtin::of_paper(coorg_teller::FIGURES, 2),
@@ -88,7 +112,12 @@ pub(super) fn settings(pairs: &[(&str, &str)]) -> Settings {
     Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
 }
 
-pub(super) fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>, method: &str, pairs: &[(&str, &str)]) -> Arc<dyn Film<S>> {
+pub(super) fn film<S: Methods>(
+    scene: &Arc<Scene<S>>,
+    view: &View<S>,
+    method: &str,
+    pairs: &[(&str, &str)],
+) -> Arc<dyn Film<S>> {
     let entry = S::method(method).expect("built-in figures name methods that exist");
     let run = entry.ready(scene, &settings(pairs), &Quiet).expect("built-in figures use settings that exist");
     run.expect("nobody cancels a built-in figure").record(view, usize::MAX).film
@@ -103,7 +132,13 @@ fn airy(scene: &Scene<Flat>, eye: Vec2) -> Aabb<Vec2> {
 
 pub(super) fn flat_panel(film: &dyn Film<Flat>, step: usize, look: &Look, label: String) -> Panel {
     let stamps = Stamps::new(film);
-    Panel { label, picture: Picture::Flat(world(film, &stamps, step, look), airy(film.scene(), film.view().eye.position)) }
+    Panel {
+        label,
+        picture: Picture::Flat(
+            world(film, &stamps, step, look),
+            airy(film.scene(), film.view().eye.position),
+        ),
+    }
 }
 
 /// A built-in view of a flatland scene: an eye of the file.
@@ -116,7 +151,13 @@ const STREET: &str = "street";
 
 /// A page over two columns with the legend of what occurs in the picture.
 pub(super) fn page(title: &str, caption: impl Into<String>, content: &Drawing) -> Drawing {
-    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend: legend(content), caption: caption.into() }.compose(content)
+    Page {
+        paper: Paper::TwoColumns,
+        title: title.to_owned(),
+        legend: legend(content),
+        caption: caption.into(),
+    }
+    .compose(content)
 }
 
 fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
@@ -137,13 +178,19 @@ fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
         }
     };
     let content = panels(WIDTH_PT, 2, &[0, 1, 2, 4].map(panel));
-    let caption = "A kD-tree splits the polygons of a street into halves, alternately along x and y. Each box is the bounds of what its \
+    let caption = "A kD-tree splits the polygons of a street into halves, alternately along x and y. Each \
+                   box is the bounds of what its \
                    node holds, so boxes of one level may overlap where a polygon crosses the splitting line.";
     let legend = vec![
         Entry { role: Role::Ink, label: "polygon".into(), swatch: Swatch::Line },
         Entry { role: Role::Evidence, label: "bounds of a node".into(), swatch: Swatch::Line },
     ];
-    let page = Page { paper: Paper::TwoColumns, title: "kD-tree, level by level".into(), legend, caption: caption.into() };
+    let page = Page {
+        paper: Paper::TwoColumns,
+        title: "kD-tree, level by level".into(),
+        legend,
+        caption: caption.into(),
+    };
     Ok(page.compose(&content))
 }
 
@@ -152,7 +199,8 @@ fn step_of(film: &dyn Film<Flat>, result: &str) -> usize {
     let all = film.scene().bounds().diagonal();
     let size_of = |at: usize| {
         let (kind, fields) = film.fields(at);
-        let has_result = fields.iter().any(|f| f.name == "result" && f.value == Value::Word(result.to_owned()));
+        let has_result =
+            fields.iter().any(|f| f.name == "result" && f.value == Value::Word(result.to_owned()));
         let node = fields.iter().find_map(|f| match f.value {
             Value::Integer(n) if f.name == "node" => Some(NodeId(n as u32)),
             _ => None,
@@ -171,8 +219,10 @@ fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
     let look = Look { nodes: false, ..Look::default() };
     let panel = |result: &str| flat_panel(&*film, step_of(&*film, result), &look, result.to_owned());
     let content = panels(WIDTH_PT, 3, &["outside", "partial", "inside"].map(panel));
-    let caption = "Each node's box (yellow) is tested against the planes of the view frustum, which are lines in flatland. Outside: even \
-                   the corner that reaches farthest in is beyond one plane, so all below the node is dropped. Partial: a plane cuts the \
+    let caption = "Each node's box (yellow) is tested against the planes of the view frustum, which are \
+                   lines in flatland. Outside: even \
+                   the corner that reaches farthest in is beyond one plane, so all below the node is \
+                   dropped. Partial: a plane cuts the \
                    box, so its children are looked at. Inside: all below it is kept without another test.";
     Ok(page("A box against the view frustum", caption, &content))
 }
@@ -184,12 +234,17 @@ fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
     let panel = |quarter: usize| {
         let step = all * quarter / 4;
         let counts = Stamps::new(&*film).counts(step);
-        let label = format!("step {step} of {all}: {} kept, {} dropped", counts.of(Verdict::Visible), counts.of(Verdict::Outside));
+        let label = format!(
+            "step {step} of {all}: {} kept, {} dropped",
+            counts.of(Verdict::Visible),
+            counts.of(Verdict::Outside)
+        );
         flat_panel(&*film, step, &Look::default(), label)
     };
     let content = panels(WIDTH_PT, 2, &[1, 2, 3, 4].map(panel));
     let caption = format!(
-        "View-frustum culling over a kD-tree, {}, first eye of the file, tree-height 8. The traversal goes down from the root; a node \
+        "View-frustum culling over a kD-tree, {}, first eye of the file, tree-height 8. The traversal goes \
+         down from the root; a node \
          outside the frustum is dropped with all below it, a node inside or a leaf is kept.",
         scene.name()
     );
@@ -207,8 +262,10 @@ fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
         flat_panel(&*film, film.events().len(), &look, label)
     };
     let content = panels(WIDTH_PT, 3, &["z-buffer", "frustum", "centroid"].map(panel));
-    let caption = "The three baselines with their default parameters on the same view. The z-buffer draws everything; view-frustum culling \
-                   drops what is outside; centroid ordering draws what is nearest until its budget of 10 % is spent, and leaves out the \
+    let caption = "The three baselines with their default parameters on the same view. The z-buffer draws \
+                   everything; view-frustum culling \
+                   drops what is outside; centroid ordering draws what is nearest until its budget of 10 % \
+                   is spent, and leaves out the \
                    rest, visible or not.";
     Ok(page("Three baselines", caption, &content))
 }
@@ -233,12 +290,19 @@ fn frustum_space(_: Tint) -> Result<Drawing, SceneError> {
         WIDTH_PT,
         2,
         &[
-            Panel { label: format!("step {} of {end}", end / 2), picture: picture(end / 2, &Look { nodes: false, ..Look::default() }) },
-            Panel { label: "the result".into(), picture: picture(end, &Look { nodes: false, evidence: false, ..Look::default() }) },
+            Panel {
+                label: format!("step {} of {end}", end / 2),
+                picture: picture(end / 2, &Look { nodes: false, ..Look::default() }),
+            },
+            Panel {
+                label: "the result".into(),
+                picture: picture(end, &Look { nodes: false, evidence: false, ..Look::default() }),
+            },
         ],
     );
     let caption = format!(
-        "View-frustum culling of a generated office floor of {} triangles, seen by an observer above it. The Eye stands in a corridor.",
+        "View-frustum culling of a generated office floor of {} triangles, seen by an observer above it. The \
+         Eye stands in a corridor.",
         scene.live().len()
     );
     Ok(page("View-frustum culling in space", caption, &content))
@@ -250,12 +314,17 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
     let seen = |view: &View<Solid>| raster::visible(&raster::render(&*scene, view, scene.live())).len();
     // The view of the walk that sees most; the first of equals.
     let views = scene.paths()[0].views.iter().map(sized);
-    let view = views.reduce(|best, view| if seen(&view) > seen(&best) { view } else { best }).expect("a path has views");
+    let view = views
+        .reduce(|best, view| if seen(&view) > seen(&best) { view } else { best })
+        .expect("a path has views");
     let target = raster::render(&*scene, &view, scene.live());
     let paper = tint(Role::Paper);
-    let pixels = |rgba: Vec<u8>| Picture::Pixels(Pixels { width: view.width, height: view.height, rgba: rgba.into() });
-    let hash = |p: u32, shift: u32| 0.15 + 0.75 * ((p.wrapping_mul(2_654_435_761) >> shift & 255) as f32 / 255.0);
-    let items = raster::shade_with(&target, &*scene, &view, paper, |p| [hash(p.0, 0), hash(p.0, 8), hash(p.0, 16)]);
+    let pixels =
+        |rgba: Vec<u8>| Picture::Pixels(Pixels { width: view.width, height: view.height, rgba: rgba.into() });
+    let hash =
+        |p: u32, shift: u32| 0.15 + 0.75 * ((p.wrapping_mul(2_654_435_761) >> shift & 255) as f32 / 255.0);
+    let items =
+        raster::shade_with(&target, &*scene, &view, paper, |p| [hash(p.0, 0), hash(p.0, 8), hash(p.0, 16)]);
     let visible = raster::visible(&target).len();
     let content = panels(
         WIDTH_PT,
@@ -265,13 +334,20 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
             Panel { label: format!("item buffer: {visible} triangles visible"), picture: pixels(items) },
             Panel {
                 label: "depth, logarithmic: near is dark".into(),
-                picture: pixels(raster::shade_depth(&target.depth, &target.depth, 1.0 / view.eye.far, raster::DepthScale::Logarithmic)),
+                picture: pixels(raster::shade_depth(
+                    &target.depth,
+                    &target.depth,
+                    1.0 / view.eye.far,
+                    raster::DepthScale::Logarithmic,
+                )),
             },
         ],
     );
     let caption = format!(
-        "What the Eye sees of {} triangles. In the item buffer every pixel holds the id of the nearest triangle (here as a color): the ids \
-         that occur are exactly what is visible at this resolution, and the truth against which every method is measured.",
+        "What the Eye sees of {} triangles. In the item buffer every pixel holds the id of the nearest \
+         triangle (here as a color): the ids \
+         that occur are exactly what is visible at this resolution, and the truth against which every method \
+         is measured.",
         scene.live().len()
     );
     Ok(page("The truth: an item buffer", caption, &content))
@@ -284,12 +360,17 @@ mod tests {
 
     #[test]
     fn no_text_of_a_papers_figure_sticks_out_or_is_too_small() {
-        for (name, _, make) in coorg_teller::FIGURES.iter().chain(georges::FIGURES).chain(klosowski_silva::FIGURES) {
+        for (name, _, make) in
+            coorg_teller::FIGURES.iter().chain(georges::FIGURES).chain(klosowski_silva::FIGURES)
+        {
             let page = make(&|_| [0.0; 3]).expect("a figure");
             for item in &page.items {
                 let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
                 let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);
-                assert!(low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y, "{name}: {text}");
+                assert!(
+                    low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y,
+                    "{name}: {text}"
+                );
                 assert!(*size_pt > 5.0, "{name}: {text} has {size_pt} pt");
             }
         }

@@ -33,7 +33,10 @@ pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
     let columns = plots.len().clamp(1, COLUMNS);
     let rows = plots.len().div_ceil(columns).max(1);
     let width = (WIDTH_PT - GAP_PT * (columns as f32 - 1.0)) / columns as f32;
-    let mut content = Drawing { size_pt: vec2(WIDTH_PT, rows as f32 * (HEIGHT_PT + GAP_PT) - GAP_PT), ..Drawing::default() };
+    let mut content = Drawing {
+        size_pt: vec2(WIDTH_PT, rows as f32 * (HEIGHT_PT + GAP_PT) - GAP_PT),
+        ..Drawing::default()
+    };
     let mut legend: Vec<Entry> = Vec::new();
     for (i, plot) in plots.iter().enumerate() {
         let min = vec2((i % columns) as f32 * (width + GAP_PT), (i / columns) as f32 * (HEIGHT_PT + GAP_PT));
@@ -50,13 +53,20 @@ pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
             }
         }
     }
-    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }.compose(&content)
+    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }
+        .compose(&content)
 }
 
 fn draw(to: &mut Drawing, plot: &Plot, [mut min, max]: [Vec2; 2]) {
     if !plot.title.is_empty() {
         let text = metrics::elide(&plot.title, Font::Bold, TITLE_PT, max.x - min.x);
-        let mark = Mark::Text { at: min + vec2(0.0, TITLE_PT), text, size_pt: TITLE_PT, anchor: Anchor::Start, font: Font::Bold };
+        let mark = Mark::Text {
+            at: min + vec2(0.0, TITLE_PT),
+            text,
+            size_pt: TITLE_PT,
+            anchor: Anchor::Start,
+            font: Font::Bold,
+        };
         to.push(Layer::Labels, Role::Ink, Subject::None, mark);
         min.y += TITLE_PT * 1.6;
     }
@@ -73,11 +83,14 @@ fn value(series: &Series, group: usize) -> Option<f64> {
 
 fn bars(to: &mut Drawing, plot: &Plot, groups: &[String], stacked: bool, place: [Vec2; 2]) {
     let in_group = |g: usize| plot.series.iter().filter_map(move |s| Some((s.role, value(s, g)?)));
-    let height = |g: usize| if stacked { in_group(g).map(|b| b.1).sum() } else { in_group(g).map(|b| b.1).fold(0.0, f64::max) };
+    let height = |g: usize| {
+        if stacked { in_group(g).map(|b| b.1).sum() } else { in_group(g).map(|b| b.1).fold(0.0, f64::max) }
+    };
     // A tenth above the highest, for its number.
     let y = Axis::of(plot.y_label.clone(), (0..groups.len()).map(|g| height(g) * 1.1).chain([0.0]), false);
     let n = groups.len().max(1) as f32;
-    let marks: Vec<(f32, String)> = groups.iter().enumerate().map(|(g, name)| ((g as f32 + 0.5) / n, name.clone())).collect();
+    let marks: Vec<(f32, String)> =
+        groups.iter().enumerate().map(|(g, name)| ((g as f32 + 0.5) / n, name.clone())).collect();
     let [low, high] = axes_with(to, &marks, &plot.x_label, false, &y, place);
     let group = (high.x - low.x) / n;
     let up = |value: f64| high.y - y.place(value) * (high.y - low.y);
@@ -89,7 +102,12 @@ fn bars(to: &mut Drawing, plot: &Plot, groups: &[String], stacked: bool, place: 
         let mut base = 0.0;
         for (i, (role, value)) in all.iter().enumerate() {
             let x = if stacked { left } else { left + width * i as f32 };
-            let corners = [vec2(x, up(base)), vec2(x + width, up(base)), vec2(x + width, up(base + value)), vec2(x, up(base + value))];
+            let corners = [
+                vec2(x, up(base)),
+                vec2(x + width, up(base)),
+                vec2(x + width, up(base + value)),
+                vec2(x, up(base + value)),
+            ];
             // The grid does not shine through.
             to.push(Layer::Areas, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
             to.push(Layer::Areas, *role, Subject::None, Mark::Area(corners.to_vec()));
@@ -98,7 +116,14 @@ fn bars(to: &mut Drawing, plot: &Plot, groups: &[String], stacked: bool, place: 
             }
             if !stacked || i + 1 == all.len() {
                 let top = if stacked { base } else { *value };
-                to.text(Layer::Labels, Role::Ink, vec2(x + width / 2.0, up(top) - 2.5), NUMBER_PT, Anchor::Middle, short(top));
+                to.text(
+                    Layer::Labels,
+                    Role::Ink,
+                    vec2(x + width / 2.0, up(top) - 2.5),
+                    NUMBER_PT,
+                    Anchor::Middle,
+                    short(top),
+                );
             }
         }
     }
@@ -106,7 +131,11 @@ fn bars(to: &mut Drawing, plot: &Plot, groups: &[String], stacked: bool, place: 
 
 /// A number at a bar: three digits, or its whole part.
 fn short(value: f64) -> String {
-    let decimals = if value == 0.0 || value >= 99.95 { 0 } else { (2.0 - value.log10().floor()).clamp(0.0, 6.0) as usize };
+    let decimals = if value == 0.0 || value >= 99.95 {
+        0
+    } else {
+        (2.0 - value.log10().floor()).clamp(0.0, 6.0) as usize
+    };
     format!("{value:.decimals$}")
 }
 
@@ -117,7 +146,8 @@ fn lines(to: &mut Drawing, plot: &Plot, logarithmic: bool, ticks: &[f64], place:
     let xs = || points().map(|p| p.0).chain(ticks.iter().copied()).filter(usable);
     let mut x = Axis::of(plot.x_label.clone(), xs().chain((!logarithmic).then_some(0.0)), logarithmic);
     if logarithmic && xs().count() > 1 {
-        // The ends of the values and not whole powers of ten; a little air, so that no point lies on the frame.
+        // The ends of the values and not whole powers of ten; a little air, so that no point lies on the
+        // frame.
         (x.low, x.high) = (xs().fold(f64::INFINITY, f64::min) / 1.15, xs().fold(0.0, f64::max) * 1.15);
     }
     let marks: Vec<(f32, String)> = if ticks.is_empty() {
@@ -126,9 +156,12 @@ fn lines(to: &mut Drawing, plot: &Plot, logarithmic: bool, ticks: &[f64], place:
         ticks.iter().map(|t| (x.place(*t), t.to_string())).collect()
     };
     let [low, high] = axes_with(to, &marks, &plot.x_label, true, &y, place);
-    let at = |p: &(f64, f64)| vec2(low.x + x.place(p.0) * (high.x - low.x), high.y - y.place(p.1) * (high.y - low.y));
+    let at = |p: &(f64, f64)| {
+        vec2(low.x + x.place(p.0) * (high.x - low.x), high.y - y.place(p.1) * (high.y - low.y))
+    };
     for series in &plot.series {
-        let points: Vec<Vec2> = series.points.iter().filter(|p| usable(&p.0) && p.1.is_finite()).map(at).collect();
+        let points: Vec<Vec2> =
+            series.points.iter().filter(|p| usable(&p.0) && p.1.is_finite()).map(at).collect();
         let radius_pt = if points.len() > 1 { DOT_PT } else { ALONE_PT };
         if points.len() > 1 {
             to.line(Layer::Evidence, series.role, Subject::None, points.clone());
@@ -149,14 +182,18 @@ mod tests {
             x_label: String::new(),
             y_label: "time, ms".into(),
             shape: Shape::Bars { groups: vec!["one\nscene".into(), "two".into()], stacked },
-            series: vec![Series::new("a", Role::Visible, vec![(0.0, 30.0), (1.0, 20.0)]), Series::new("b", Role::Hidden, vec![(0.0, 10.0)])],
+            series: vec![
+                Series::new("a", Role::Visible, vec![(0.0, 30.0), (1.0, 20.0)]),
+                Series::new("b", Role::Hidden, vec![(0.0, 10.0)]),
+            ],
         }
     }
 
     /// Heights of the bars of a role, from left to right, and where they stand.
     fn heights(drawing: &Drawing, role: Role) -> Vec<(f32, f32)> {
         let bars = drawing.items.iter().filter(|i| i.role == role && i.layer == Layer::Areas);
-        bars.filter_map(|i| if let Mark::Area(p) = &i.mark { Some((p[0].y - p[2].y, p[0].y)) } else { None }).collect()
+        bars.filter_map(|i| if let Mark::Area(p) = &i.mark { Some((p[0].y - p[2].y, p[0].y)) } else { None })
+            .collect()
     }
 
     #[test]
@@ -164,7 +201,10 @@ mod tests {
         for stacked in [false, true] {
             let drawing = chart("t", &[sample(stacked)], "c");
             let (a, b) = (heights(&drawing, Role::Visible), heights(&drawing, Role::Hidden));
-            assert!((a[0].0 / a[1].0 - 1.5).abs() < 1e-3 && (a[0].0 / b[0].0 - 3.0).abs() < 1e-3, "{a:?} {b:?}");
+            assert!(
+                (a[0].0 / a[1].0 - 1.5).abs() < 1e-3 && (a[0].0 / b[0].0 - 3.0).abs() < 1e-3,
+                "{a:?} {b:?}"
+            );
             assert_eq!(a[0].1, a[1].1, "all begin at zero");
             let want = if stacked { a[0].1 - a[0].0 } else { a[0].1 };
             assert!((b[0].1 - want).abs() < 1e-3);
@@ -181,7 +221,10 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        assert_eq!([0.0, 0.123_45, 2.6, 36.94, 134.2, 99.96].map(short), ["0", "0.123", "2.60", "36.9", "134", "100"]);
+        assert_eq!(
+            [0.0, 0.123_45, 2.6, 36.94, 134.2, 99.96].map(short),
+            ["0", "0.123", "2.60", "36.9", "134", "100"]
+        );
     }
 
     #[test]
@@ -195,20 +238,37 @@ mod tests {
             ],
             ..sample(false)
         };
-        let empty = Plot { series: Vec::new(), shape: Shape::Lines { logarithmic: false, ticks: Vec::new() }, ..sample(false) };
+        let empty = Plot {
+            series: Vec::new(),
+            shape: Shape::Lines { logarithmic: false, ticks: Vec::new() },
+            ..sample(false)
+        };
         let drawing = chart("t", &[sample(false), sample(true), lines, empty], "A caption.");
-        let inside = |p: &Vec2| p.is_finite() && p.cmpge(Vec2::splat(-0.01)).all() && p.cmple(drawing.size_pt + 0.01).all();
+        let inside = |p: &Vec2| {
+            p.is_finite() && p.cmpge(Vec2::splat(-0.01)).all() && p.cmple(drawing.size_pt + 0.01).all()
+        };
         for item in &drawing.items {
             match &item.mark {
-                Mark::Line { points, .. } | Mark::Area(points) => assert!(points.iter().all(inside), "{item:?}"),
+                Mark::Line { points, .. } | Mark::Area(points) => {
+                    assert!(points.iter().all(inside), "{item:?}")
+                }
                 Mark::Text { at, text, size_pt, anchor, font } => {
-                    assert!(metrics::text_box(*at, text, *font, *size_pt, *anchor).iter().all(inside), "{text}");
+                    assert!(
+                        metrics::text_box(*at, text, *font, *size_pt, *anchor).iter().all(inside),
+                        "{text}"
+                    );
                 }
                 Mark::Dot { at, .. } => assert!(inside(at)),
                 _ => {}
             }
         }
-        let texts = |word: &str| drawing.items.iter().filter(|i| matches!(&i.mark, Mark::Text { text, .. } if text == word)).count();
+        let texts = |word: &str| {
+            drawing
+                .items
+                .iter()
+                .filter(|i| matches!(&i.mark, Mark::Text { text, .. } if text == word))
+                .count()
+        };
         assert_eq!((texts("b"), texts("alone")), (1, 1));
     }
 }

@@ -1,7 +1,7 @@
 //! Cuts a paper drawing to a rectangle, so that a panel of a figure keeps to its frame.
 //!
-//! Lines by Liang and Barsky 1984, convex areas by Sutherland and Hodgman 1974. A dot or a text stays if its anchor does; a
-//! line that is cut becomes several, an arrow whose head is cut off a line.
+//! Lines by Liang and Barsky 1984, convex areas by Sutherland and Hodgman 1974. A dot or a text stays if its
+//! anchor does; a line that is cut becomes several, an arrow whose head is cut off a line.
 
 use glam::Vec2;
 
@@ -13,7 +13,12 @@ pub fn clip(drawing: &mut Drawing<Vec2>, min_pt: Vec2, max_pt: Vec2) {
     let items = std::mem::take(&mut drawing.items);
     for item in items {
         let (role, subject, layer) = (item.role, item.subject, item.layer);
-        drawing.items.extend(frame.mark(item.mark).into_iter().map(|mark| Item { mark, role, subject, layer }));
+        drawing.items.extend(frame.mark(item.mark).into_iter().map(|mark| Item {
+            mark,
+            role,
+            subject,
+            layer,
+        }));
     }
 }
 
@@ -29,14 +34,18 @@ impl Frame {
 
     fn mark(&self, mark: Mark<Vec2>) -> Vec<Mark<Vec2>> {
         match mark {
-            Mark::Line { points, closed } if points.iter().all(|&p| self.holds(p)) => vec![Mark::Line { points, closed }],
+            Mark::Line { points, closed } if points.iter().all(|&p| self.holds(p)) => {
+                vec![Mark::Line { points, closed }]
+            }
             Mark::Line { mut points, closed } => {
                 if closed && let Some(&first) = points.first() {
                     points.push(first);
                 }
                 self.pieces(&points).into_iter().map(|points| Mark::Line { points, closed: false }).collect()
             }
-            Mark::Area(points) => Some(self.area(points)).filter(|p| p.len() > 2).map(Mark::Area).into_iter().collect(),
+            Mark::Area(points) => {
+                Some(self.area(points)).filter(|p| p.len() > 2).map(Mark::Area).into_iter().collect()
+            }
             Mark::Arrow(a, b) if self.holds(a) && self.holds(b) => vec![Mark::Arrow(a, b)],
             Mark::Arrow(a, b) => match self.segment(a, b) {
                 Some((c, d)) if d == b => vec![Mark::Arrow(c, d)],
@@ -52,7 +61,9 @@ impl Frame {
     fn segment(&self, a: Vec2, b: Vec2) -> Option<(Vec2, Vec2)> {
         let (mut enter, mut leave) = (0f32, 1f32);
         let d = b - a;
-        for (from, along, low, high) in [(a.x, d.x, self.min.x, self.max.x), (a.y, d.y, self.min.y, self.max.y)] {
+        for (from, along, low, high) in
+            [(a.x, d.x, self.min.x, self.max.x), (a.y, d.y, self.min.y, self.max.y)]
+        {
             if along == 0.0 {
                 if from < low || from > high {
                     return None;
@@ -81,7 +92,9 @@ impl Frame {
     }
 
     fn area(&self, mut points: Vec<Vec2>) -> Vec<Vec2> {
-        for (axis, limit, sign) in [(0, self.min.x, 1.0), (0, self.max.x, -1.0), (1, self.min.y, 1.0), (1, self.max.y, -1.0)] {
+        for (axis, limit, sign) in
+            [(0, self.min.x, 1.0), (0, self.max.x, -1.0), (1, self.min.y, 1.0), (1, self.max.y, -1.0)]
+        {
             let inside = |p: Vec2| (p[axis] - limit) * sign;
             let mut kept = Vec::with_capacity(points.len() + 1);
             for (i, &b) in points.iter().enumerate() {
@@ -126,22 +139,36 @@ mod tests {
 
     #[test]
     fn a_line_through_is_cut_at_both_ends_and_one_beside_goes() {
-        assert_eq!(clipped(line(&[[-5.0, 5.0], [15.0, 5.0]], false)), [line(&[[0.0, 5.0], [10.0, 5.0]], false)]);
+        assert_eq!(
+            clipped(line(&[[-5.0, 5.0], [15.0, 5.0]], false)),
+            [line(&[[0.0, 5.0], [10.0, 5.0]], false)]
+        );
         assert_eq!(clipped(line(&[[-5.0, 11.0], [15.0, 11.0]], false)), []);
     }
 
     #[test]
     fn a_line_that_leaves_and_returns_becomes_two() {
         let zigzag = line(&[[5.0, 5.0], [15.0, 5.0], [15.0, 6.0], [5.0, 6.0]], false);
-        assert_eq!(clipped(zigzag), [line(&[[5.0, 5.0], [10.0, 5.0]], false), line(&[[10.0, 6.0], [5.0, 6.0]], false)]);
+        assert_eq!(
+            clipped(zigzag),
+            [line(&[[5.0, 5.0], [10.0, 5.0]], false), line(&[[10.0, 6.0], [5.0, 6.0]], false)]
+        );
     }
 
     #[test]
     fn an_area_keeps_the_part_inside() {
-        let area = Mark::Area(vec![Vec2::new(5.0, 5.0), Vec2::new(15.0, 5.0), Vec2::new(15.0, 8.0), Vec2::new(5.0, 8.0)]);
+        let area = Mark::Area(vec![
+            Vec2::new(5.0, 5.0),
+            Vec2::new(15.0, 5.0),
+            Vec2::new(15.0, 8.0),
+            Vec2::new(5.0, 8.0),
+        ]);
         let Some(Mark::Area(points)) = clipped(area).pop() else { panic!("an area") };
         assert_eq!(points.iter().map(|p| p.x).fold(0.0, f32::max), 10.0);
-        assert_eq!(clipped(Mark::Area(vec![Vec2::splat(20.0), Vec2::new(30.0, 20.0), Vec2::splat(30.0)])), []);
+        assert_eq!(
+            clipped(Mark::Area(vec![Vec2::splat(20.0), Vec2::new(30.0, 20.0), Vec2::splat(30.0)])),
+            []
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! Figures of Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, made anew (1 and 2), and of
-//! what the method `hierarchical-z` does on scenes: its pyramid, its queries, its octree, its simulated machine.
+//! Figures of Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, made
+//! anew (1 and 2), and of what the method `hierarchical-z` does on scenes: its pyramid, its queries, its
+//! octree, its simulated machine.
 
 use std::sync::Arc;
 
@@ -22,9 +23,17 @@ pub const FIGURES: &[Row] = &[
     ("hierarchical-z-2", "A face is tested against the z-pyramid, level by level", simple_query),
     ("hierarchical-z-query", "What a query reads of the pyramid over an office", office_query),
     ("hierarchical-z-stack", "The z-pyramid over the image", office_stack),
-    ("hierarchical-z-flatland", "A cube of a quadtree is asked for, and the strips of its pyramid", flatland_query),
+    (
+        "hierarchical-z-flatland",
+        "A cube of a quadtree is asked for, and the strips of its pyramid",
+        flatland_query,
+    ),
     ("hierarchical-z-quadtree", "A quadtree's cubes by state, and what is drawn", quadtree),
-    ("hierarchical-z-timeline", "What processors and renderers do when, for three ways to deal structures out", timelines),
+    (
+        "hierarchical-z-timeline",
+        "What processors and renderers do when, for three ways to deal structures out",
+        timelines,
+    ),
 ];
 
 /// Pictures of the method, by number.
@@ -50,7 +59,9 @@ fn moved(mark: Mark<Vec2>, by: Vec2) -> Mark<Vec2> {
         Mark::Area(points) => Mark::Area(each(points)),
         Mark::Arrow(a, b) => Mark::Arrow(a + by, b + by),
         Mark::Dot { at, radius_pt } => Mark::Dot { at: at + by, radius_pt },
-        Mark::Text { at, text, size_pt, anchor, font } => Mark::Text { at: at + by, text, size_pt, anchor, font },
+        Mark::Text { at, text, size_pt, anchor, font } => {
+            Mark::Text { at: at + by, text, size_pt, anchor, font }
+        }
         Mark::Image { corners, pixels } => Mark::Image { corners: corners.map(|c| c + by), pixels },
     }
 }
@@ -73,9 +84,16 @@ fn two_columns(title: &str, legend: Vec<Entry>, caption: String, content: &Drawi
 fn simple_pyramid(_: Tint) -> Result<Drawing, SceneError> {
     let (scene, view) = figure_1()?;
     let (content, _) = pyramid_picture(&scene, &view, None, DepthScale::Linear);
-    let caption = "Level 0 is the z-buffer. Each value of the level above is the farthest of the four below it, so the single value on top, 9, is \
-                   the farthest depth of the whole image. The values are those of the paper's Figure 1; near is dark, far is light.";
-    Ok(two_columns("Georges 1995, Figure 1: a z-pyramid of three levels", vec![], caption.into(), &trimmed(content)))
+    let caption = "Level 0 is the z-buffer. Each value of the level above is the farthest of the four below \
+                   it, so the single value on top, 9, is \
+                   the farthest depth of the whole image. The values are those of the paper's Figure 1; near \
+                   is dark, far is light.";
+    Ok(two_columns(
+        "Georges 1995, Figure 1: a z-pyramid of three levels",
+        vec![],
+        caption.into(),
+        &trimmed(content),
+    ))
 }
 
 /// Without the lines below the levels that speak of reads.
@@ -91,10 +109,18 @@ fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
         let (picture, _) = pyramid_picture(&scene, &view, Some((pixels, 6.0)), DepthScale::Linear);
         parts.push(picture);
     }
-    let caption = "A face whose nearest point is at depth 6 is asked for. Above it covers the left column of the upper left quarter: the finest cell \
-                   that covers it holds 9, so nothing is decided; the two samples that the face itself covers are 4 and 4, both nearer than 6, so the \
-                   face is hidden. Below it covers the upper row: sample 4 hides it, sample 9 does not, so it is visible.";
-    Ok(two_columns("Georges 1995, Figure 2: a face against the pyramid", cells(), caption.into(), &below(parts)))
+    let caption = "A face whose nearest point is at depth 6 is asked for. Above it covers the left column of \
+                   the upper left quarter: the finest cell \
+                   that covers it holds 9, so nothing is decided; the two samples that the face itself \
+                   covers are 4 and 4, both nearer than 6, so the \
+                   face is hidden. Below it covers the upper row: sample 4 hides it, sample 9 does not, so \
+                   it is visible.";
+    Ok(two_columns(
+        "Georges 1995, Figure 2: a face against the pyramid",
+        cells(),
+        caption.into(),
+        &below(parts),
+    ))
 }
 
 fn office() -> Result<Arc<Scene<Solid>>, SceneError> {
@@ -104,12 +130,15 @@ fn office() -> Result<Arc<Scene<Solid>>, SceneError> {
     }
 }
 
-/// The step at which the answer for a hidden node is given that read many cells, but no more than fit a picture; its node.
+/// The step at which the answer for a hidden node is given that read many cells, but no more than fit a
+/// picture; its node.
 fn hidden_query<S: Space>(film: &dyn Film<S>, most: u64) -> usize {
     let reads = |at: usize| {
         let (kind, fields) = film.fields(at);
         let is_hidden = fields.iter().any(|f| f.name == "hidden" && f.value == Value::Switch(true));
-        let reads = fields.iter().find_map(|f| if let ("cells_read", Value::Integer(n)) = (f.name, &f.value) { Some(*n) } else { None });
+        let reads = fields.iter().find_map(|f| {
+            if let ("cells_read", Value::Integer(n)) = (f.name, &f.value) { Some(*n) } else { None }
+        });
         (kind == "ObscurationTested" && is_hidden).then_some(reads?).filter(|n| *n <= most)
     };
     let noted = (0..film.events().len()).filter(|&at| matches!(film.events()[at], Event::Noted(_)));
@@ -129,8 +158,10 @@ fn office_query(_: Tint) -> Result<Drawing, SceneError> {
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = format!(
-        "The pyramid over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of the octree has been found hidden. \
-         Cells are numbered in the order in which they were read: where a coarse cell does not decide, the four below it are read, down to the \
+        "The pyramid over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of \
+         the octree has been found hidden. \
+         Cells are numbered in the order in which they were read: where a coarse cell does not decide, the \
+         four below it are read, down to the \
          samples. Cross-hatched cells were drawn into since they were last read.",
         film.scene().live().len(),
         film.events().len()
@@ -142,7 +173,8 @@ fn office_stack(_: Tint) -> Result<Drawing, SceneError> {
     let film = office_film()?;
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, STACKED, DepthScale::Logarithmic);
-    let caption = "The same step with the levels above each other, the image at the bottom: a query begins at the finest cell that covers the face, and \
+    let caption = "The same step with the levels above each other, the image at the bottom: a query begins \
+                   at the finest cell that covers the face, and \
                    goes down where it must.";
     Ok(two_columns("The z-pyramid over the image", cells(), caption.into(), &content))
 }
@@ -152,35 +184,61 @@ fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
     let view = View { width: 64, ..eye(&scene, 0) };
     let film = film(&scene, &view, "hierarchical-z", &[("leaf-primitives", "4")]);
     let step = hidden_query(&*film, 12);
-    let world =
-        panels(super::builtin::WIDTH_PT, 1, &[flat_panel(&*film, step + 1, &Look::default(), format!("step {step} of {}", film.events().len()))]);
+    let world = panels(
+        super::builtin::WIDTH_PT,
+        1,
+        &[flat_panel(&*film, step + 1, &Look::default(), format!("step {step} of {}", film.events().len()))],
+    );
     let strips = film.picture(step, PYRAMID, DepthScale::Logarithmic);
-    let caption = "Flatland: the image is a line of 64 pixels, its pyramid a strip a level. A cube of the quadtree (yellow) is asked for; the lines of sight \
-                   bound the cell that decided, the farthest thing drawn there lies before the cube's nearest corner, so the cube is hidden.";
-    Ok(two_columns("A cube against the pyramid, in flatland", legend(&world), caption.into(), &below(vec![world, strips])))
+    let caption = "Flatland: the image is a line of 64 pixels, its pyramid a strip a level. A cube of the \
+                   quadtree (yellow) is asked for; the lines of sight \
+                   bound the cell that decided, the farthest thing drawn there lies before the cube's \
+                   nearest corner, so the cube is hidden.";
+    Ok(two_columns(
+        "A cube against the pyramid, in flatland",
+        legend(&world),
+        caption.into(),
+        &below(vec![world, strips]),
+    ))
 }
 
 fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
     let view = View { width: 512, ..eye(&scene, 0) };
     let panel = |coherence: &str, frames: usize| {
-        let film = after::<Flat>(&scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames);
+        let film =
+            after::<Flat>(&scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames);
         let end = film.events().len();
         let counts = Stamps::new(&*film).counts(end);
-        let label = format!("{} drawn, {} hidden, {} outside", counts.of(Verdict::Visible), counts.of(Verdict::Hidden), counts.of(Verdict::Outside));
+        let label = format!(
+            "{} drawn, {} hidden, {} outside",
+            counts.of(Verdict::Visible),
+            counts.of(Verdict::Hidden),
+            counts.of(Verdict::Outside)
+        );
         flat_panel(&*film, end, &Look { evidence: false, ..Look::default() }, label)
     };
     let content = panels(super::builtin::WIDTH_PT, 2, &[panel("false", 0), panel("true", 1)]);
-    let caption = "A game level from above after a whole frame. Left without coherence: cubes are visited front to back and asked one by one. Right the \
-                   second frame with coherence: the cubes that were visible are drawn first, without being asked, and the rest is asked against an image \
-                   that is almost complete; some segments are drawn that the cubes before them would have hidden.";
+    let caption = "A game level from above after a whole frame. Left without coherence: cubes are visited \
+                   front to back and asked one by one. Right the \
+                   second frame with coherence: the cubes that were visible are drawn first, without being \
+                   asked, and the rest is asked against an image \
+                   that is almost complete; some segments are drawn that the cubes before them would have \
+                   hidden.";
     Ok(page("A quadtree's cubes by state", caption, &content))
 }
 
 /// The film of a frame after some frames of the same view.
-fn after<S: crate::culling::Methods>(scene: &Arc<Scene<S>>, view: &View<S>, pairs: &[(&str, &str)], frames: usize) -> Arc<dyn Film<S>> {
+fn after<S: crate::culling::Methods>(
+    scene: &Arc<Scene<S>>,
+    view: &View<S>,
+    pairs: &[(&str, &str)],
+    frames: usize,
+) -> Arc<dyn Film<S>> {
     let entry = S::method("hierarchical-z").expect("built-in figures name methods that exist");
-    let run = entry.ready(scene, &super::builtin::settings(pairs), &Quiet).expect("built-in figures use settings that exist");
+    let run = entry
+        .ready(scene, &super::builtin::settings(pairs), &Quiet)
+        .expect("built-in figures use settings that exist");
     let mut run = run.expect("nobody cancels a built-in figure");
     (0..frames).for_each(|_| _ = run.cull(view));
     run.record(view, usize::MAX).film
@@ -191,8 +249,17 @@ fn timelines(_: Tint) -> Result<Drawing, SceneError> {
     let view = View { width: 512, height: 384, ..scene.paths()[0].views[0] };
     let mut parts = Vec::new();
     for distribution in ["structure", "primitive", "hybrid"] {
-        let film =
-            after::<Solid>(&scene, &view, &[("processors", "4"), ("renderers", "4"), ("distribution", distribution), ("leaf-primitives", "64")], 1);
+        let film = after::<Solid>(
+            &scene,
+            &view,
+            &[
+                ("processors", "4"),
+                ("renderers", "4"),
+                ("distribution", distribution),
+                ("leaf-primitives", "64"),
+            ],
+            1,
+        );
         let mut picture = film.picture(film.events().len(), TIMELINE, DepthScale::default());
         picture.text(
             crate::drawing::Layer::Labels,
@@ -208,8 +275,16 @@ fn timelines(_: Tint) -> Result<Drawing, SceneError> {
         }
         parts.push(picture);
     }
-    let caption = "A second frame of an office on a simulated machine of four processors and four renderers. By structure, whole parts of the scene go to one \
-                   processor, and some sit idle; by primitive, every processor asks for every structure; hybrid, structures are dealt finely, so that near \
-                   ones go to different processors. At the right the share of the frame in which a unit works.";
-    Ok(two_columns("Georges 1995, Section 4.1: three ways to distribute structures", vec![], caption.into(), &below(parts)))
+    let caption = "A second frame of an office on a simulated machine of four processors and four renderers. \
+                   By structure, whole parts of the scene go to one \
+                   processor, and some sit idle; by primitive, every processor asks for every structure; \
+                   hybrid, structures are dealt finely, so that near \
+                   ones go to different processors. At the right the share of the frame in which a unit \
+                   works.";
+    Ok(two_columns(
+        "Georges 1995, Section 4.1: three ways to distribute structures",
+        vec![],
+        caption.into(),
+        &below(parts),
+    ))
 }

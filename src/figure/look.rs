@@ -28,7 +28,14 @@ pub struct Look {
 
 impl Default for Look {
     fn default() -> Self {
-        Self { prims: true, nodes: true, eye: true, evidence: true, selected: Subject::None, current: Subject::None }
+        Self {
+            prims: true,
+            nodes: true,
+            eye: true,
+            evidence: true,
+            selected: Subject::None,
+            current: Subject::None,
+        }
     }
 }
 
@@ -55,7 +62,8 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
         for &prim in scene.live() {
             let points: Vec<_> = scene.prim_points(prim).collect();
             let role = role_of(stamps.prim(prim, step));
-            let mark = if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
+            let mark =
+                if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
             to.push(Layer::Scene, role, Subject::Prim(prim), mark);
         }
     }
@@ -84,7 +92,10 @@ fn nodes<S: Space>(hierarchy: &dyn Hierarchy<S>, stamps: &Stamps, step: usize, t
         let decided = matches!(state, State::Decided(v) if v != Verdict::Partial);
         let edges = hierarchy.edges(id);
         if decided && S::Vector::AXES == 2 {
-            let corners = edges.map_or_else(|| [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec(), |edges| edges.iter().map(|e| e[0]).collect());
+            let corners = edges.map_or_else(
+                || [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec(),
+                |edges| edges.iter().map(|e| e[0]).collect(),
+            );
             to.push(Layer::Areas, role, Subject::Node(id), Mark::Area(corners));
         } else if let Some(edges) = edges {
             edges.into_iter().for_each(|edge| to.line(Layer::Nodes, role, Subject::Node(id), edge));
@@ -99,7 +110,12 @@ fn eye<S: Space>(film: &dyn Film<S>, to: &mut Drawing<S::Vector>) {
     let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
     let rim = corners.len() / 2;
     for plane in [&corners[..rim], &corners[rim..]] {
-        to.push(Layer::Frustum, Role::Eye, Subject::Eye, Mark::Line { points: plane.to_vec(), closed: rim > 2 });
+        to.push(
+            Layer::Frustum,
+            Role::Eye,
+            Subject::Eye,
+            Mark::Line { points: plane.to_vec(), closed: rim > 2 },
+        );
     }
     for i in 0..rim {
         to.line(Layer::Frustum, Role::Eye, Subject::Eye, [view.eye.position, corners[rim + i]]);
@@ -109,7 +125,8 @@ fn eye<S: Space>(film: &dyn Film<S>, to: &mut Drawing<S::Vector>) {
     to.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Dot { at: view.eye.position, radius_pt: 4.0 });
 }
 
-/// An observer who looks down on a scene of space from outside, all of it in view; `aspect` is width over height.
+/// An observer who looks down on a scene of space from outside, all of it in view; `aspect` is width over
+/// height.
 pub fn observer_above(scene: &Scene<Solid>, aspect: f32) -> View<Solid> {
     let height = 720;
     let mut view = framing_view::<Solid>(&scene.bounds(), (height as f32 * aspect) as u32, height);
@@ -130,7 +147,9 @@ fn emphasized<S: Space>(film: &dyn Film<S>, subject: Subject, role: Role, to: &m
     };
     match subject {
         Subject::Prim(prim) if prim.at() < scene.prim_count() => outline(prim),
-        Subject::Object(object) => scene.live().iter().filter(|&&p| scene.object_of(p) == object).for_each(|&p| outline(p)),
+        Subject::Object(object) => {
+            scene.live().iter().filter(|&&p| scene.object_of(p) == object).for_each(|&p| outline(p))
+        }
         Subject::Node(node) if node.at() < film.hierarchy().node_count() => {
             to.bounds(Layer::Emphasis, role, subject, &film.hierarchy().bounds(node));
         }
@@ -148,13 +167,23 @@ mod tests {
     #[test]
     fn every_step_about_a_node_marks_it() {
         let scene = samples::soup::<Flat>(7, 60);
-        let mut run = Flat::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+        let mut run = Flat::method("frustum")
+            .expect("a method")
+            .ready(&scene, &Settings::default(), &Quiet)
+            .expect("ok")
+            .expect("ok");
         let film = run.record(&framing_view(&scene.bounds(), 64, 1), usize::MAX).film;
         let stamps = Stamps::new(&*film);
         let current = Subject::Node(NodeId(1));
         for step in 1..=film.events().len() {
-            let marked = |look: &Look| world(&*film, &stamps, step, look).items.iter().filter(|i| i.role == Role::Current).count();
-            assert_eq!(marked(&Look { current, ..Look::default() }), 1, "once, whether by the evidence or not, at step {step}");
+            let marked = |look: &Look| {
+                world(&*film, &stamps, step, look).items.iter().filter(|i| i.role == Role::Current).count()
+            };
+            assert_eq!(
+                marked(&Look { current, ..Look::default() }),
+                1,
+                "once, whether by the evidence or not, at step {step}"
+            );
             assert_eq!(marked(&Look { current, evidence: false, ..Look::default() }), 1, "step {step}");
             assert_eq!(marked(&Look { evidence: false, ..Look::default() }), 0, "step {step}");
         }

@@ -1,7 +1,7 @@
 //! A page: title, picture, legend and caption, laid out at the size at which it is printed.
 //!
-//! Text is wrapped by its measured width, so nothing overlaps or sticks out (a property test holds it to that).
-//! Lengths are in points of 1/72 inch unless a name says otherwise.
+//! Text is wrapped by its measured width, so nothing overlaps or sticks out (a property test holds it to
+//! that). Lengths are in points of 1/72 inch unless a name says otherwise.
 
 use glam::{Vec2, vec2};
 
@@ -47,7 +47,9 @@ impl Paper {
         match self {
             Paper::Column | Paper::TwoColumns => None,
             Paper::Slide => Some(254.0 * 9.0 / 16.0 * PT_PER_MM),
-            Paper::Custom { height_mm, .. } => height_mm.filter(|h| h.is_finite()).map(|h| h.clamp(20.0, 5000.0) * PT_PER_MM),
+            Paper::Custom { height_mm, .. } => {
+                height_mm.filter(|h| h.is_finite()).map(|h| h.clamp(20.0, 5000.0) * PT_PER_MM)
+            }
         }
     }
 
@@ -110,7 +112,8 @@ pub struct Page {
 }
 
 impl Page {
-    /// Width and height for the picture. On a page that is as high as it must be, the height is that of a sheet.
+    /// Width and height for the picture. On a page that is as high as it must be, the height is that of a
+    /// sheet.
     pub fn room_pt(&self) -> Vec2 {
         let layout = self.layout();
         let width = self.paper.width_pt() - 2.0 * layout.sizes.margin;
@@ -119,8 +122,8 @@ impl Page {
         vec2(width, (height - layout.above - layout.below).max(8.0))
     }
 
-    /// The page with a picture on it. A picture larger than the room is made smaller: its points move together, its text
-    /// and its lines keep their sizes.
+    /// The page with a picture on it. A picture larger than the room is made smaller: its points move
+    /// together, its text and its lines keep their sizes.
     pub fn compose(&self, picture: &Drawing) -> Drawing {
         let (layout, room) = (self.layout(), self.room_pt());
         let size = picture.size_pt.max(Vec2::ONE);
@@ -157,7 +160,8 @@ impl Page {
         let above = sizes.margin + line(title.size, title.lines.len()) + gap(title.lines.len());
         let legend_height = line(legend.size, legend.rows);
         let caption_height = line(caption.size, caption.lines.len());
-        let below = gap(legend.rows) + legend_height + gap(caption.lines.len()) + caption_height + sizes.margin;
+        let below =
+            gap(legend.rows) + legend_height + gap(caption.lines.len()) + caption_height + sizes.margin;
         Layout { page: self, sizes, title, caption, legend, above, below }
     }
 }
@@ -220,7 +224,8 @@ fn legend_rows(entries: &[Entry], size: f32, width: f32, most: f32) -> Legend {
 /// The legend in as many columns as fit; where columns waste rows, one entry after another.
 fn legend_at(entries: &[Entry], size: f32, width: f32) -> Legend {
     let (lead, gap) = ((SWATCH + SWATCH_GAP) * size, ENTRY_GAP * size);
-    let labels: Vec<String> = entries.iter().map(|e| metrics::elide(&e.label, Font::Regular, size, width - lead)).collect();
+    let labels: Vec<String> =
+        entries.iter().map(|e| metrics::elide(&e.label, Font::Regular, size, width - lead)).collect();
     let wide: Vec<f32> = labels.iter().map(|l| lead + metrics::width_pt(l, Font::Regular, size)).collect();
     let (tidy, dense) = (in_columns(&wide, gap, width), in_flow(&wide, gap, width));
     let rows = |places: &[(usize, f32)]| places.last().map_or(0, |(row, _)| row + 1);
@@ -230,7 +235,9 @@ fn legend_at(entries: &[Entry], size: f32, width: f32) -> Legend {
 
 /// Row and left end of each entry, in the most columns that fit.
 fn in_columns(wide: &[f32], gap: f32, width: f32) -> Vec<(usize, f32)> {
-    let columns_of = |n: usize| (0..n).map(|c| wide.iter().skip(c).step_by(n).copied().fold(0.0, f32::max)).collect::<Vec<f32>>();
+    let columns_of = |n: usize| {
+        (0..n).map(|c| wide.iter().skip(c).step_by(n).copied().fold(0.0, f32::max)).collect::<Vec<f32>>()
+    };
     let fits = |columns: &Vec<f32>| columns.iter().sum::<f32>() + gap * (columns.len() - 1) as f32 <= width;
     let columns = (1..=wide.len()).rev().map(columns_of).find(fits).unwrap_or_else(|| columns_of(1));
     let left = |column: usize| columns[..column].iter().map(|w| w + gap).sum::<f32>();
@@ -268,7 +275,8 @@ impl Layout<'_> {
     fn lines_to(&self, block: &Block, font: Font, top: f32, to: &mut Drawing) {
         for (i, text) in block.lines.iter().enumerate() {
             let at = vec2(self.sizes.margin, top + block.size * (LEADING * i as f32 + 1.0));
-            let mark = Mark::Text { at, text: text.clone(), size_pt: block.size, anchor: Anchor::Start, font };
+            let mark =
+                Mark::Text { at, text: text.clone(), size_pt: block.size, anchor: Anchor::Start, font };
             to.push(Layer::Caption, Role::Ink, Subject::None, mark);
         }
     }
@@ -284,11 +292,20 @@ impl Layout<'_> {
 
     fn legend_to(&self, to: &mut Drawing, top: f32) {
         let size = self.legend.size;
-        for ((entry, label), (row, x)) in self.page.legend.iter().zip(&self.legend.labels).zip(&self.legend.places) {
+        for ((entry, label), (row, x)) in
+            self.page.legend.iter().zip(&self.legend.labels).zip(&self.legend.places)
+        {
             let left = self.sizes.margin + x;
             let base = top + size * (LEADING * *row as f32 + 1.0);
             swatch(entry, vec2(left, base - 0.75 * size), vec2(left + SWATCH * size, base + 0.05 * size), to);
-            to.text(Layer::Legend, Role::Ink, vec2(left + (SWATCH + SWATCH_GAP) * size, base), size, Anchor::Start, label.clone());
+            to.text(
+                Layer::Legend,
+                Role::Ink,
+                vec2(left + (SWATCH + SWATCH_GAP) * size, base),
+                size,
+                Anchor::Start,
+                label.clone(),
+            );
         }
     }
 }
@@ -358,7 +375,17 @@ mod tests {
     use rand_pcg::rand_core::{Rng, SeedableRng};
 
     fn random_text(rng: &mut Pcg32, most: u32) -> String {
-        let words = ["kD-tree", "of", "ρ ≥ 0.75", "a", "occlusion-maps", "frustum,", "Extraordinarily-long-word-that-never-ends", "12 345", "−3.5"];
+        let words = [
+            "kD-tree",
+            "of",
+            "ρ ≥ 0.75",
+            "a",
+            "occlusion-maps",
+            "frustum,",
+            "Extraordinarily-long-word-that-never-ends",
+            "12 345",
+            "−3.5",
+        ];
         let n = rng.next_u32() % (most + 1);
         (0..n).map(|_| words[rng.next_u32() as usize % words.len()]).collect::<Vec<_>>().join(" ")
     }
@@ -371,15 +398,21 @@ mod tests {
         let paper = [Paper::Column, Paper::TwoColumns, Paper::Slide, custom][rng.next_u32() as usize % 4];
         let legend = Role::STATES[..rng.next_u32() as usize % 9].iter().enumerate();
         let swatches = [Swatch::Area, Swatch::Line, Swatch::Dot];
-        let legend = legend.map(|(i, role)| Entry { role: *role, label: random_text(rng, 4), swatch: swatches[i % 3] }).collect();
+        let legend = legend
+            .map(|(i, role)| Entry { role: *role, label: random_text(rng, 4), swatch: swatches[i % 3] })
+            .collect();
         Page { paper, title: random_text(rng, 12), legend, caption: random_text(rng, 80) }
     }
 
     /// The rectangles of everything but the picture, and of the picture as a whole.
     fn rectangles(page: &Drawing) -> Vec<[Vec2; 2]> {
-        let around = |points: &[Vec2]| points.iter().fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[a, b], p| [a.min(*p), b.max(*p)]);
+        let around = |points: &[Vec2]| {
+            points.iter().fold([Vec2::INFINITY, Vec2::NEG_INFINITY], |[a, b], p| [a.min(*p), b.max(*p)])
+        };
         let of = |i: &Item<Vec2>| match &i.mark {
-            Mark::Text { at, text, size_pt, anchor, font } => metrics::text_box(*at, text, *font, *size_pt, *anchor),
+            Mark::Text { at, text, size_pt, anchor, font } => {
+                metrics::text_box(*at, text, *font, *size_pt, *anchor)
+            }
             Mark::Area(points) | Mark::Line { points, .. } => around(points),
             Mark::Dot { at, radius_pt } => [*at - *radius_pt, *at + *radius_pt],
             _ => panic!("no such mark on this page"),
@@ -394,13 +427,23 @@ mod tests {
             let page = random_page(&mut rng);
             let size = vec2(50.0 + (rng.next_u32() % 600) as f32, 20.0 + (rng.next_u32() % 600) as f32);
             let mut picture = Drawing { size_pt: size, ..Drawing::default() };
-            picture.push(Layer::Ground, Role::Ink, Subject::None, Mark::Area(vec![Vec2::ZERO, vec2(size.x, 0.0), size, vec2(0.0, size.y)]));
+            picture.push(
+                Layer::Ground,
+                Role::Ink,
+                Subject::None,
+                Mark::Area(vec![Vec2::ZERO, vec2(size.x, 0.0), size, vec2(0.0, size.y)]),
+            );
             let drawn = page.compose(&picture);
             let boxes = rectangles(&drawn);
             for (i, [a, b]) in boxes.iter().enumerate() {
-                assert!(a.cmpge(Vec2::splat(-0.01)).all() && b.cmple(drawn.size_pt + 0.01).all(), "round {round}: {page:?} {:?}", drawn.items[i]);
+                assert!(
+                    a.cmpge(Vec2::splat(-0.01)).all() && b.cmple(drawn.size_pt + 0.01).all(),
+                    "round {round}: {page:?} {:?}",
+                    drawn.items[i]
+                );
                 for (j, [c, d]) in boxes.iter().enumerate().skip(i + 1) {
-                    let apart = b.x <= c.x + 0.01 || d.x <= a.x + 0.01 || b.y <= c.y + 0.01 || d.y <= a.y + 0.01;
+                    let apart =
+                        b.x <= c.x + 0.01 || d.x <= a.x + 0.01 || b.y <= c.y + 0.01 || d.y <= a.y + 0.01;
                     assert!(apart, "round {round}: {page:?}\n{:?}\n{:?}", drawn.items[i], drawn.items[j]);
                 }
             }
@@ -409,7 +452,12 @@ mod tests {
 
     #[test]
     fn papers_have_their_sizes() {
-        let picture = Drawing { size_pt: vec2(100.0, 80.0), title: "T".into(), description: "D".into(), ..Drawing::default() };
+        let picture = Drawing {
+            size_pt: vec2(100.0, 80.0),
+            title: "T".into(),
+            description: "D".into(),
+            ..Drawing::default()
+        };
         let page = Page { caption: "C".into(), ..Page::default() };
         let drawn = page.compose(&picture);
         assert!((drawn.size_pt.x - 238.11).abs() < 0.01 && drawn.size_pt.y > 80.0 && drawn.size_pt.y < 120.0);
@@ -428,7 +476,12 @@ mod tests {
         let mut picture = Drawing::default();
         picture.line(Layer::Scene, Role::Visible, Subject::None, [Vec2::ZERO, Vec2::ONE]);
         picture.push(Layer::Scene, Role::Hidden, Subject::None, Mark::Dot { at: Vec2::ONE, radius_pt: 1.0 });
-        picture.push(Layer::Scene, Role::Hidden, Subject::None, Mark::Area(vec![Vec2::ZERO, Vec2::X, Vec2::Y]));
+        picture.push(
+            Layer::Scene,
+            Role::Hidden,
+            Subject::None,
+            Mark::Area(vec![Vec2::ZERO, Vec2::X, Vec2::Y]),
+        );
         picture.text(Layer::Labels, Role::Wrong, Vec2::ONE, 8.0, Anchor::Start, "no mark of its own");
         picture.line(Layer::Labels, Role::Ink, Subject::None, [Vec2::ZERO, Vec2::ONE]);
         let legend: Vec<_> = legend(&picture).into_iter().map(|e| (e.role, e.swatch)).collect();

@@ -37,7 +37,8 @@ impl Picture {
     }
     fn draw(&self, min: Vec2, max: Vec2) -> Drawing {
         let mut paper = Drawing::default();
-        let image = |pixels: &crate::drawing::Pixels| Mark::Image { corners: [min, max], pixels: pixels.clone() };
+        let image =
+            |pixels: &crate::drawing::Pixels| Mark::Image { corners: [min, max], pixels: pixels.clone() };
         match self {
             Self::Flat(world, bounds) => Sheet::fit(bounds, min, max).place(world, &mut paper),
             Self::Space(world, observer) => project(world, observer, min, max, &mut paper),
@@ -62,10 +63,14 @@ const LABEL_PT: f32 = 8.0;
 pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
     let columns = columns.clamp(1, panels.len().max(1));
     let cell_width = (width_pt - GAP_PT * (columns - 1) as f32) / columns as f32;
-    let cell_height = panels.iter().map(|p| p.picture.proportion().clamp(0.02, 1.6) * cell_width).fold(0.0, f32::max);
+    let cell_height =
+        panels.iter().map(|p| p.picture.proportion().clamp(0.02, 1.6) * cell_width).fold(0.0, f32::max);
     let row_height = cell_height + LABEL_PT * 1.6 + GAP_PT;
     let rows = panels.len().div_ceil(columns);
-    let mut paper = Drawing { size_pt: Vec2::new(width_pt, rows as f32 * row_height - GAP_PT + LABEL_PT * 0.4), ..Drawing::default() };
+    let mut paper = Drawing {
+        size_pt: Vec2::new(width_pt, rows as f32 * row_height - GAP_PT + LABEL_PT * 0.4),
+        ..Drawing::default()
+    };
     for (i, panel) in panels.iter().enumerate() {
         let (column, row) = ((i % columns) as f32, (i / columns) as f32);
         let min = Vec2::new(column * (cell_width + GAP_PT), row * row_height);
@@ -73,7 +78,8 @@ pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
         // A frame in its own proportions, in the middle of its cell.
         let height = (panel.picture.proportion() * cell_width).min(cell_height);
         let inner = [Vec2::new(min.x, max.y - height), max];
-        let frame = [inner[0], Vec2::new(inner[1].x, inner[0].y), inner[1], Vec2::new(inner[0].x, inner[1].y)];
+        let frame =
+            [inner[0], Vec2::new(inner[1].x, inner[0].y), inner[1], Vec2::new(inner[0].x, inner[1].y)];
         paper.items.extend(panel.picture.draw(inner[0], inner[1]).items);
         paper.outline(Layer::Labels, Role::Faint, Subject::None, frame);
         let text = panel.label.clone();
@@ -84,8 +90,8 @@ pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
     paper
 }
 
-/// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt` and puts a piece of paper under each, so
-/// that they are read over any picture.
+/// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt` and puts a piece of paper under
+/// each, so that they are read over any picture.
 pub fn plate_labels(drawing: &mut Drawing, min_pt: Vec2, max_pt: Vec2) {
     let items = std::mem::take(&mut drawing.items);
     for mut item in items {
@@ -98,8 +104,10 @@ pub fn plate_labels(drawing: &mut Drawing, min_pt: Vec2, max_pt: Vec2) {
             let air = *size_pt * 0.2;
             *anchor = Anchor::Start;
             at.x = start.min(max_pt.x - width - air).max(min_pt.x + air);
-            at.y = (at.y - *size_pt * 0.5).clamp(min_pt.y + *size_pt + air, (max_pt.y - air * 2.0).max(min_pt.y + *size_pt + air));
-            let (low, high) = (*at + Vec2::new(-air, -*size_pt * 0.95), *at + Vec2::new(width + air, *size_pt * 0.3));
+            at.y = (at.y - *size_pt * 0.5)
+                .clamp(min_pt.y + *size_pt + air, (max_pt.y - air * 2.0).max(min_pt.y + *size_pt + air));
+            let (low, high) =
+                (*at + Vec2::new(-air, -*size_pt * 0.95), *at + Vec2::new(width + air, *size_pt * 0.3));
             let plate = vec![low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
             drawing.push(Layer::Labels, Role::Paper, Subject::None, Mark::Area(plate));
         }

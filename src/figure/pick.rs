@@ -12,7 +12,12 @@ use crate::geometry::{Aabb, Flat, NodeId, PrimId, Solid};
 use crate::scene::Scene;
 
 /// The nearest triangle, front or back, that the ray hits and `accept` takes, and how far along the ray.
-pub fn pick(scene: &Scene<Solid>, origin: Vec3, direction: Vec3, accept: impl Fn(PrimId) -> bool) -> Option<(PrimId, f32)> {
+pub fn pick(
+    scene: &Scene<Solid>,
+    origin: Vec3,
+    direction: Vec3,
+    accept: impl Fn(PrimId) -> bool,
+) -> Option<(PrimId, f32)> {
     let mut nearest: Option<(PrimId, f32)> = None;
     let points = scene.points();
     for &prim in scene.live() {
@@ -52,10 +57,17 @@ fn hit([a, b, c]: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<f32> {
 }
 
 /// The segment nearest to `point`, if it is no farther than `radius`, and its distance.
-pub fn pick_segment(scene: &Scene<Flat>, point: Vec2, radius: f32, accept: impl Fn(PrimId) -> bool) -> Option<(PrimId, f32)> {
+pub fn pick_segment(
+    scene: &Scene<Flat>,
+    point: Vec2,
+    radius: f32,
+    accept: impl Fn(PrimId) -> bool,
+) -> Option<(PrimId, f32)> {
     let mut nearest: Option<(PrimId, f32)> = None;
     for &prim in scene.live() {
-        let Some([a, b]) = scene.corners(prim).map(|c| c.map(|k| scene.points()[k as usize])) else { continue };
+        let Some([a, b]) = scene.corners(prim).map(|c| c.map(|k| scene.points()[k as usize])) else {
+            continue;
+        };
         let along = b - a;
         let t = ((point - a).dot(along) / along.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
         let distance = (a + along * t).distance(point);
@@ -68,7 +80,11 @@ pub fn pick_segment(scene: &Scene<Flat>, point: Vec2, radius: f32, accept: impl 
 
 /// The smallest of these boxes that the ray passes through, and where it enters (0 if it starts inside). In
 /// nested boxes the smallest is the one a person means; of equal boxes the first.
-pub fn pick_node(nodes: impl IntoIterator<Item = (NodeId, Aabb<Vec3>)>, origin: Vec3, direction: Vec3) -> Option<(NodeId, f32)> {
+pub fn pick_node(
+    nodes: impl IntoIterator<Item = (NodeId, Aabb<Vec3>)>,
+    origin: Vec3,
+    direction: Vec3,
+) -> Option<(NodeId, f32)> {
     let mut smallest: Option<(f32, NodeId, f32)> = None;
     for (node, bounds) in nodes {
         let Some(t) = enter(&bounds, origin, direction) else { continue };
@@ -145,14 +161,25 @@ mod tests {
             let all: Vec<_> = scene
                 .live()
                 .iter()
-                .map(|&p| (p, hit_exactly(std::array::from_fn(|i| scene.prim_points(p).nth(i).unwrap_or_default()), origin, direction)))
+                .map(|&p| {
+                    (
+                        p,
+                        hit_exactly(
+                            std::array::from_fn(|i| scene.prim_points(p).nth(i).unwrap_or_default()),
+                            origin,
+                            direction,
+                        ),
+                    )
+                })
                 .collect();
             // Rays that graze an edge within rounding may go either way.
             if all.iter().any(|(_, h)| h.is_some_and(|(t, w)| t > -1e-3 && w.abs() < 1e-4)) {
                 continue;
             }
-            let nearest =
-                all.iter().filter_map(|&(p, h)| h.filter(|&(t, w)| t >= 0.0 && w > 0.0).map(|(t, _)| (p, t))).min_by(|a, b| a.1.total_cmp(&b.1));
+            let nearest = all
+                .iter()
+                .filter_map(|&(p, h)| h.filter(|&(t, w)| t >= 0.0 && w > 0.0).map(|(t, _)| (p, t)))
+                .min_by(|a, b| a.1.total_cmp(&b.1));
             let found = pick(&scene, origin, direction, |_| true);
             assert_eq!(found.map(|f| f.0), nearest.map(|n| n.0));
             if let (Some((prim, t)), Some((_, exact))) = (found, nearest) {
@@ -179,13 +206,18 @@ mod tests {
         assert_eq!(from(1.5, 0.5), None);
         assert_eq!(pick(&scene, Vec3::new(0.5, 0.25, 2.0), Vec3::Z, |_| true), None, "behind the origin");
         assert_eq!(pick(&scene, Vec3::new(-1.0, 0.5, 0.0), Vec3::X, |_| true), None, "in the plane");
-        assert_eq!(pick(&scene, Vec3::new(0.5, 0.25, 2.0), -Vec3::Z, |p| p.0 > 2), Some((PrimId(3), 2.0)), "from the back");
+        assert_eq!(
+            pick(&scene, Vec3::new(0.5, 0.25, 2.0), -Vec3::Z, |p| p.0 > 2),
+            Some((PrimId(3), 2.0)),
+            "from the back"
+        );
     }
 
     #[test]
     fn the_nearest_segment_within_the_radius() {
         let points = vec![Vec2::ZERO, Vec2::new(4.0, 0.0), Vec2::new(4.0, 3.0)];
-        let scene = Scene::<Flat>::new(Parts::simple("corner", points, vec![[0, 1], [1, 2], [0, 1]])).expect("a scene");
+        let scene = Scene::<Flat>::new(Parts::simple("corner", points, vec![[0, 1], [1, 2], [0, 1]]))
+            .expect("a scene");
         let at = |x, y, r| pick_segment(&scene, Vec2::new(x, y), r, |_| true);
         assert_eq!(at(1.0, 0.5, 1.0), Some((PrimId(0), 0.5)));
         assert_eq!(at(3.5, 2.0, 1.0), Some((PrimId(1), 0.5)));
@@ -196,8 +228,16 @@ mod tests {
 
     #[test]
     fn the_smallest_box_on_the_ray_against_sampled_points() {
-        let cube = |half: f32, x: f32| Aabb { min: Vec3::new(x - half, -half, -half), max: Vec3::new(x + half, half, half) };
-        let nodes = [(NodeId(0), cube(8.0, 0.0)), (NodeId(1), cube(2.0, -4.0)), (NodeId(2), cube(1.0, 4.0)), (NodeId(3), cube(1.0, 4.0))];
+        let cube = |half: f32, x: f32| Aabb {
+            min: Vec3::new(x - half, -half, -half),
+            max: Vec3::new(x + half, half, half),
+        };
+        let nodes = [
+            (NodeId(0), cube(8.0, 0.0)),
+            (NodeId(1), cube(2.0, -4.0)),
+            (NodeId(2), cube(1.0, 4.0)),
+            (NodeId(3), cube(1.0, 4.0)),
+        ];
         let along = |origin, direction| pick_node(nodes, origin, direction);
         assert_eq!(along(Vec3::new(-20.0, 0.0, 0.0), Vec3::X), Some((NodeId(2), 23.0)));
         assert_eq!(along(Vec3::new(-20.0, 1.5, 0.0), Vec3::X), Some((NodeId(1), 14.0)));
@@ -208,7 +248,8 @@ mod tests {
         let mut random = Pcg32::new(3, 4);
         for _ in 0..500 {
             let (origin, direction) = (vec3(&mut random) * 20.0, vec3(&mut random).normalize_or(Vec3::X));
-            let passes = |b: &Aabb<Vec3>| (0..8000).any(|i| b.contains(origin + direction * (i as f32 * 0.01)));
+            let passes =
+                |b: &Aabb<Vec3>| (0..8000).any(|i| b.contains(origin + direction * (i as f32 * 0.01)));
             let sampled = [1, 2].map(|i: usize| passes(&nodes[i].1));
             let found = along(origin, direction).map(|f| f.0);
             // Samples may miss a clipped corner, but never hit what the ray misses.

@@ -20,7 +20,11 @@ impl Sheet {
     /// The sheet that fits `world` into the paper rectangle from `min_pt` to `max_pt`.
     pub fn fit(world: &Aabb<Vec2>, min_pt: Vec2, max_pt: Vec2) -> Self {
         let (have, want) = ((max_pt - min_pt).max(Vec2::ONE), world.size().max(Vec2::splat(1e-6)));
-        Self { center: world.center(), scale: (have / want).min_element(), middle_pt: (min_pt + max_pt) * 0.5 }
+        Self {
+            center: world.center(),
+            scale: (have / want).min_element(),
+            middle_pt: (min_pt + max_pt) * 0.5,
+        }
     }
     /// World to paper.
     pub fn to_paper(&self, world: Vec2) -> Vec2 {
@@ -33,7 +37,12 @@ impl Sheet {
     /// Puts a world drawing on paper, after what is there. The paper keeps its size.
     pub fn place(&self, world: &Drawing<Vec2>, paper: &mut Drawing<Vec2>) {
         for item in &world.items {
-            paper.items.push(Item { mark: map(&item.mark, &|p| self.to_paper(p)), role: item.role, subject: item.subject, layer: item.layer });
+            paper.items.push(Item {
+                mark: map(&item.mark, &|p| self.to_paper(p)),
+                role: item.role,
+                subject: item.subject,
+                layer: item.layer,
+            });
         }
     }
 }
@@ -56,8 +65,19 @@ fn map<P: Copy>(mark: &Mark<P>, f: &impl Fn(P) -> Vec2) -> Mark<Vec2> {
 /// `min_pt` to `max_pt`. What lies before the near plane is cut off; areas of the scene layer are
 /// sorted back to front by their mean depth (the painter's algorithm: right for scenes of separate
 /// convex polygons, an approximation where they interpenetrate).
-pub fn project(world: &Drawing<Vec3>, observer: &View<Solid>, min_pt: Vec2, max_pt: Vec2, paper: &mut Drawing<Vec2>) {
-    let camera = Camera { projection: observer.projection(), near: observer.eye.near, min_pt, size_pt: max_pt - min_pt };
+pub fn project(
+    world: &Drawing<Vec3>,
+    observer: &View<Solid>,
+    min_pt: Vec2,
+    max_pt: Vec2,
+    paper: &mut Drawing<Vec2>,
+) {
+    let camera = Camera {
+        projection: observer.projection(),
+        near: observer.eye.near,
+        min_pt,
+        size_pt: max_pt - min_pt,
+    };
     let mut placed: Vec<(f32, Item<Vec2>)> = Vec::with_capacity(world.items.len());
     for item in &world.items {
         if let Some((depth, mark)) = camera.mark(&item.mark) {
@@ -113,13 +133,26 @@ impl Camera {
         };
         let depth = |p: Vec3| self.projection.depth(p);
         match mark {
-            Mark::Line { points, closed } => lines(points, *closed).map(|(d, points)| (d, Mark::Line { points, closed: *closed })),
-            Mark::Area(points) => lines(points, true).filter(|(_, p)| p.len() > 2).map(|(d, p)| (d, Mark::Area(p))),
-            Mark::Arrow(a, b) => lines(&[*a, *b], false).map(|(d, p)| (d, Mark::Arrow(p[0], p[1]))),
-            Mark::Dot { at, radius_pt } => Some((depth(*at), Mark::Dot { at: self.point(*at)?, radius_pt: *radius_pt })),
-            Mark::Text { at, text, size_pt, anchor, font } => {
-                Some((depth(*at), Mark::Text { at: self.point(*at)?, text: text.clone(), size_pt: *size_pt, anchor: *anchor, font: *font }))
+            Mark::Line { points, closed } => {
+                lines(points, *closed).map(|(d, points)| (d, Mark::Line { points, closed: *closed }))
             }
+            Mark::Area(points) => {
+                lines(points, true).filter(|(_, p)| p.len() > 2).map(|(d, p)| (d, Mark::Area(p)))
+            }
+            Mark::Arrow(a, b) => lines(&[*a, *b], false).map(|(d, p)| (d, Mark::Arrow(p[0], p[1]))),
+            Mark::Dot { at, radius_pt } => {
+                Some((depth(*at), Mark::Dot { at: self.point(*at)?, radius_pt: *radius_pt }))
+            }
+            Mark::Text { at, text, size_pt, anchor, font } => Some((
+                depth(*at),
+                Mark::Text {
+                    at: self.point(*at)?,
+                    text: text.clone(),
+                    size_pt: *size_pt,
+                    anchor: *anchor,
+                    font: *font,
+                },
+            )),
             Mark::Image { .. } => None,
         }
     }

@@ -71,6 +71,7 @@ impl<V: Vector> Aabb<V> {
     }
     /// The box's edges as pairs of corner numbers: 4 in the plane, 12 in space.
     pub fn edges() -> impl Iterator<Item = (usize, usize)> {
-        (0..V::AXES).flat_map(|a| (0..Self::CORNERS).filter(move |i| i >> a & 1 == 0).map(move |i| (i, i | 1 << a)))
+        (0..V::AXES)
+            .flat_map(|a| (0..Self::CORNERS).filter(move |i| i >> a & 1 == 0).map(move |i| (i, i | 1 << a)))
     }
 }

@@ -89,7 +89,9 @@ impl<V: Vector> Projection<V> {
         // In flatland `fov` is the angle across the image; in space it is the vertical angle.
         let scales = if V::AXES == 2 { [1.0 / tan, 0.0] } else { [1.0 / (tan * aspect), 1.0 / tan] };
         let mut rows = [V::default(); 4];
-        for (row, (axis, scale)) in rows.iter_mut().zip(S::image_axes(forward, eye.up).into_iter().zip(scales)) {
+        for (row, (axis, scale)) in
+            rows.iter_mut().zip(S::image_axes(forward, eye.up).into_iter().zip(scales))
+        {
             *row = axis * scale as f32;
         }
         rows[V::AXES - 1] = forward;

@@ -64,7 +64,13 @@ impl<V: Vector> Frustum<V> {
 
     pub(super) fn new(projection: &Projection<V>, near: f32, far: f32) -> Self {
         let forward = projection.rows[V::AXES - 1];
-        let mut frustum = Self { eye: projection.eye, normals: [forward; 6], offsets: [0.0; 6], by_axis: [[0.0; 8]; 3], offsets_of_all: [0.0; 8] };
+        let mut frustum = Self {
+            eye: projection.eye,
+            normals: [forward; 6],
+            offsets: [0.0; 6],
+            by_axis: [[0.0; 8]; 3],
+            offsets_of_all: [0.0; 8],
+        };
         let unit = |v: V| v * (1.0 / v.length());
         for axis in 0..V::AXES - 1 {
             frustum.normals[2 * axis] = unit(forward + projection.rows[axis]);
@@ -129,12 +135,14 @@ impl<V: Vector> Frustum<V> {
         if cutting == 0 { FrustumTest::Inside } else { FrustumTest::Partial(cutting) }
     }
 
-    /// Whether a box lies wholly outside one of the planes: the very arithmetic of [`Frustum::test`], all planes at a time.
+    /// Whether a box lies wholly outside one of the planes: the very arithmetic of [`Frustum::test`], all
+    /// planes at a time.
     #[inline]
     pub fn excludes(&self, bounds: &Aabb<V>) -> bool {
         let (mut far, mut size) = (self.offsets_of_all, self.offsets_of_all.map(f32::abs));
         for axis in 0..V::AXES {
-            let (min, max) = (bounds.min.get(axis) - self.eye.get(axis), bounds.max.get(axis) - self.eye.get(axis));
+            let (min, max) =
+                (bounds.min.get(axis) - self.eye.get(axis), bounds.max.get(axis) - self.eye.get(axis));
             for (lane, n) in self.by_axis[axis].into_iter().enumerate() {
                 let (low, high) = (n * min, n * max);
                 far[lane] += if low > high { low } else { high };
@@ -151,7 +159,11 @@ impl<V: Vector> Frustum<V> {
     /// The corners of the volume: first the near ones, then the far ones, in the order of the image
     /// (flatland: left, right; space: lower left, lower right, upper right, upper left).
     pub fn corners(projection: &Projection<V>, near: f32, far: f32) -> Vec<V> {
-        let signs: &[[f32; 2]] = if V::AXES == 2 { &[[-1.0, 0.0], [1.0, 0.0]] } else { &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]] };
+        let signs: &[[f32; 2]] = if V::AXES == 2 {
+            &[[-1.0, 0.0], [1.0, 0.0]]
+        } else {
+            &[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+        };
         let forward = projection.rows[V::AXES - 1];
         let ray = |s: &[f32; 2]| {
             // Rows are orthogonal; dividing by the squared length undoes their scale.
@@ -160,6 +172,10 @@ impl<V: Vector> Frustum<V> {
                 r + row * (s[a] / row.dot(row))
             })
         };
-        [near, far].iter().flat_map(|&d| signs.iter().map(move |s| (d, s))).map(|(d, s)| projection.eye + ray(s) * d).collect()
+        [near, far]
+            .iter()
+            .flat_map(|&d| signs.iter().map(move |s| (d, s)))
+            .map(|(d, s)| projection.eye + ray(s) * d)
+            .collect()
     }
 }

@@ -20,7 +20,9 @@ pub use bounds::Aabb;
 pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};
-pub use overlap::{segment_meets_box, segment_meets_triangle, triangle_meets_box, triangle_meets_tetrahedron};
+pub use overlap::{
+    segment_meets_box, segment_meets_triangle, triangle_meets_box, triangle_meets_tetrahedron,
+};
 pub use predicate::{insphere, orient2d, orient3d};
 pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, nearest_depth, project_box};
 pub use space::{Flat, Solid, Space, Vector, faces_away};

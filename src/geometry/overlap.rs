@@ -1,22 +1,25 @@
 //! Whether a primitive meets a convex cell: separating axes.
 //!
-//! Gottschalk, Lin and Manocha 1996; for triangle and box as in Akenine-Möller 2001. Two convex polytopes are apart if and
-//! only if a normal of a face of one of them, or of an edge of each, separates them. Touching is meeting. `f32` points are
-//! widened, and an axis separates only by more than the bound on its rounding error, so that no contact is missed.
-//! Cost: at most 13 axes for triangle and box, 23 for triangle and tetrahedron, 5 in the plane.
+//! Gottschalk, Lin and Manocha 1996; for triangle and box as in Akenine-Möller 2001. Two convex polytopes are
+//! apart if and only if a normal of a face of one of them, or of an edge of each, separates them. Touching is
+//! meeting. `f32` points are widened, and an axis separates only by more than the bound on its rounding
+//! error, so that no contact is missed. Cost: at most 13 axes for triangle and box, 23 for triangle and
+//! tetrahedron, 5 in the plane.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::Aabb;
 
-/// A normal is a product of two rounded differences, a projection a sum of three products with a third: 8 half-ulps of the
-/// largest such product for each of 6 terms and 2 projections, rounded up.
+/// A normal is a product of two rounded differences, a projection a sum of three products with a third: 8
+/// half-ulps of the largest such product for each of 6 terms and 2 projections, rounded up.
 const ERROR: f64 = 128.0 * (f64::EPSILON * 0.5);
 
 /// Whether the projections of two sets of points onto an axis are apart.
 #[inline]
 fn apart(a: impl Iterator<Item = f64>, b: impl Iterator<Item = f64>, error: f64) -> bool {
-    let span = |values: &mut dyn Iterator<Item = f64>| values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)]);
+    let span = |values: &mut dyn Iterator<Item = f64>| {
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
     let ([a_low, a_high], [b_low, b_high]) = (span(&mut { a }), span(&mut { b }));
     a_low - b_high > error || b_low - a_high > error
 }
@@ -124,12 +127,14 @@ mod tests {
         Some(ends[0] * ends[1] < 0.0 && (around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0)))
     }
 
-    /// Whether a triangle meets a tetrahedron, from signs of orientation alone; `None` where some points are coplanar.
+    /// Whether a triangle meets a tetrahedron, from signs of orientation alone; `None` where some points are
+    /// coplanar.
     fn meets_by_signs(t: [Vec3; 3], c: [Vec3; 4]) -> Option<bool> {
         let faces = [[1, 3, 2, 0], [0, 2, 3, 1], [0, 3, 1, 2], [0, 1, 2, 3]];
         let mut found = false;
         for p in t {
-            let sides = faces.map(|f| side(c[f[0]], c[f[1]], c[f[2]], p) * side(c[f[0]], c[f[1]], c[f[2]], c[f[3]]));
+            let sides =
+                faces.map(|f| side(c[f[0]], c[f[1]], c[f[2]], p) * side(c[f[0]], c[f[1]], c[f[2]], c[f[3]]));
             if sides.contains(&0.0) {
                 return None;
             }
@@ -188,7 +193,12 @@ mod tests {
         let (mut met, mut apart) = (0, 0);
         let turn = |a: Vec2, b: Vec2, c: Vec2| orient2d(a.as_dvec2(), b.as_dvec2(), c.as_dvec2());
         let crosses = |s: [Vec2; 2], t: [Vec2; 2]| {
-            let signs = [turn(s[0], s[1], t[0]), turn(s[0], s[1], t[1]), turn(t[0], t[1], s[0]), turn(t[0], t[1], s[1])];
+            let signs = [
+                turn(s[0], s[1], t[0]),
+                turn(s[0], s[1], t[1]),
+                turn(t[0], t[1], s[0]),
+                turn(t[0], t[1], s[1]),
+            ];
             (!signs.contains(&0.0)).then_some(signs[0] * signs[1] < 0.0 && signs[2] * signs[3] < 0.0)
         };
         for case in 0..30_000 {
@@ -203,7 +213,11 @@ mod tests {
             let bounds = Aabb { min: p.min(q), max: p.max(q) + 1.0 };
             let corner = [0, 1, 3, 2].map(|i| bounds.corner(i));
             let halves = [[corner[0], corner[1], corner[2]], [corner[0], corner[2], corner[3]]];
-            assert_eq!(segment_meets_box(s, &bounds), halves.iter().any(|t| segment_meets_triangle(s, *t)), "case {case}");
+            assert_eq!(
+                segment_meets_box(s, &bounds),
+                halves.iter().any(|t| segment_meets_triangle(s, *t)),
+                "case {case}"
+            );
         }
         assert!(met > 1000 && apart > 1000, "{met} met, {apart} apart");
     }
@@ -212,15 +226,26 @@ mod tests {
     fn touching_is_meeting() {
         let cell = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
-        let touching =
-            [[Vec3::ZERO, -Vec3::X, -Vec3::Y], [Vec3::ZERO, Vec3::X, Vec3::Y], [-Vec3::X, Vec3::new(0.2, 0.2, 0.0), -Vec3::Y], [Vec3::ZERO; 3]];
+        let touching = [
+            [Vec3::ZERO, -Vec3::X, -Vec3::Y],
+            [Vec3::ZERO, Vec3::X, Vec3::Y],
+            [-Vec3::X, Vec3::new(0.2, 0.2, 0.0), -Vec3::Y],
+            [Vec3::ZERO; 3],
+        ];
         for t in touching {
             assert!(triangle_meets_tetrahedron(t, cell) && triangle_meets_box(t, &bounds), "{t:?}");
             let away = t.map(|p| p - 1e-6);
-            assert!(!triangle_meets_tetrahedron(away, cell) && !triangle_meets_box(away, &bounds), "{away:?}");
+            assert!(
+                !triangle_meets_tetrahedron(away, cell) && !triangle_meets_box(away, &bounds),
+                "{away:?}"
+            );
         }
         let square = Aabb { min: Vec2::ZERO, max: Vec2::ONE };
-        for (s, want) in [([Vec2::ZERO, -Vec2::X], true), ([-Vec2::X, Vec2::new(-1e-6, 0.0)], false), ([Vec2::X, Vec2::Y], true)] {
+        for (s, want) in [
+            ([Vec2::ZERO, -Vec2::X], true),
+            ([-Vec2::X, Vec2::new(-1e-6, 0.0)], false),
+            ([Vec2::X, Vec2::Y], true),
+        ] {
             assert_eq!(segment_meets_triangle(s, [Vec2::ZERO, Vec2::X, Vec2::Y]), want);
             assert_eq!(segment_meets_box(s, &square), want);
         }

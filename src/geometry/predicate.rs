@@ -19,8 +19,8 @@ pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     -robust::orient3d(coord(a), coord(b), coord(c), coord(d))
 }
 
-/// For `a`, `b`, `c`, `d` with `orient3d(a, b, c, d) > 0`: positive if `e` lies inside the sphere through them,
-/// negative if outside, exactly 0 if on it.
+/// For `a`, `b`, `c`, `d` with `orient3d(a, b, c, d) > 0`: positive if `e` lies inside the sphere through
+/// them, negative if outside, exactly 0 if on it.
 pub fn insphere(a: DVec3, b: DVec3, c: DVec3, d: DVec3, e: DVec3) -> f64 {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     robust::insphere(coord(b), coord(a), coord(c), coord(d), coord(e))

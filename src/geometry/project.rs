@@ -1,11 +1,13 @@
 //! A box on the screen: where its corners fall, which pixels it can cover, and how near it comes.
 //!
-//! All arithmetic is f64 on the f32 rows of the [`Projection`], relative to the eye, exactly as the rasterizer does it,
-//! so what separates a box from what is drawn of its contents is the rasterizer's grid alone.
+//! All arithmetic is f64 on the f32 rows of the [`Projection`], relative to the eye, exactly as the
+//! rasterizer does it, so what separates a box from what is drawn of its contents is the rasterizer's grid
+//! alone.
 
 use super::{Aabb, Projection, Vector};
 
-/// A rectangle of pixels, half-open: columns `x0..x1`, rows `y0..y1`, row 0 at the top. Holds those whose centers it holds.
+/// A rectangle of pixels, half-open: columns `x0..x1`, rows `y0..y1`, row 0 at the top. Holds those whose
+/// centers it holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelRect {
     /// First column.
@@ -32,12 +34,19 @@ impl PixelRect {
     /// What both hold.
     #[inline]
     pub fn intersection(self, other: Self) -> Self {
-        Self { x0: self.x0.max(other.x0), x1: self.x1.min(other.x1), y0: self.y0.max(other.y0), y1: self.y1.min(other.y1) }
+        Self {
+            x0: self.x0.max(other.x0),
+            x1: self.x1.min(other.x1),
+            y0: self.y0.max(other.y0),
+            y1: self.y1.min(other.y1),
+        }
     }
-    /// The pixels whose centers lie within [`MARGIN_PX`] of the span `low..high` (x, then y), of an image of this size.
+    /// The pixels whose centers lie within [`MARGIN_PX`] of the span `low..high` (x, then y), of an image of
+    /// this size.
     #[inline]
     pub fn around(low: [f64; 2], high: [f64; 2], width: u32, height: u32) -> Self {
-        // Rounded by hand: the functions of the standard library are calls on machines that lack the instruction.
+        // Rounded by hand: the functions of the standard library are calls on machines that lack the
+        // instruction.
         let first = |v: f64, size: u32| {
             let v = (v - (0.5 + MARGIN_PX)).clamp(0.0, f64::from(size));
             v as u32 + u32::from(f64::from(v as u32) < v)
@@ -46,7 +55,12 @@ impl PixelRect {
             let v = v + (MARGIN_PX - 0.5);
             if v < 0.0 { 0 } else { (v.min(f64::from(size)) as u32 + 1).min(size) }
         };
-        Self { x0: first(low[0], width), x1: past(high[0], width), y0: first(low[1], height), y1: past(high[1], height) }
+        Self {
+            x0: first(low[0], width),
+            x1: past(high[0], width),
+            y0: first(low[1], height),
+            y1: past(high[1], height),
+        }
     }
 }
 
@@ -65,7 +79,8 @@ pub enum Footprint {
 /// A box's image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxImage {
-    /// Its corners in pixels, in the order of [`Aabb::corner`]; the first four in flatland, in the middle of the row.
+    /// Its corners in pixels, in the order of [`Aabb::corner`]; the first four in flatland, in the middle of
+    /// the row.
     pub corners_px: [[f64; 2]; 8],
     /// The pixels whose centers it can cover; empty where it falls between them.
     pub pixels: PixelRect,
@@ -73,16 +88,24 @@ pub struct BoxImage {
     pub nearest: f32,
 }
 
-/// How far from a box's image a pixel's center may be covered by what the box holds: the rasterizer moves vertices to
-/// its grid of 1/256 pixel, by 1/362 pixel at most, and a point of a moved triangle moves no farther. The rest is for the
-/// rounding of f64 on both sides.
+/// How far from a box's image a pixel's center may be covered by what the box holds: the rasterizer moves
+/// vertices to its grid of 1/256 pixel, by 1/362 pixel at most, and a point of a moved triangle moves no
+/// farther. The rest is for the rounding of f64 on both sides.
 pub const MARGIN_PX: f64 = 1.0 / 256.0;
-/// Bound on the rounding of a view depth in f64, relative to the distance from the eye: three products and sums, twice.
+/// Bound on the rounding of a view depth in f64, relative to the distance from the eye: three products and
+/// sums, twice.
 const DEPTH_SLACK: f64 = 16.0 * f64::EPSILON;
 
 /// Projects a box conservatively into an image of `width` by `height` pixels (`height` 1 in flatland).
 #[inline]
-pub fn project_box<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near: f32, far: f32, width: u32, height: u32) -> Footprint {
+pub fn project_box<V: Vector>(
+    projection: &Projection<V>,
+    bounds: &Aabb<V>,
+    near: f32,
+    far: f32,
+    width: u32,
+    height: u32,
+) -> Footprint {
     let image_axes = V::AXES - 1;
     let half = [f64::from(width) * 0.5, f64::from(height) * 0.5];
     let clips = corner_clips(projection, bounds);
@@ -122,7 +145,8 @@ pub fn nearest_depth<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, ne
     depth_of(nearest - reach(projection, bounds) * DEPTH_SLACK, near)
 }
 
-/// `1/w` rounded to f32 as the rasterizer rounds it: rounding keeps the order, and what lies nearer than `near` is cut off.
+/// `1/w` rounded to f32 as the rasterizer rounds it: rounding keeps the order, and what lies nearer than
+/// `near` is cut off.
 #[inline]
 fn depth_of(w: f64, near: f32) -> f32 {
     (1.0 / w.max(f64::from(near))) as f32
@@ -131,12 +155,18 @@ fn depth_of(w: f64, near: f32) -> f32 {
 /// A bound on the distance from the eye to any corner, each axis taken alone, world units.
 #[inline]
 fn reach<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> f64 {
-    let axis = |a: usize| f64::from((bounds.min.get(a) - projection.eye.get(a)).abs().max((bounds.max.get(a) - projection.eye.get(a)).abs()));
+    let axis = |a: usize| {
+        f64::from(
+            (bounds.min.get(a) - projection.eye.get(a))
+                .abs()
+                .max((bounds.max.get(a) - projection.eye.get(a)).abs()),
+        )
+    };
     (0..V::AXES).map(axis).sum::<f64>() * f64::from(1.0 + f32::EPSILON)
 }
 
-/// Clip coordinates of the corners, a row each, in the order of [`Aabb::corner`]: sums of what each axis adds. In flatland the
-/// four corners twice.
+/// Clip coordinates of the corners, a row each, in the order of [`Aabb::corner`]: sums of what each axis
+/// adds. In flatland the four corners twice.
 #[inline]
 fn corner_clips<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>) -> [[f64; 8]; 3] {
     let mut clips = [[0.0; 8]; 3];

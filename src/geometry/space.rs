@@ -9,7 +9,17 @@ use super::{orient2d, orient3d};
 
 /// A vector of any number of axes. Holds only what the shared structures (boxes, planes, trees) need.
 pub trait Vector:
-    Copy + Debug + Default + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f32, Output = Self>
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f32, Output = Self>
 {
     /// Number of axes.
     const AXES: usize;

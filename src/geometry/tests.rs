@@ -20,8 +20,19 @@ fn random_view<S: Space>(rng: &mut Pcg32, spread: f32) -> View<S> {
     let toward = S::Vector::from_fn(|_| signed(rng, 1.0) + 1e-3);
     let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { signed(rng, 0.3) });
     let near = 0.01 + unit(rng);
-    let eye = Eye { position, target: position + toward, up, fov: 0.2 + unit(rng) * 2.5, near, far: near + 0.1 + unit(rng) * 100.0 };
-    View { eye, width: 1 + rng.next_u32() % 2000, height: if S::Vector::AXES == 2 { 1 } else { 1 + rng.next_u32() % 2000 } }
+    let eye = Eye {
+        position,
+        target: position + toward,
+        up,
+        fov: 0.2 + unit(rng) * 2.5,
+        near,
+        far: near + 0.1 + unit(rng) * 100.0,
+    };
+    View {
+        eye,
+        width: 1 + rng.next_u32() % 2000,
+        height: if S::Vector::AXES == 2 { 1 } else { 1 + rng.next_u32() % 2000 },
+    }
 }
 
 fn random_box<V: Vector>(rng: &mut Pcg32, around: V) -> Aabb<V> {
@@ -43,7 +54,11 @@ fn exact_clip<S: Space>(view: &View<S>, point: S::Vector) -> [f64; 3] {
     let tan = (f64::from(eye.fov) / 2.0).tan();
     let aspect = if flat { 1.0 } else { f64::from(view.width) / f64::from(view.height) };
     let p = vec(point) - vec(eye.position);
-    [right.dot(p) / (tan * aspect), if flat { 0.0 } else { right.cross(forward).dot(p) / tan }, forward.dot(p)]
+    [
+        right.dot(p) / (tan * aspect),
+        if flat { 0.0 } else { right.cross(forward).dot(p) / tan },
+        forward.dot(p),
+    ]
 }
 
 fn sample_in<V: Vector>(rng: &mut Pcg32, bounds: &Aabb<V>) -> V {
@@ -53,7 +68,10 @@ fn sample_in<V: Vector>(rng: &mut Pcg32, bounds: &Aabb<V>) -> V {
 fn in_view<S: Space>(view: &View<S>, clip: [f64; 3], margin: f64) -> bool {
     let [x, y, w] = clip;
     let m = margin * w.abs().max(1e-9);
-    x.abs() < w - m && (S::Vector::AXES == 2 || y.abs() < w - m) && w > f64::from(view.eye.near) + m && w < f64::from(view.eye.far) - m
+    x.abs() < w - m
+        && (S::Vector::AXES == 2 || y.abs() < w - m)
+        && w > f64::from(view.eye.near) + m
+        && w < f64::from(view.eye.far) - m
 }
 
 /// A box called outside holds no point in view; a box called inside holds no point out of view; and
@@ -64,25 +82,43 @@ fn frustum_check<S: Space>(seed: u64) {
     for _ in 0..20_000 {
         let view = random_view::<S>(&mut rng, 100.0);
         let bounds = random_box(&mut rng, view.eye.position);
-        let points: Vec<S::Vector> = bounds.corners().chain((0..8).map(|_| sample_in(&mut rng, &bounds))).collect();
+        let points: Vec<S::Vector> =
+            bounds.corners().chain((0..8).map(|_| sample_in(&mut rng, &bounds))).collect();
         let clips: Vec<_> = points.iter().map(|&p| exact_clip(&view, p)).collect();
         let test = view.frustum().test(&bounds, Frustum::<S::Vector>::ALL);
-        assert_eq!(view.frustum().excludes(&bounds), matches!(test, FrustumTest::Outside(_)), "one test and all at a time: {bounds:?}");
+        assert_eq!(
+            view.frustum().excludes(&bounds),
+            matches!(test, FrustumTest::Outside(_)),
+            "one test and all at a time: {bounds:?}"
+        );
         match test {
             FrustumTest::Outside(test) => {
                 outside += 1;
                 assert!(test.far_corner < 0.0);
-                assert!(clips.iter().all(|&c| !in_view(&view, c, 0.0)), "a box with a point in view was called outside");
+                assert!(
+                    clips.iter().all(|&c| !in_view(&view, c, 0.0)),
+                    "a box with a point in view was called outside"
+                );
             }
             FrustumTest::Inside => {
                 inside += 1;
-                assert!(clips.iter().all(|&c| in_view(&view, c, -1e-4)), "a box with a point out of view was called inside");
+                assert!(
+                    clips.iter().all(|&c| in_view(&view, c, -1e-4)),
+                    "a box with a point out of view was called inside"
+                );
             }
             FrustumTest::Partial(mask) => {
                 assert_ne!(mask, 0);
-                let beyond = |f: &dyn Fn(&[f64; 3]) -> f64| clips.iter().all(|c| f(c) < -1e-3 * (c[0].abs() + c[1].abs() + c[2].abs() + 1.0));
+                let beyond = |f: &dyn Fn(&[f64; 3]) -> f64| {
+                    clips.iter().all(|c| f(c) < -1e-3 * (c[0].abs() + c[1].abs() + c[2].abs() + 1.0))
+                };
                 let (near, far) = (f64::from(view.eye.near), f64::from(view.eye.far));
-                missed += i32::from(beyond(&|c| c[2] - near) || beyond(&|c| far - c[2]) || beyond(&|c| c[2] - c[0]) || beyond(&|c| c[2] + c[0]));
+                missed += i32::from(
+                    beyond(&|c| c[2] - near)
+                        || beyond(&|c| far - c[2])
+                        || beyond(&|c| c[2] - c[0])
+                        || beyond(&|c| c[2] + c[0]),
+                );
             }
         }
     }
@@ -125,13 +161,19 @@ fn footprint_check<S: Space>(seed: u64) {
         for _ in 0..16 {
             let clip = exact_clip(&view, sample_in(&mut rng, &bounds));
             match footprint {
-                Footprint::Outside => assert!(!in_view(&view, clip, 0.0), "a box with a point in view has no footprint"),
+                Footprint::Outside => {
+                    assert!(!in_view(&view, clip, 0.0), "a box with a point in view has no footprint")
+                }
                 Footprint::Seen(image) if in_view(&view, clip, 0.0) => {
                     let (r, (x, y)) = (image.pixels, pixel(clip));
                     // Half a pixel: the rectangle holds centers.
-                    let holds = |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
+                    let holds =
+                        |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
                     assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
-                    assert!((1.0 / clip[2]) as f32 <= image.nearest, "a point is nearer than the nearest depth");
+                    assert!(
+                        (1.0 / clip[2]) as f32 <= image.nearest,
+                        "a point is nearer than the nearest depth"
+                    );
                     assert_eq!(image.nearest, nearest_depth(&view.projection(), &bounds, near));
                 }
                 _ => {}
@@ -143,13 +185,20 @@ fn footprint_check<S: Space>(seed: u64) {
             for (at, corner) in corners_px.iter().zip(bounds.corners()) {
                 let want = pixel(exact_clip(&view, corner)).0;
                 let width = f64::from(view.width);
-                assert!(want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width, "a corner is at {want}, not at {at:?}");
+                assert!(
+                    want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
+                    "a corner is at {want}, not at {at:?}"
+                );
             }
             // Tight: the rectangle is that of the exact corners, a pixel and the margin at most larger.
             let corners: Vec<_> = bounds.corners().map(|c| pixel(exact_clip(&view, c)).0).collect();
             let low = corners.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, f64::from(view.width));
-            let high = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, f64::from(view.width));
-            assert!(f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX, "{r:?} is much wider than {low}..{high}");
+            let high =
+                corners.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, f64::from(view.width));
+            assert!(
+                f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX,
+                "{r:?} is much wider than {low}..{high}"
+            );
         }
     }
     assert!(rects > 500, "only {rects} rectangles");
@@ -170,8 +219,12 @@ fn a_box_around_the_eye_or_across_the_near_plane_is_not_guessed() {
     let mut rng = Pcg32::new(5, 5);
     for _ in 0..1000 {
         let view = random_view::<Solid>(&mut rng, 10.0);
-        let around = Aabb { min: view.eye.position - Vec3::splat(2.0), max: view.eye.position + Vec3::splat(2.0) };
-        assert_eq!(project_box(&view.projection(), &around, view.eye.near, view.eye.far, 64, 64), Footprint::CrossesNear);
+        let around =
+            Aabb { min: view.eye.position - Vec3::splat(2.0), max: view.eye.position + Vec3::splat(2.0) };
+        assert_eq!(
+            project_box(&view.projection(), &around, view.eye.near, view.eye.far, 64, 64),
+            Footprint::CrossesNear
+        );
     }
 }
 
@@ -185,9 +238,19 @@ fn clip_space_is_right_handed_with_y_up() {
     let clip = view.projection().clip(Vec3::new(4.0, 2.0, -2.0));
     assert!(clip.abs_diff_eq(Vec3::new(2.0, 2.0, 2.0), 1e-6), "{clip}");
     assert_eq!(view.projection().depth(Vec3::new(0.0, 0.0, -7.0)), 7.0);
-    let eye = Eye::<Flat> { position: Vec2::ZERO, target: Vec2::Y, up: Vec2::ZERO, fov: 90f32.to_radians(), near: 1.0, far: 10.0 };
+    let eye = Eye::<Flat> {
+        position: Vec2::ZERO,
+        target: Vec2::Y,
+        up: Vec2::ZERO,
+        fov: 90f32.to_radians(),
+        near: 1.0,
+        far: 10.0,
+    };
     let clip = View { eye, width: 100, height: 1 }.projection().clip(Vec2::new(3.0, 3.0));
-    assert!(clip.abs_diff_eq(Vec2::new(3.0, 3.0), 1e-6), "to the right of an eye that looks up the page: {clip}");
+    assert!(
+        clip.abs_diff_eq(Vec2::new(3.0, 3.0), 1e-6),
+        "to the right of an eye that looks up the page: {clip}"
+    );
 }
 
 #[test]
@@ -205,11 +268,21 @@ fn frustum_corners_lie_on_their_planes() {
         let view = random_view::<Solid>(&mut rng, 10.0);
         let frustum = view.frustum();
         let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
-        for (plane, on) in [(0, [0, 3, 4, 7]), (1, [1, 2, 5, 6]), (2, [0, 1, 4, 5]), (3, [2, 3, 6, 7]), (4, [0, 1, 2, 3]), (5, [4, 5, 6, 7])] {
+        for (plane, on) in [
+            (0, [0, 3, 4, 7]),
+            (1, [1, 2, 5, 6]),
+            (2, [0, 1, 4, 5]),
+            (3, [2, 3, 6, 7]),
+            (4, [0, 1, 2, 3]),
+            (5, [4, 5, 6, 7]),
+        ] {
             let (n, d) = frustum.plane(plane);
             for i in on {
                 let distance = n.dot(corners[i] - frustum.eye) + d;
-                assert!(distance.abs() <= 1e-3 * (corners[i] - frustum.eye).length(), "corner {i}, plane {plane}: {distance}");
+                assert!(
+                    distance.abs() <= 1e-3 * (corners[i] - frustum.eye).length(),
+                    "corner {i}, plane {plane}: {distance}"
+                );
             }
         }
     }
@@ -233,8 +306,15 @@ fn an_eye_that_cannot_see_says_why() {
 
 #[test]
 fn a_smoothed_path_passes_through_its_keyframes_and_stays_level() {
-    let view =
-        |x: f32| View { eye: Eye { position: Vec3::new(x, 1.7, x * x), target: Vec3::new(x + 1.0, 1.7, 0.0), ..eye3(Vec3::X) }, width: 8, height: 8 };
+    let view = |x: f32| View {
+        eye: Eye {
+            position: Vec3::new(x, 1.7, x * x),
+            target: Vec3::new(x + 1.0, 1.7, 0.0),
+            ..eye3(Vec3::X)
+        },
+        width: 8,
+        height: 8,
+    };
     let path = ViewPath { name: "walk".into(), views: (0..4).map(|i| view(i as f32)).collect() };
     let smooth = path.smoothed(9);
     assert_eq!(smooth.views.len(), 31);
@@ -242,7 +322,8 @@ fn a_smoothed_path_passes_through_its_keyframes_and_stays_level() {
         assert_eq!(smooth.views[i * 10], path.views[i]);
     }
     assert!(smooth.views.iter().all(|v| (v.eye.position.y - 1.7).abs() < 1e-5));
-    let step = smooth.views.windows(2).map(|w| (w[1].eye.position - w[0].eye.position).length()).fold(0.0, f32::max);
+    let step =
+        smooth.views.windows(2).map(|w| (w[1].eye.position - w[0].eye.position).length()).fold(0.0, f32::max);
     assert!(step < 1.0, "no jump: {step}");
 }
 

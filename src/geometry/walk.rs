@@ -1,7 +1,7 @@
 //! A path walked at a speed: views at equal steps along the closed polyline through a path's eyes.
 //!
-//! How dense the path's own views are does not matter, so walks of two paths, or of one path at two speeds, compare.
-//! Cost: O(views of the path + views of the walk · log).
+//! How dense the path's own views are does not matter, so walks of two paths, or of one path at two speeds,
+//! compare. Cost: O(views of the path + views of the walk · log).
 
 use super::{Eye, Space, Vector, View, ViewPath};
 
@@ -14,9 +14,10 @@ pub const WALKING_STEP_M: f32 = 1.4 / 30.0;
 const TARGET: f32 = 1e-3;
 
 impl<S: Space> ViewPath<S> {
-    /// `count` views (at least one) that begin at the path's first view and get on by `step` (world units, along the
-    /// way) each. After the last view the way goes straight to the first and on; a negative step goes backwards.
-    /// Directions turn evenly from one view to the next. A turn on the spot takes no way, so it is a jump.
+    /// `count` views (at least one) that begin at the path's first view and get on by `step` (world units,
+    /// along the way) each. After the last view the way goes straight to the first and on; a negative step
+    /// goes backwards. Directions turn evenly from one view to the next. A turn on the spot takes no way, so
+    /// it is a jump.
     pub fn walked(&self, step: f32, count: usize) -> Self {
         let n = self.views.len();
         let position = |k: usize| self.views[k % n].eye.position;
@@ -57,7 +58,14 @@ fn between<S: Space>(a: &View<S>, b: &View<S>, t: f32) -> View<S> {
     let forward = turn(a.eye.forward(), b.eye.forward(), near.eye.forward());
     let up = turn(unit(a.eye.up), unit(b.eye.up), near.eye.up);
     let distance = mix(|e| (e.target - e.position).length()).max(position.length() * TARGET);
-    let eye = Eye { position, target: position + forward * distance, up, fov: mix(|e| e.fov), near: mix(|e| e.near), far: mix(|e| e.far) };
+    let eye = Eye {
+        position,
+        target: position + forward * distance,
+        up,
+        fov: mix(|e| e.fov),
+        near: mix(|e| e.near),
+        far: mix(|e| e.far),
+    };
     View { eye, ..*near }
 }
 
@@ -71,10 +79,15 @@ mod tests {
     use crate::geometry::{Flat, Solid, figure_eight, raise};
 
     fn eight(keys: usize, scale: f64, at: f64) -> ViewPath<Solid> {
-        let views = figure_eight(DVec2::splat(at), DVec2::new(2.0, 1.0) * scale, keys).into_iter().map(|(p, d)| {
-            let (position, target) = (raise(p, 1.6).as_vec3(), raise(p + d * scale, 1.6).as_vec3());
-            View { eye: Eye { position, target, up: Vec3::Y, fov: 1.0, near: 0.1, far: 100.0 }, width: 64, height: 48 }
-        });
+        let views =
+            figure_eight(DVec2::splat(at), DVec2::new(2.0, 1.0) * scale, keys).into_iter().map(|(p, d)| {
+                let (position, target) = (raise(p, 1.6).as_vec3(), raise(p + d * scale, 1.6).as_vec3());
+                View {
+                    eye: Eye { position, target, up: Vec3::Y, fov: 1.0, near: 0.1, far: 100.0 },
+                    width: 64,
+                    height: 48,
+                }
+            });
         ViewPath { name: "8".into(), views: views.collect() }
     }
     fn length<S: Space>(path: &ViewPath<S>) -> f32 {
@@ -87,8 +100,8 @@ mod tests {
         a.normalize().dot(b.normalize()).clamp(-1.0, 1.0).acos()
     }
 
-    /// Two eyes are as far apart as the step, less what the bends between them cut off; the line of sight turns no
-    /// faster than from key to key, the seam included; and the walk goes round.
+    /// Two eyes are as far apart as the step, less what the bends between them cut off; the line of sight
+    /// turns no faster than from key to key, the seam included; and the walk goes round.
     #[test]
     fn eyes_are_evenly_spaced_whatever_the_keys() {
         for keys in [60, 240, 1001] {
@@ -98,7 +111,9 @@ mod tests {
             let edge = |k: usize| eye(k + 1).position - eye(k).position;
             let shortest = (0..keys).map(|k| edge(k).length()).fold(f32::INFINITY, f32::min);
             let bend = (0..keys).map(|k| angle(edge(k), edge(k + 1))).fold(0.0, f32::max);
-            let rate = (0..keys).map(|k| angle(eye(k).forward(), eye(k + 1).forward()) / edge(k).length()).fold(0.0, f32::max);
+            let rate = (0..keys)
+                .map(|k| angle(eye(k).forward(), eye(k + 1).forward()) / edge(k).length())
+                .fold(0.0, f32::max);
             for factor in [0.25f32, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0] {
                 let step = WALKING_STEP_M * factor;
                 let count = (whole / step) as usize + 50;
@@ -108,9 +123,15 @@ mod tests {
                 let least = step * (0.5 * bend * (1.0 + (step / shortest).floor())).cos();
                 for (k, w) in walk.views.windows(2).enumerate() {
                     let apart = (w[1].eye.position - w[0].eye.position).length();
-                    assert!(apart <= step + 2e-5 && apart >= least - 2e-5, "{keys} keys, x{factor}, frame {k}: {apart} for {step}");
+                    assert!(
+                        apart <= step + 2e-5 && apart >= least - 2e-5,
+                        "{keys} keys, x{factor}, frame {k}: {apart} for {step}"
+                    );
                     let turn = angle(w[1].eye.forward(), w[0].eye.forward());
-                    assert!(turn < 1.1 * rate * step + 2e-3, "{keys} keys, x{factor}, frame {k}: turned by {turn}");
+                    assert!(
+                        turn < 1.1 * rate * step + 2e-3,
+                        "{keys} keys, x{factor}, frame {k}: turned by {turn}"
+                    );
                 }
                 // Once around, the walk is back where it began, but for a part of a step.
                 let back = &walk.views[(whole / step).round() as usize].eye;
@@ -130,7 +151,8 @@ mod tests {
                 let target = position + Vec3::from_fn(|_| signed(2.0) + 0.3).normalize() * 2.0;
                 Eye::<Solid> { position, target, up: Vec3::Y, fov: 1.0 + signed(0.5), near: 0.1, far: 50.0 }
             };
-            let mut views: Vec<View<Solid>> = (0..n).map(|_| View { eye: eye(&mut signed), width: 64, height: 48 }).collect();
+            let mut views: Vec<View<Solid>> =
+                (0..n).map(|_| View { eye: eye(&mut signed), width: 64, height: 48 }).collect();
             // Eyes that stand where the one before does, and eyes that look back.
             if round % 5 == 0 {
                 views.push(views[0]);
@@ -144,7 +166,9 @@ mod tests {
             }
             let path = ViewPath { name: "any".into(), views };
             assert!(path.views.iter().all(|v| v.eye.fault().is_none()), "round {round}: the path itself");
-            for step in [0.0, WALKING_STEP_M * 0.25, WALKING_STEP_M * 16.0, -0.3, 1e9, f32::NAN, f32::INFINITY] {
+            for step in
+                [0.0, WALKING_STEP_M * 0.25, WALKING_STEP_M * 16.0, -0.3, 1e9, f32::NAN, f32::INFINITY]
+            {
                 let walk = path.walked(step, 100);
                 assert_eq!((walk.views.len(), walk.views[0]), (100, path.views[0]));
                 assert!(walk.views.iter().all(|v| v.eye.fault().is_none()), "round {round}, step {step}");
@@ -173,8 +197,12 @@ mod tests {
             near: 0.1,
             far: 50.0,
         };
-        let views = [eye(0.0, 0.0), eye(3.0, 0.0), eye(3.0, 4.0)].map(|eye| View { eye, width: 64, height: 1 });
+        let views =
+            [eye(0.0, 0.0), eye(3.0, 0.0), eye(3.0, 4.0)].map(|eye| View { eye, width: 64, height: 1 });
         let walk = ViewPath { name: "triangle".into(), views: views.to_vec() }.walked(2.0, 7);
-        assert!((walk.views[6].eye.position - glam::Vec2::ZERO).length() < 1e-5 && (walk.views[2].eye.position.y - 1.0).abs() < 1e-5);
+        assert!(
+            (walk.views[6].eye.position - glam::Vec2::ZERO).length() < 1e-5
+                && (walk.views[2].eye.position.y - 1.0).abs() < 1e-5
+        );
     }
 }

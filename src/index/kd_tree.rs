@@ -16,7 +16,8 @@ use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 pub struct KdNode<V> {
     /// Bounds of the primitives below, world units.
     pub bounds: Aabb<V>,
-    /// Where it is split along `axis`: centres of the first child's primitives are ≤ this; meaningless for a leaf.
+    /// Where it is split along `axis`: centres of the first child's primitives are ≤ this; meaningless for a
+    /// leaf.
     pub split: f32,
     /// Splitting axis; meaningless for a leaf.
     pub axis: u8,
@@ -68,10 +69,23 @@ impl<V: Vector> KdTree<V> {
     /// Builds a tree of at most `height ≥ 1` levels. A node is not split further when it holds one
     /// primitive, or when all its centres coincide. Ties are broken by id.
     /// Stops early and returns `None` when `cancelled` says so (asked once a node).
-    pub fn build(prims: impl Iterator<Item = (PrimId, Aabb<V>)>, height: u32, cancelled: impl Fn() -> bool) -> Option<Self> {
+    pub fn build(
+        prims: impl Iterator<Item = (PrimId, Aabb<V>)>,
+        height: u32,
+        cancelled: impl Fn() -> bool,
+    ) -> Option<Self> {
         let mut entries: Vec<Entry<V>> = prims.map(|(prim, bounds)| Entry { bounds, prim }).collect();
         let n = entries.len() as u32;
-        let root = KdNode { bounds: Aabb::empty(), split: 0.0, axis: 0, level: 0, first_child: 0, parent: 0, first: 0, count: n };
+        let root = KdNode {
+            bounds: Aabb::empty(),
+            split: 0.0,
+            axis: 0,
+            level: 0,
+            first_child: 0,
+            parent: 0,
+            first: 0,
+            count: n,
+        };
         let mut nodes = vec![root];
         let mut at = 0;
         while at < nodes.len() {
@@ -81,9 +95,11 @@ impl<V: Vector> KdTree<V> {
             let node = nodes[at];
             let range = node.first as usize..(node.first + node.count) as usize;
             if u32::from(node.level) + 1 < height
-                && let Some((axis, half, split)) = partition(&mut entries[range], node.level as usize % V::AXES)
+                && let Some((axis, half, split)) =
+                    partition(&mut entries[range], node.level as usize % V::AXES)
             {
-                let child = KdNode { split: 0.0, level: node.level + 1, first_child: 0, parent: at as u32, ..node };
+                let child =
+                    KdNode { split: 0.0, level: node.level + 1, first_child: 0, parent: at as u32, ..node };
                 let left = nodes.len() as u32;
                 nodes.push(KdNode { count: half, ..child });
                 nodes.push(KdNode { first: node.first + half, count: node.count - half, ..child });
@@ -96,7 +112,9 @@ impl<V: Vector> KdTree<V> {
             let node = nodes[at];
             nodes[at].bounds = match node.children() {
                 Some([a, b]) => nodes[a.at()].bounds.union(nodes[b.at()].bounds),
-                None => entries[node.first as usize..(node.first + node.count) as usize].iter().fold(Aabb::empty(), |b, e| b.union(e.bounds)),
+                None => entries[node.first as usize..(node.first + node.count) as usize]
+                    .iter()
+                    .fold(Aabb::empty(), |b, e| b.union(e.bounds)),
             };
         }
         Some(Self { nodes, order: entries.iter().map(|e| e.prim).collect() })
@@ -135,13 +153,24 @@ impl<V: Vector> KdTree<V> {
             assert!(u32::from(node.level) < height, "node {i} is above the height limit");
             let Some([a, b]) = node.children() else { continue };
             let (na, nb) = (&self.nodes[a.at()], &self.nodes[b.at()]);
-            assert_eq!((na.parent, nb.parent, na.level, nb.level), (id.0, id.0, node.level + 1, node.level + 1));
-            assert_eq!((na.first, na.first + na.count, nb.first + nb.count), (node.first, nb.first, node.first + node.count));
+            assert_eq!(
+                (na.parent, nb.parent, na.level, nb.level),
+                (id.0, id.0, node.level + 1, node.level + 1)
+            );
+            assert_eq!(
+                (na.first, na.first + na.count, nb.first + nb.count),
+                (node.first, nb.first, node.first + node.count)
+            );
             assert!(na.count.abs_diff(nb.count) <= 1, "node {i} is balanced");
-            let key = |p: &PrimId| bounds_of(*p).min.get(node.axis as usize) + bounds_of(*p).max.get(node.axis as usize);
+            let key = |p: &PrimId| {
+                bounds_of(*p).min.get(node.axis as usize) + bounds_of(*p).max.get(node.axis as usize)
+            };
             let low = self.prims_below(a).iter().map(key).fold(f32::NEG_INFINITY, f32::max);
             let high = self.prims_below(b).iter().map(key).fold(f32::INFINITY, f32::min);
-            assert!(low <= high && low * 0.5 <= node.split && node.split <= high * 0.5, "node {i} is split at its plane");
+            assert!(
+                low <= high && low * 0.5 <= node.split && node.split <= high * 0.5,
+                "node {i} is split at its plane"
+            );
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Octree over primitives; a quadtree in flatland.
 //!
-//! Greene, Kass and Miller 1993 (<https://doi.org/10.1145/166117.166147>), as Georges 1995, Section 3.1, describes it: each cube is
-//! halved along every axis until it holds few primitives. Where a primitive that crosses the dividing planes goes is
-//! the choice of that section ([`Redistribution`]).
+//! Greene, Kass and Miller 1993 (<https://doi.org/10.1145/166117.166147>), as Georges 1995, Section 3.1,
+//! describes it: each cube is halved along every axis until it holds few primitives. Where a primitive that
+//! crosses the dividing planes goes is the choice of that section ([`Redistribution`]).
 //!
-//! Departures: cubes that hold nothing are left out; beside its cube a node keeps the bounds of what it holds there, which is
-//! what is tested. A primitive that is passed to several children stands in the order once, below the cube that passed
-//! it on, so that the primitives below a node are a slice; the children refer to it.
-//! Cost: O(n · depth) time; one reference a primitive and one more for each child that shares it.
+//! Departures: cubes that hold nothing are left out; beside its cube a node keeps the bounds of what it holds
+//! there, which is what is tested. A primitive that is passed to several children stands in the order once,
+//! below the cube that passed it on, so that the primitives below a node are a slice; the children refer to
+//! it. Cost: O(n · depth) time; one reference a primitive and one more for each child that shares it.
 
 use std::ops::Range;
 
@@ -23,7 +23,8 @@ pub enum Redistribution {
     Parent,
     /// It goes to the child that holds its center, whose bounds grow.
     Grown,
-    /// It is split among all children that it overlaps. The parts share the whole: whoever comes first draws it.
+    /// It is split among all children that it overlaps. The parts share the whole: whoever comes first draws
+    /// it.
     Split,
 }
 
@@ -59,7 +60,8 @@ pub struct OctreeNode<V> {
     pub cube: Aabb<V>,
     /// Bounds of what it and all below it hold inside the cube: the volume that is tested.
     pub bounds: Aabb<V>,
-    /// Bounds of all primitives here and below as wholes: beyond `bounds` where some are shared with a neighbor.
+    /// Bounds of all primitives here and below as wholes: beyond `bounds` where some are shared with a
+    /// neighbor.
     pub whole: Aabb<V>,
     /// The same of what the node itself holds, without its children.
     pub held: Aabb<V>,
@@ -112,17 +114,31 @@ struct Entry<V> {
 
 impl<V: Vector> Octree<V> {
     /// Builds the tree; `None` when `cancelled` says so (asked once a node).
-    pub fn build(prims: impl Iterator<Item = (PrimId, Aabb<V>)>, shape: &Shape, cancelled: &dyn Fn() -> bool) -> Option<Self> {
+    pub fn build(
+        prims: impl Iterator<Item = (PrimId, Aabb<V>)>,
+        shape: &Shape,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<Self> {
         let entries: Vec<_> = prims.map(|(prim, bounds)| Entry { bounds, prim, is_shared: false }).collect();
         let all = entries.iter().fold(Aabb::empty(), |b, e| b.union(e.bounds));
-        let mut tree = Self { nodes: vec![OctreeNode::of(cube_around(&all), 0, 0, 0)], order: Vec::with_capacity(entries.len()), shared: Vec::new() };
+        let mut tree = Self {
+            nodes: vec![OctreeNode::of(cube_around(&all), 0, 0, 0)],
+            order: Vec::with_capacity(entries.len()),
+            shared: Vec::new(),
+        };
         tree.grow(0, entries, shape, cancelled)?;
         tree.bound();
         Some(tree)
     }
 
     /// Fills node `at` with entries and divides it if they are many.
-    fn grow(&mut self, at: usize, entries: Vec<Entry<V>>, shape: &Shape, cancelled: &dyn Fn() -> bool) -> Option<()> {
+    fn grow(
+        &mut self,
+        at: usize,
+        entries: Vec<Entry<V>>,
+        shape: &Shape,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<()> {
         if cancelled() {
             return None;
         }
@@ -142,7 +158,8 @@ impl<V: Vector> Octree<V> {
         drop((own, shared, passed));
 
         let parts: Vec<_> = parts.into_iter().enumerate().filter(|(_, part)| !part.is_empty()).collect();
-        let (cube, level, first_child) = (self.nodes[at].cube, self.nodes[at].level + 1, self.nodes.len() as u32);
+        let (cube, level, first_child) =
+            (self.nodes[at].cube, self.nodes[at].level + 1, self.nodes.len() as u32);
         for (octant, part) in &parts {
             let mut child = OctreeNode::of(octant_of(&cube, *octant), *octant as u8, level, at as u32);
             if shape.redistribution == Redistribution::Grown {
@@ -158,14 +175,23 @@ impl<V: Vector> Octree<V> {
         Some(())
     }
 
-    /// What stays with a node, which of it is only listed there because its children share it, and what each child gets.
+    /// What stays with a node, which of it is only listed there because its children share it, and what each
+    /// child gets.
     #[allow(clippy::type_complexity)]
-    fn divide(&self, at: usize, entries: Vec<Entry<V>>, shape: &Shape) -> (Vec<Entry<V>>, Vec<Entry<V>>, Vec<Vec<Entry<V>>>) {
+    fn divide(
+        &self,
+        at: usize,
+        entries: Vec<Entry<V>>,
+        shape: &Shape,
+    ) -> (Vec<Entry<V>>, Vec<Entry<V>>, Vec<Vec<Entry<V>>>) {
         let node = &self.nodes[at];
         let center = node.cube.center();
         let side = longest(&node.cube);
         let inside = |a: usize| node.cube.min.get(a) < center.get(a) && center.get(a) < node.cube.max.get(a);
-        if entries.len() <= shape.leaf_prims as usize || u32::from(node.level) + 1 >= shape.levels || !(0..V::AXES).any(inside) {
+        if entries.len() <= shape.leaf_prims as usize
+            || u32::from(node.level) + 1 >= shape.levels
+            || !(0..V::AXES).any(inside)
+        {
             return (entries, vec![], vec![]);
         }
         let to_all = |e: &Entry<V>| match shape.redistribution {
@@ -175,7 +201,8 @@ impl<V: Vector> Octree<V> {
         };
         let ends = |e: &Entry<V>| (octant_at(e.bounds.min, center), octant_at(e.bounds.max, center));
         // Where most would be referred to many times over, division parts nothing; it might go on for ever.
-        let references = |e: &Entry<V>| if to_all(e) { 1usize << (ends(e).0 ^ ends(e).1).count_ones() } else { 1 };
+        let references =
+            |e: &Entry<V>| if to_all(e) { 1usize << (ends(e).0 ^ ends(e).1).count_ones() } else { 1 };
         if entries.iter().map(references).sum::<usize>() > entries.len() * MOST_REFERENCES {
             return (entries, vec![], vec![]);
         }
@@ -189,7 +216,9 @@ impl<V: Vector> Octree<V> {
             } else if to_all(&entry) {
                 // Those that differ from the lowest only along the axes that are crossed.
                 let crossed = low ^ high;
-                (0..parts.len()).filter(|o| o & !crossed == low).for_each(|o| parts[o].push(Entry { is_shared: true, ..entry }));
+                (0..parts.len())
+                    .filter(|o| o & !crossed == low)
+                    .for_each(|o| parts[o].push(Entry { is_shared: true, ..entry }));
                 if !entry.is_shared {
                     passed.push(entry);
                 }
@@ -253,31 +282,50 @@ impl<V: Vector> Octree<V> {
             let below = &self.order[node.first as usize..(node.first + node.count) as usize];
             for &prim in self.own(id).iter().chain(self.shared(id)) {
                 let held = clipped(&bounds_of(prim), &node.cube);
-                assert!(!held.is_empty() && node.bounds.encloses(&held), "node {at} bounds what it holds of {prim}");
+                assert!(
+                    !held.is_empty() && node.bounds.encloses(&held),
+                    "node {at} bounds what it holds of {prim}"
+                );
                 assert!(node.whole.encloses(&bounds_of(prim)), "node {at} bounds {prim} as a whole");
             }
             let mut next = node.first + node.own + node.passed;
             for child in node.children() {
                 let c = &self.nodes[child as usize];
-                assert_eq!((c.parent, u32::from(c.level), c.first), (id.0, u32::from(node.level) + 1, next), "child {child} of {at}");
+                assert_eq!(
+                    (c.parent, u32::from(c.level), c.first),
+                    (id.0, u32::from(node.level) + 1, next),
+                    "child {child} of {at}"
+                );
                 assert!(c.count + c.shared > 0 || c.children > 0, "node {child} holds something");
-                assert!(node.bounds.encloses(&c.bounds) && node.whole.encloses(&c.whole), "node {at} holds its child {child}");
+                assert!(
+                    node.bounds.encloses(&c.bounds) && node.whole.encloses(&c.whole),
+                    "node {at} holds its child {child}"
+                );
                 next += c.count;
             }
             assert_eq!(next, node.first + node.count, "the slices of the children of {at} follow its own");
             for &prim in self.passed(id) {
                 // Its references lie below and together cover its box.
-                let holders: Vec<usize> = (at + 1..self.nodes.len()).filter(|&n| self.shared(NodeId(n as u32)).contains(&prim)).collect();
-                assert!(holders.iter().all(|&n| self.is_below(n, at)), "what {at} passes on is referred to below it");
+                let holders: Vec<usize> = (at + 1..self.nodes.len())
+                    .filter(|&n| self.shared(NodeId(n as u32)).contains(&prim))
+                    .collect();
+                assert!(
+                    holders.iter().all(|&n| self.is_below(n, at)),
+                    "what {at} passes on is referred to below it"
+                );
                 for corner in bounds_of(prim).corners() {
-                    assert!(holders.iter().any(|&n| self.nodes[n].cube.contains(corner)), "a corner of {prim} lies in some cube that holds it");
+                    assert!(
+                        holders.iter().any(|&n| self.nodes[n].cube.contains(corner)),
+                        "a corner of {prim} lies in some cube that holds it"
+                    );
                 }
             }
             assert_eq!(below.len(), node.count as usize);
         }
     }
     fn is_below(&self, node: usize, above: usize) -> bool {
-        std::iter::successors(Some(node), |&n| (n != 0).then(|| self.nodes[n].parent as usize)).any(|n| n == above)
+        std::iter::successors(Some(node), |&n| (n != 0).then(|| self.nodes[n].parent as usize))
+            .any(|n| n == above)
     }
 }
 
@@ -357,7 +405,8 @@ impl<S: Space> Hierarchy<S> for Octree<S::Vector> {
         &self.order[n.first as usize..(n.first + n.count) as usize]
     }
     fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<OctreeNode<S::Vector>>() + (self.order.len() + self.shared.len()) * size_of::<PrimId>()
+        self.nodes.len() * size_of::<OctreeNode<S::Vector>>()
+            + (self.order.len() + self.shared.len()) * size_of::<PrimId>()
     }
 }
 
@@ -411,7 +460,10 @@ mod tests {
 
     /// One large and one small box across the middle, and one in each quarter.
     fn crossing() -> Vec<(PrimId, Aabb<Vec2>)> {
-        let square = |x: f32, y: f32, half: f32| Aabb { min: Vec2::new(x - half, y - half), max: Vec2::new(x + half, y + half) };
+        let square = |x: f32, y: f32, half: f32| Aabb {
+            min: Vec2::new(x - half, y - half),
+            max: Vec2::new(x + half, y + half),
+        };
         let boxes = [
             square(0.0, 0.0, 4.0),
             square(0.0, 3.0, 0.1),
@@ -431,14 +483,23 @@ mod tests {
         };
         let hybrid = build(Redistribution::Hybrid);
         assert_eq!((hybrid.own(NodeId(0)), hybrid.passed(NodeId(0))), (&[PrimId(0)][..], &[PrimId(1)][..]));
-        let holders: Vec<u8> = (1..5).filter(|&n| hybrid.shared(NodeId(n)) == [PrimId(1)]).map(|n| hybrid.nodes()[n as usize].octant).collect();
+        let holders: Vec<u8> = (1..5)
+            .filter(|&n| hybrid.shared(NodeId(n)) == [PrimId(1)])
+            .map(|n| hybrid.nodes()[n as usize].octant)
+            .collect();
         assert_eq!(holders, [2, 3], "the two upper quarters");
         let parent = build(Redistribution::Parent);
         assert_eq!(parent.own(NodeId(0)), [PrimId(0), PrimId(1)]);
         let grown = build(Redistribution::Grown);
         assert_eq!(grown.own(NodeId(0)), []);
-        assert!(grown.nodes().iter().any(|n| n.level == 1 && n.bounds.contains(Vec2::new(4.0, 4.0)) && n.bounds.contains(Vec2::new(-4.0, -4.0))));
-        assert_eq!(build(Redistribution::Split).references(), 4 + 4 + 2, "the large one has four parts, the small one two");
+        assert!(grown.nodes().iter().any(|n| n.level == 1
+            && n.bounds.contains(Vec2::new(4.0, 4.0))
+            && n.bounds.contains(Vec2::new(-4.0, -4.0))));
+        assert_eq!(
+            build(Redistribution::Split).references(),
+            4 + 4 + 2,
+            "the large one has four parts, the small one two"
+        );
     }
 
     #[test]

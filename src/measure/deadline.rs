@@ -1,10 +1,11 @@
-//! Budgets in milliseconds: frames that are culled and drawn until a deadline (Klosowski and Silva 2000, Section 3,
-//! <https://doi.org/10.1109/2945.856993>: "time-critical").
+//! Budgets in milliseconds: frames that are culled and drawn until a deadline (Klosowski and Silva 2000,
+//! Section 3, <https://doi.org/10.1109/2945.856993>: "time-critical").
 //!
-//! The method tells what it drew every few hundred primitives; that is rasterized at once, and the frame ends where the
-//! next piece, should it take as long as the longest so far, would end behind the deadline. What is drawn then depends on the
-//! machine, so a film is recorded with the number of primitives that the timed frame drew: it shows that frame, on any
-//! machine. [`paced`] gives a run whose budget is a time this behavior; [`frame_within`] is one such frame.
+//! The method tells what it drew every few hundred primitives; that is rasterized at once, and the frame ends
+//! where the next piece, should it take as long as the longest so far, would end behind the deadline. What is
+//! drawn then depends on the machine, so a film is recorded with the number of primitives that the timed
+//! frame drew: it shows that frame, on any machine. [`paced`] gives a run whose budget is a time this
+//! behavior; [`frame_within`] is one such frame.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -37,9 +38,15 @@ struct Canvas {
     asked_ms: f64,
 }
 
-/// Culls and draws one frame, which ends at `ms` milliseconds after it began or before. `image` is reused. A method that cannot be
-/// ended draws what it draws.
-pub fn frame_within<S: Drawable>(run: &mut dyn Run<S>, scene: &Arc<Scene<S>>, view: &View<S>, mut image: Target, ms: f64) -> TimedFrame {
+/// Culls and draws one frame, which ends at `ms` milliseconds after it began or before. `image` is reused. A
+/// method that cannot be ended draws what it draws.
+pub fn frame_within<S: Drawable>(
+    run: &mut dyn Run<S>,
+    scene: &Arc<Scene<S>>,
+    view: &View<S>,
+    mut image: Target,
+    ms: f64,
+) -> TimedFrame {
     if (image.width, image.height) != (view.width, view.height) {
         // Memory is fetched before the clock starts.
         image.clear(view);
@@ -77,11 +84,19 @@ fn time_of<S: Drawable>(run: &dyn Run<S>) -> Option<f64> {
 ///
 /// # Errors
 /// The budget is a time, and the method asks nobody when to end.
-pub fn paced<S: Drawable>(mut run: Box<dyn Run<S>>, scene: &Arc<Scene<S>>) -> Result<Box<dyn Run<S>>, SettingError> {
+pub fn paced<S: Drawable>(
+    mut run: Box<dyn Run<S>>,
+    scene: &Arc<Scene<S>>,
+) -> Result<Box<dyn Run<S>>, SettingError> {
     let Some(ms) = time_of(&*run) else { return Ok(run) };
     if !run.limit(None) {
-        let expected = format!("a number of primitives or a share: `{}` cannot be ended at a deadline", run.card().key);
-        return Err(SettingError::BadValue { key: "budget", value: Budget::Milliseconds(ms as f32).to_string(), expected });
+        let expected =
+            format!("a number of primitives or a share: `{}` cannot be ended at a deadline", run.card().key);
+        return Err(SettingError::BadValue {
+            key: "budget",
+            value: Budget::Milliseconds(ms as f32).to_string(),
+            expected,
+        });
     }
     Ok(Box::new(Paced { run, scene: scene.clone(), ms, image: Target::default(), drawn: Vec::new() }))
 }
@@ -96,13 +111,17 @@ struct Paced<S: Drawable> {
 }
 
 impl<S: Drawable> Paced<S> {
-    /// Does something with the number of primitives that the timed frame of the view drew in place of the time.
+    /// Does something with the number of primitives that the timed frame of the view drew in place of the
+    /// time.
     fn counted<T>(&mut self, view: &View<S>, work: impl FnOnce(&mut dyn Run<S>) -> T) -> T {
         let known = self.drawn.iter().rev().find(|(of, _)| of == view).map(|(_, n)| *n);
         let count = known.unwrap_or_else(|| self.cull(view).prims.len() as u32);
         let drawn = AtomicUsize::new(0);
-        // Also ended from outside, as the timed frame was: what a method does after a budget of its own does not follow.
-        let limit: Limit = Arc::new(move |prims: &[PrimId]| drawn.fetch_add(prims.len(), Ordering::Relaxed) + prims.len() >= count as usize);
+        // Also ended from outside, as the timed frame was: what a method does after a budget of its own does
+        // not follow.
+        let limit: Limit = Arc::new(move |prims: &[PrimId]| {
+            drawn.fetch_add(prims.len(), Ordering::Relaxed) + prims.len() >= count as usize
+        });
         self.run.set_budget(Budget::Count(count));
         self.run.limit(Some(limit));
         let result = work(&mut *self.run);
@@ -165,9 +184,17 @@ mod tests {
     fn ready<S: Methods + Drawable>(method: &str, budget: &str, scene: &Arc<Scene<S>>) -> Box<dyn Run<S>> {
         ready_with(method, &[("budget", budget)], scene)
     }
-    fn ready_with<S: Methods + Drawable>(method: &str, pairs: &[(&str, &str)], scene: &Arc<Scene<S>>) -> Box<dyn Run<S>> {
+    fn ready_with<S: Methods + Drawable>(
+        method: &str,
+        pairs: &[(&str, &str)],
+        scene: &Arc<Scene<S>>,
+    ) -> Box<dyn Run<S>> {
         let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
-        S::method(method).expect("listed").ready(scene, &settings, &Quiet).expect("it fits").expect("not cancelled")
+        S::method(method)
+            .expect("listed")
+            .ready(scene, &settings, &Quiet)
+            .expect("it fits")
+            .expect("not cancelled")
     }
 
     fn ends<S: Methods + Drawable>(scene: &Arc<Scene<S>>) {
@@ -176,17 +203,31 @@ mod tests {
         let whole = all.cull(&view);
         // At once, and never: whatever the machine does.
         for (budget, is_all) in [("0.000001ms", false), ("1000000ms", true)] {
-            let mut run = paced(ready::<S>("layered-projection", budget, scene), scene).expect("it can be ended");
+            let mut run =
+                paced(ready::<S>("layered-projection", budget, scene), scene).expect("it can be ended");
             let list = run.cull(&view);
             assert_eq!(list.prims, whole.prims[..list.prims.len()]);
-            assert_eq!(list.prims.len() == whole.prims.len(), is_all, "{budget}: {} of {}", list.prims.len(), whole.prims.len());
+            assert_eq!(
+                list.prims.len() == whole.prims.len(),
+                is_all,
+                "{budget}: {} of {}",
+                list.prims.len(),
+                whole.prims.len()
+            );
             let recording = run.record(&view, usize::MAX);
-            assert_eq!((&recording.list, &run.count(&view).0), (&list, &list), "the film shows the frame that was drawn");
-            let budget_of = |knobs: &[(Knob, KnobValue)]| knobs.iter().find(|(k, _)| k.name == "budget").map(|(_, v)| v.to_string());
+            assert_eq!(
+                (&recording.list, &run.count(&view).0),
+                (&list, &list),
+                "the film shows the frame that was drawn"
+            );
+            let budget_of = |knobs: &[(Knob, KnobValue)]| {
+                knobs.iter().find(|(k, _)| k.name == "budget").map(|(_, v)| v.to_string())
+            };
             assert_eq!(budget_of(recording.film.knobs()), Some(list.prims.len().to_string()));
             assert_eq!(budget_of(&run.knobs()).as_deref(), Some(budget));
         }
-        let asking = ready_with("layered-projection", &[("budget", "0.000001ms"), ("queries", "true")], scene);
+        let asking =
+            ready_with("layered-projection", &[("budget", "0.000001ms"), ("queries", "true")], scene);
         let mut asking = paced(asking, scene).expect("it can be ended");
         let list = asking.cull(&view);
         assert!(list.prims.len() < whole.prims.len(), "a deadline also ends what follows a budget");
@@ -204,7 +245,8 @@ mod tests {
     #[test]
     fn a_method_that_cannot_be_ended_says_so() {
         let scene = samples::soup::<Flat>(1, 30);
-        let error = paced(ready::<Flat>("centroid", "5ms", &scene), &scene).err().expect("refused").to_string();
+        let error =
+            paced(ready::<Flat>("centroid", "5ms", &scene), &scene).err().expect("refused").to_string();
         assert!(error.contains("budget=5ms") && error.contains("centroid"), "{error}");
         assert!(paced(ready::<Flat>("centroid", "5%", &scene), &scene).is_ok());
     }

@@ -1,7 +1,7 @@
 //! Tables of results: rows of text and numbers under columns with units, as aligned text, CSV and JSON.
 //!
-//! Text is rounded to what a reader needs; CSV and JSON have every digit, so that reading them back gives the same
-//! numbers.
+//! Text is rounded to what a reader needs; CSV and JSON have every digit, so that reading them back gives the
+//! same numbers.
 
 use std::fmt::Write as _;
 
@@ -88,8 +88,10 @@ impl Table {
     /// Aligned text: headings, units, a rule, rows; numbers to the right.
     pub fn text(&self) -> String {
         let count = self.columns.len();
-        let mut lines: Vec<Vec<String>> =
-            vec![self.columns.iter().map(|c| c.title.to_owned()).collect(), self.columns.iter().map(|c| c.unit.to_owned()).collect()];
+        let mut lines: Vec<Vec<String>> = vec![
+            self.columns.iter().map(|c| c.title.to_owned()).collect(),
+            self.columns.iter().map(|c| c.unit.to_owned()).collect(),
+        ];
         lines.extend((0..self.rows.len()).map(|r| (0..count).map(|c| self.shown(r, c)).collect()));
         let width = |c: usize| lines.iter().map(|l| l[c].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..count).map(width).collect();
@@ -97,12 +99,23 @@ impl Table {
         let left: Vec<bool> = (0..count).map(words).collect();
         let mut text = String::new();
         for (i, line) in lines.iter().enumerate() {
-            let cells: Vec<String> =
-                line.iter().enumerate().map(|(c, t)| if left[c] { format!("{t:<0$}", widths[c]) } else { format!("{t:>0$}", widths[c]) }).collect();
+            let cells: Vec<String> = line
+                .iter()
+                .enumerate()
+                .map(
+                    |(c, t)| {
+                        if left[c] { format!("{t:<0$}", widths[c]) } else { format!("{t:>0$}", widths[c]) }
+                    },
+                )
+                .collect();
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{}", cells.join("  ").trim_end());
             if i == 1 {
-                let _ = writeln!(text, "{}", "-".repeat(widths.iter().sum::<usize>() + 2 * count.saturating_sub(1)));
+                let _ = writeln!(
+                    text,
+                    "{}",
+                    "-".repeat(widths.iter().sum::<usize>() + 2 * count.saturating_sub(1))
+                );
             }
         }
         text
@@ -111,7 +124,11 @@ impl Table {
     /// Comma-separated values (RFC 4180 but for its line ends, which are plain), keys first.
     pub fn csv(&self) -> String {
         let quoted = |text: &str| {
-            if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+            if text.contains([',', '"', '\n', '\r']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text.to_owned()
+            }
         };
         let cell = |cell: &Cell| match cell {
             Cell::Text(text) => quoted(text),
@@ -135,7 +152,9 @@ impl Table {
             Cell::Number(value) => json!(value),
             Cell::Missing => Json::Null,
         };
-        let row = |row: &Vec<Cell>| self.columns.iter().zip(row).map(|(c, v)| (c.key.to_owned(), cell(v))).collect::<Map<_, _>>();
+        let row = |row: &Vec<Cell>| {
+            self.columns.iter().zip(row).map(|(c, v)| (c.key.to_owned(), cell(v))).collect::<Map<_, _>>()
+        };
         self.rows.iter().map(row).collect()
     }
 }
@@ -161,8 +180,11 @@ mod tests {
 
     fn sample() -> Table {
         let column = |key, title, unit, decimals| Column { key, title, unit, decimals };
-        let mut table =
-            Table::new(&[column("scene", "scene", "", 0), column("polygons", "polygons", "", 0), column("drawn_percent", "drawn", "%", 1)]);
+        let mut table = Table::new(&[
+            column("scene", "scene", "", 0),
+            column("polygons", "polygons", "", 0),
+            column("drawn_percent", "drawn", "%", 1),
+        ]);
         table.rows.push(vec!["a \"b\", c".into(), 134_832usize.into(), (1.0 / 3.0).into()]);
         table.rows.push(vec!["city".into(), 7usize.into(), f64::NAN.into()]);
         table
@@ -170,12 +192,16 @@ mod tests {
 
     #[test]
     fn csv_keeps_every_digit_and_quotes_words() {
-        assert_eq!(sample().csv(), "scene,polygons,drawn_percent\n\"a \"\"b\"\", c\",134832,0.3333333333333333\ncity,7,\n");
+        assert_eq!(
+            sample().csv(),
+            "scene,polygons,drawn_percent\n\"a \"\"b\"\", c\",134832,0.3333333333333333\ncity,7,\n"
+        );
     }
 
     #[test]
     fn text_is_aligned() {
-        let want = "scene     polygons  drawn\n                        %\n-------------------------\na \"b\", c   134,832    0.3\ncity             7      –\n";
+        let want = "scene     polygons  drawn\n                        %\n-------------------------\na \
+                    \"b\", c   134,832    0.3\ncity             7      –\n";
         assert_eq!(sample().text(), want);
         assert_eq!((grouped(-1234567.891, 2), grouped(999.0, 0)), ("−1,234,567.89".into(), "999".into()));
     }
@@ -186,6 +212,13 @@ mod tests {
         assert_eq!(json[0]["polygons"], 134_832);
         assert_eq!(json[0]["drawn_percent"], 1.0 / 3.0);
         assert!(json[1]["drawn_percent"].is_null());
-        assert_eq!((sample().number(0, "polygons"), sample().number(1, "drawn_percent"), sample().number(0, "scene")), (Some(134_832.0), None, None));
+        assert_eq!(
+            (
+                sample().number(0, "polygons"),
+                sample().number(1, "drawn_percent"),
+                sample().number(0, "scene")
+            ),
+            (Some(134_832.0), None, None)
+        );
     }
 }

@@ -46,7 +46,14 @@ const PREFETCH_ROWS: usize = 2;
 const BAND_ROWS: usize = 32;
 
 /// Draws triangles, all or those that a pyramid does not hide; see [`super::Drawable`].
-pub(super) fn draw(target: &mut Target, sieve: Option<Sieve>, scene: &Scene<Solid>, view: &View<Solid>, prims: &[PrimId], options: &Options) {
+pub(super) fn draw(
+    target: &mut Target,
+    sieve: Option<Sieve>,
+    scene: &Scene<Solid>,
+    view: &View<Solid>,
+    prims: &[PrimId],
+    options: &Options,
+) {
     check_size(target, view);
     let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
     let mut scratch = std::mem::take(&mut target.scratch);
@@ -59,12 +66,26 @@ pub(super) fn draw(target: &mut Target, sieve: Option<Sieve>, scene: &Scene<Soli
     } else {
         let part = points.len().div_ceil(threads * 4).max(1024);
         let parts = points.par_chunks(part).zip(scratch.vertices.par_chunks_mut(part));
-        parts.for_each(|(points, vertices)| simd::run(options.isa, Project { camera: &camera, points, vertices }));
+        parts.for_each(|(points, vertices)| {
+            simd::run(options.isa, Project { camera: &camera, points, vertices })
+        });
     }
     let window = options.window_of(view);
-    let frame = Frame { scene, view, camera, vertices: &scratch.vertices, backface_culling: options.backface_culling, window };
+    let frame = Frame {
+        scene,
+        view,
+        camera,
+        vertices: &scratch.vertices,
+        backface_culling: options.backface_culling,
+        window,
+    };
     if threads <= 1 {
-        let band = Band { depth: &mut target.depth, item: &mut target.item, first_row: 0, width: view.width as usize };
+        let band = Band {
+            depth: &mut target.depth,
+            item: &mut target.item,
+            first_row: 0,
+            width: view.width as usize,
+        };
         simd::run(options.isa, DrawAll { frame: &frame, sieve, prims, setups: &mut scratch.setups, band });
     } else {
         draw_in_bands(&mut scratch.chunks, &frame, sieve, prims, target, options);
@@ -73,7 +94,14 @@ pub(super) fn draw(target: &mut Target, sieve: Option<Sieve>, scene: &Scene<Soli
 }
 
 /// Set-up by chunks of primitives, then filling by bands of rows.
-fn draw_in_bands(chunks: &mut Vec<Chunk>, frame: &Frame, mut sieve: Option<Sieve>, prims: &[PrimId], target: &mut Target, options: &Options) {
+fn draw_in_bands(
+    chunks: &mut Vec<Chunk>,
+    frame: &Frame,
+    mut sieve: Option<Sieve>,
+    prims: &[PrimId],
+    target: &mut Target,
+    options: &Options,
+) {
     let width = target.width as usize;
     let bands = (target.height as usize).div_ceil(BAND_ROWS);
     let held = sieve.as_ref().map(|s| (&*s.pyramid, &target.depth[..]));
@@ -93,10 +121,12 @@ fn draw_in_bands(chunks: &mut Vec<Chunk>, frame: &Frame, mut sieve: Option<Sieve
     }
     let mut items: Vec<&mut [u32]> = target.item.chunks_mut(width * BAND_ROWS).collect();
     items.resize_with(bands, Default::default);
-    target.depth.par_chunks_mut(width * BAND_ROWS).zip(items).enumerate().for_each(|(number, (depth, item))| {
-        let band = Band { depth, item, first_row: (number * BAND_ROWS) as i32, width };
-        simd::run(options.isa, FillBand { chunks, number, band });
-    });
+    target.depth.par_chunks_mut(width * BAND_ROWS).zip(items).enumerate().for_each(
+        |(number, (depth, item))| {
+            let band = Band { depth, item, first_row: (number * BAND_ROWS) as i32, width };
+            simd::run(options.isa, FillBand { chunks, number, band });
+        },
+    );
 }
 
 /// What every part of a draw reads.
@@ -122,9 +152,15 @@ impl Frame<'_> {
                 own = self.project(corners);
                 [&own[0], &own[1], &own[2]]
             } else {
-                [&self.vertices[corners[0] as usize], &self.vertices[corners[1] as usize], &self.vertices[corners[2] as usize]]
+                [
+                    &self.vertices[corners[0] as usize],
+                    &self.vertices[corners[1] as usize],
+                    &self.vertices[corners[2] as usize],
+                ]
             };
-            if a.outside & b.outside & c.outside & REJECTS != 0 || self.backface_culling && !self.shows_front(corners) {
+            if a.outside & b.outside & c.outside & REJECTS != 0
+                || self.backface_culling && !self.shows_front(corners)
+            {
                 continue;
             }
             if (a.outside | b.outside | c.outside) & NEEDS_CLIP == 0 {
@@ -143,7 +179,10 @@ impl Frame<'_> {
     #[inline(never)]
     fn set_up_clipped(&self, prim: PrimId, corners: [u32; 3], setups: &mut Vec<Setup>) {
         let corners = corners.map(|c| self.camera.clip(self.scene.points()[c as usize]));
-        setups.extend(clip(&self.camera, corners).filter_map(|[a, b, c]| Setup::new([&a, &b, &c], prim.0, false, &self.window)));
+        setups.extend(
+            clip(&self.camera, corners)
+                .filter_map(|[a, b, c]| Setup::new([&a, &b, &c], prim.0, false, &self.window)),
+        );
     }
 
     /// Whether the eye lies strictly on the side from which the corners run counter-clockwise.
@@ -155,9 +194,21 @@ impl Frame<'_> {
 }
 
 /// The pixels that a triangle can cover and its nearest depth; see [`super::Drawable::extent`].
-pub(super) fn extent(scene: &Scene<Solid>, view: &View<Solid>, prim: PrimId, options: &Options) -> Option<Extent> {
+pub(super) fn extent(
+    scene: &Scene<Solid>,
+    view: &View<Solid>,
+    prim: PrimId,
+    options: &Options,
+) -> Option<Extent> {
     let camera = Camera::new(view);
-    let frame = Frame { scene, view, camera, vertices: &[], backface_culling: options.backface_culling, window: options.window_of(view) };
+    let frame = Frame {
+        scene,
+        view,
+        camera,
+        vertices: &[],
+        backface_culling: options.backface_culling,
+        window: options.window_of(view),
+    };
     let mut setups = Vec::new();
     frame.set_up(&[prim], &mut setups);
     let [setup] = setups[..] else { return None };
@@ -213,13 +264,21 @@ fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
         let inside = l.none_negative(edge_a, edge_b, edge_c);
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
         merge::<ITEMS, L>(l, band, at..at + columns, inside, z, s.id);
-        (edge_a, edge_b, edge_c) = (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
+        (edge_a, edge_b, edge_c) =
+            (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
     }
 }
 
 /// Neighboring pixels, at most a vector of them.
 #[inline(always)]
-fn merge<const ITEMS: bool, L: Lanes>(l: L, band: &mut Band, at: Range<usize>, inside: L::M, z: L::F, id: u32) {
+fn merge<const ITEMS: bool, L: Lanes>(
+    l: L,
+    band: &mut Band,
+    at: Range<usize>,
+    inside: L::M,
+    z: L::F,
+    id: u32,
+) {
     if ITEMS {
         l.merge(&mut band.depth[at.clone()], &mut band.item[at], inside, z, id);
     } else {
@@ -264,7 +323,8 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
     }
 }
 
-/// Takes from the spans of some rows, the first of them `skipped` rows below the triangle's first, what lies beyond an edge.
+/// Takes from the spans of some rows, the first of them `skipped` rows below the triangle's first, what lies
+/// beyond an edge.
 #[inline(always)]
 fn narrow(edge: &Edge, inverse: f64, skipped: i32, begin: &mut [i32; SPAN_ROWS], end: &mut [i32; SPAN_ROWS]) {
     let (at, dy) = (edge.at + i64::from(edge.dy) * i64::from(skipped), i64::from(edge.dy));
@@ -348,7 +408,8 @@ impl DrawAll<'_> {
     }
 }
 
-/// Whether the pyramid proves that a triangle shows nowhere. A part of a primitive is never judged: another part may show.
+/// Whether the pyramid proves that a triangle shows nowhere. A part of a primitive is never judged: another
+/// part may show.
 #[inline(always)]
 fn hides(pyramid: &Pyramid, depth: &[f32], setup: &Setup) -> bool {
     setup.whole && setup.plane.high < pyramid.farthest_over(depth, setup.rect())

@@ -9,13 +9,22 @@ use super::{Extent, Options, Sieve, Target, check_size};
 use crate::geometry::{Flat, PixelRect, PrimId, View, orient2d};
 use crate::scene::Scene;
 
-/// Draws segments, all or those that a pyramid does not hide; see [`super::Drawable`]. A line has few pixels and no
-/// rows to share out, so it runs on one thread.
-pub(super) fn draw(target: &mut Target, mut sieve: Option<Sieve>, scene: &Scene<Flat>, view: &View<Flat>, prims: &[PrimId], options: &Options) {
+/// Draws segments, all or those that a pyramid does not hide; see [`super::Drawable`]. A line has few pixels
+/// and no rows to share out, so it runs on one thread.
+pub(super) fn draw(
+    target: &mut Target,
+    mut sieve: Option<Sieve>,
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prims: &[PrimId],
+    options: &Options,
+) {
     check_size(target, view);
     let camera = Camera::new(view);
     for &prim in prims {
-        let Some(Seen { pixels, plane, whole }) = set_up(&camera, scene, view, prim, options) else { continue };
+        let Some(Seen { pixels, plane, whole }) = set_up(&camera, scene, view, prim, options) else {
+            continue;
+        };
         if let Some(sieve) = &mut sieve {
             if whole && plane.high < sieve.pyramid.farthest_over(&target.depth, pixels) {
                 sieve.hidden.push(prim);
@@ -37,7 +46,12 @@ pub(super) fn draw(target: &mut Target, mut sieve: Option<Sieve>, scene: &Scene<
 }
 
 /// The pixels that a segment can cover and its nearest depth; see [`super::Drawable::extent`].
-pub(super) fn extent(scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<Extent> {
+pub(super) fn extent(
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prim: PrimId,
+    options: &Options,
+) -> Option<Extent> {
     let Seen { pixels, plane, whole } = set_up(&Camera::new(view), scene, view, prim, options)?;
     whole.then_some(Extent { pixels, nearest: plane.high })
 }
@@ -51,7 +65,13 @@ struct Seen {
 }
 
 /// Makes a segment ready; `None` if it covers no center.
-fn set_up(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<Seen> {
+fn set_up(
+    camera: &Camera,
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prim: PrimId,
+    options: &Options,
+) -> Option<Seen> {
     let ([a, b], whole) = clipped(camera, scene, view, prim, options)?;
     let window = options.window_of(view);
     // Left-inclusive: a center exactly under the right end belongs to the next segment.
@@ -62,12 +82,24 @@ fn set_up(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId,
 
 /// The ends of a segment on the grid, clipped if need be; `None` if it is out of view, dropped, or shows
 /// its back and that is culled.
-pub(super) fn segment(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<[Vertex; 2]> {
+pub(super) fn segment(
+    camera: &Camera,
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prim: PrimId,
+    options: &Options,
+) -> Option<[Vertex; 2]> {
     clipped(camera, scene, view, prim, options).map(|(ends, _)| ends)
 }
 
 /// The same, and whether clipping left the segment whole.
-fn clipped(camera: &Camera, scene: &Scene<Flat>, view: &View<Flat>, prim: PrimId, options: &Options) -> Option<([Vertex; 2], bool)> {
+fn clipped(
+    camera: &Camera,
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prim: PrimId,
+    options: &Options,
+) -> Option<([Vertex; 2], bool)> {
     let points = scene.corners(prim)?.map(|c| scene.points()[c as usize]);
     let clip = points.map(|p| camera.clip(p));
     let [a, b] = clip.map(|c| camera.vertex(c));

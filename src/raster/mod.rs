@@ -61,8 +61,8 @@ impl Target {
         self.clear_depths(view);
         self.item.resize(self.depth.len(), Self::NONE);
     }
-    /// The same for depths alone: no items will be drawn, which takes half the memory and less than half the time. The depths
-    /// are the same.
+    /// The same for depths alone: no items will be drawn, which takes half the memory and less than half the
+    /// time. The depths are the same.
     pub fn clear_depths<S: Space>(&mut self, view: &View<S>) {
         (self.width, self.height) = (view.width, view.height);
         self.depth.clear();
@@ -75,20 +75,30 @@ impl Target {
         if (self.width, self.height) != (other.width, other.height) {
             return self.item.len();
         }
-        let same = |i: &usize| self.item[*i] == other.item[*i] && self.depth[*i].to_bits() == other.depth[*i].to_bits();
+        let same = |i: &usize| {
+            self.item[*i] == other.item[*i] && self.depth[*i].to_bits() == other.depth[*i].to_bits()
+        };
         self.item.len() - (0..self.item.len()).filter(same).count()
     }
 }
 
 impl Clone for Target {
     fn clone(&self) -> Self {
-        Self { width: self.width, height: self.height, depth: self.depth.clone(), item: self.item.clone(), scratch: Default::default() }
+        Self {
+            width: self.width,
+            height: self.height,
+            depth: self.depth.clone(),
+            item: self.item.clone(),
+            scratch: Default::default(),
+        }
     }
 }
 
 impl PartialEq for Target {
     fn eq(&self, other: &Self) -> bool {
-        (self.width, self.height) == (other.width, other.height) && self.item == other.item && self.depth == other.depth
+        (self.width, self.height) == (other.width, other.height)
+            && self.item == other.item
+            && self.depth == other.depth
     }
 }
 
@@ -120,10 +130,11 @@ impl Options {
     }
 }
 
-/// A z-pyramid that keeps primitives from being drawn. The image is the same with it and without: a primitive is left out
-/// only where every pixel that it can cover holds something nearer.
+/// A z-pyramid that keeps primitives from being drawn. The image is the same with it and without: a primitive
+/// is left out only where every pixel that it can cover holds something nearer.
 pub struct Sieve<'a> {
-    /// The pyramid of the target's depths. Drawing makes it stale where something was drawn; nothing is brought up to date.
+    /// The pyramid of the target's depths. Drawing makes it stale where something was drawn; nothing is
+    /// brought up to date.
     pub pyramid: &'a mut Pyramid,
     /// Receives the primitives that were left out, in the order of drawing.
     pub hidden: &'a mut Vec<PrimId>,
@@ -155,43 +166,94 @@ pub trait Drawable: Space {
     ///
     /// # Panics
     /// As [`Drawable::draw`].
-    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
-    /// What [`Drawable::sift`] asks the pyramid about a primitive; `None` if it does not ask, since the primitive covers no
-    /// pixel or has to be clipped.
+    fn sift(
+        target: &mut Target,
+        sieve: Sieve,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    );
+    /// What [`Drawable::sift`] asks the pyramid about a primitive; `None` if it does not ask, since the
+    /// primitive covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
     /// The same as [`Drawable::draw`] in the plainest code (and without a window); see [`mod@reference`].
     ///
     /// # Panics
     /// As [`Drawable::draw`].
-    fn draw_reference(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
+    fn draw_reference(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    );
 }
 
 impl Drawable for Flat {
-    fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn draw(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         line::draw(target, None, scene, view, prims, options);
     }
-    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn sift(
+        target: &mut Target,
+        sieve: Sieve,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         line::draw(target, Some(sieve), scene, view, prims, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         line::extent(scene, view, prim, options)
     }
-    fn draw_reference(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn draw_reference(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         reference::draw_line(target, scene, view, prims, options);
     }
 }
 
 impl Drawable for Solid {
-    fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn draw(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         image::draw(target, None, scene, view, prims, options);
     }
-    fn sift(target: &mut Target, sieve: Sieve, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn sift(
+        target: &mut Target,
+        sieve: Sieve,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         image::draw(target, Some(sieve), scene, view, prims, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         image::extent(scene, view, prim, options)
     }
-    fn draw_reference(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options) {
+    fn draw_reference(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
         reference::draw_image(target, scene, view, prims, options);
     }
 }
@@ -208,7 +270,9 @@ pub fn visible(target: &Target) -> Vec<PrimId> {
     let ids = || target.item.iter().copied().filter(|&i| i != Target::NONE);
     let mut seen = vec![0u64; ids().max().map_or(0, |m| m as usize / 64 + 1)];
     ids().for_each(|i| seen[i as usize / 64] |= 1 << (i % 64));
-    let bits = |(word, &bits): (usize, &u64)| (0..64).filter(move |b| bits >> b & 1 == 1).map(move |b| PrimId(word as u32 * 64 + b));
+    let bits = |(word, &bits): (usize, &u64)| {
+        (0..64).filter(move |b| bits >> b & 1 == 1).map(move |b| PrimId(word as u32 * 64 + b))
+    };
     seen.iter().enumerate().flat_map(bits).collect()
 }
 
@@ -222,6 +286,14 @@ pub fn pick(target: &Target, x: u32, y: u32) -> Option<PrimId> {
 }
 
 fn check_size<S: Space>(target: &Target, view: &View<S>) {
-    assert_eq!((target.width, target.height), (view.width, view.height), "the target has another size than the view");
-    assert!(view.width.max(view.height) <= Target::MAX_SIDE_PX, "an image side exceeds {} pixels", Target::MAX_SIDE_PX);
+    assert_eq!(
+        (target.width, target.height),
+        (view.width, view.height),
+        "the target has another size than the view"
+    );
+    assert!(
+        view.width.max(view.height) <= Target::MAX_SIDE_PX,
+        "an image side exceeds {} pixels",
+        Target::MAX_SIDE_PX
+    );
 }

@@ -1,14 +1,15 @@
 //! The z-pyramid over a depth image: each value the farthest of the four below (Greene, Kass and Miller 1993,
 //! <https://doi.org/10.1145/166117.166147>; Georges 1995, Section 3.2).
 //!
-//! Level 0 is the depth image itself and is not copied; level k has `⌈width / 2ᵏ⌉ × ⌈height / 2ᵏ⌉` values, up to
-//! the one value of the root, for images of any size; a line of pixels has a pyramid of lines. Depths are `1/w`, so
+//! Level 0 is the depth image itself and is not copied; level k has `⌈width / 2ᵏ⌉ × ⌈height / 2ᵏ⌉` values, up
+//! to the one value of the root, for images of any size; a line of pixels has a pyramid of lines. Depths are
+//! `1/w`, so
 //! *farthest* is the least.
 //!
-//! It is updated as primitives are drawn, but not before somebody asks: drawing marks tiles of 16 × 16 pixels as
-//! stale ([`Pyramid::touch`]), and [`Pyramid::refresh`] brings one tile up to date with all values above it. Depths
-//! only come nearer while an image is drawn, so a stale value is never nearer than the true one, and whatever is
-//! behind it is hidden.
+//! It is updated as primitives are drawn, but not before somebody asks: drawing marks tiles of 16 × 16 pixels
+//! as stale ([`Pyramid::touch`]), and [`Pyramid::refresh`] brings one tile up to date with all values above
+//! it. Depths only come nearer while an image is drawn, so a stale value is never nearer than the true one,
+//! and whatever is behind it is hidden.
 //!
 //! Cost: a tile takes one pass over its 256 depths, in SIMD; `1/3` of the image's memory.
 
@@ -24,7 +25,8 @@ const FINE: usize = 64 + 16 + 4;
 /// Where each of the levels 1 to 3 begins in a tile's values.
 const FINE_AT: [usize; 4] = [0, 0, 64, 80];
 
-/// State bits of a tile: something was drawn into it since it was brought up to date; its fine values are of this image.
+/// State bits of a tile: something was drawn into it since it was brought up to date; its fine values are of
+/// this image.
 const STALE: u8 = 1;
 const FINE_HELD: u8 = 2;
 
@@ -42,7 +44,9 @@ pub struct PyramidCell {
 impl PyramidCell {
     /// The pixels that it stands for, in an image of this size.
     pub fn pixels(self, width: u32, height: u32) -> PixelRect {
-        let along = |at: u16, size: u32| ((u32::from(at) << self.level).min(size), ((u32::from(at) + 1) << self.level).min(size));
+        let along = |at: u16, size: u32| {
+            ((u32::from(at) << self.level).min(size), ((u32::from(at) + 1) << self.level).min(size))
+        };
         let ((x0, x1), (y0, y1)) = (along(self.x, width), along(self.y, height));
         PixelRect { x0, x1, y0, y1 }
     }
@@ -81,7 +85,11 @@ impl Pyramid {
             self.columns = sizes(TILE_LEVEL).0;
             let tiles = self.columns as usize * sizes(TILE_LEVEL).1 as usize;
             self.fine = vec![[far; FINE]; tiles];
-            let level = |(width, height): (u32, u32)| Level { width, height, values: vec![far; width as usize * height as usize] };
+            let level = |(width, height): (u32, u32)| Level {
+                width,
+                height,
+                values: vec![far; width as usize * height as usize],
+            };
             self.coarse = (TILE_LEVEL..=self.root().max(TILE_LEVEL)).map(|l| level(sizes(l))).collect();
         }
         self.far = far;
@@ -97,8 +105,8 @@ impl Pyramid {
     pub fn size(&self, level: u32) -> (u32, u32) {
         (self.width.div_ceil(1 << level), self.height.div_ceil(1 << level))
     }
-    /// The farthest depth that it holds for a cell: never nearer than the truth, and equal to it where the cell is not
-    /// stale. `depth` is the image.
+    /// The farthest depth that it holds for a cell: never nearer than the truth, and equal to it where the
+    /// cell is not stale. `depth` is the image.
     #[inline]
     pub fn farthest(&self, depth: &[f32], cell: PyramidCell) -> f32 {
         let (level, x, y) = (u32::from(cell.level), u32::from(cell.x), u32::from(cell.y));
@@ -117,7 +125,8 @@ impl Pyramid {
         let mask = (1 << up) - 1;
         self.fine[tile][FINE_AT[level as usize] + (((y & mask) << up) + (x & mask)) as usize]
     }
-    /// Whether something was drawn into the tile that holds a cell of level 1 to 4 since it was brought up to date.
+    /// Whether something was drawn into the tile that holds a cell of level 1 to 4 since it was brought up to
+    /// date.
     #[inline]
     pub fn is_stale(&self, cell: PyramidCell) -> bool {
         (1..=TILE_LEVEL as u8).contains(&cell.level) && self.state[self.tile_of(cell)] & STALE != 0
@@ -129,7 +138,8 @@ impl Pyramid {
         }
         let r = cell.pixels(self.width, self.height);
         let columns = r.x0 / TILE_PX..r.x1.div_ceil(TILE_PX);
-        (r.y0 / TILE_PX..r.y1.div_ceil(TILE_PX)).any(|row| columns.clone().any(|c| self.state[(row * self.columns + c) as usize] & STALE != 0))
+        (r.y0 / TILE_PX..r.y1.div_ceil(TILE_PX))
+            .any(|row| columns.clone().any(|c| self.state[(row * self.columns + c) as usize] & STALE != 0))
     }
     #[inline]
     fn tile_of(&self, cell: PyramidCell) -> usize {
@@ -152,9 +162,14 @@ impl Pyramid {
     }
     /// Brings everything up to date.
     pub fn refresh_all(&mut self, depth: &[f32]) {
-        (0..self.state.len()).filter(|&t| self.state[t] & STALE != 0).collect::<Vec<_>>().into_iter().for_each(|t| self.refresh_tile(depth, t));
+        (0..self.state.len())
+            .filter(|&t| self.state[t] & STALE != 0)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .for_each(|t| self.refresh_tile(depth, t));
     }
-    /// Brings the tiles under a rectangle up to date, if no more than `most` of them are stale. Returns how many were.
+    /// Brings the tiles under a rectangle up to date, if no more than `most` of them are stale. Returns how
+    /// many were.
     pub fn refresh_under(&mut self, depth: &[f32], r: PixelRect, most: usize) -> usize {
         let columns = r.x0 / TILE_PX..=(r.x1 - 1) / TILE_PX;
         let rows = r.y0 / TILE_PX..=(r.y1 - 1) / TILE_PX;
@@ -171,11 +186,15 @@ impl Pyramid {
         self.state[tile] = FINE_HELD;
         let (column, row) = (tile as u32 % self.columns, tile as u32 / self.columns);
         let (x0, y0) = (column * TILE_PX, row * TILE_PX);
-        let (columns, rows) = ((self.width - x0).min(TILE_PX) as usize, (self.height - y0).min(TILE_PX) as usize);
+        let (columns, rows) =
+            ((self.width - x0).min(TILE_PX) as usize, (self.height - y0).min(TILE_PX) as usize);
         let depth = &depth[(y0 * self.width + x0) as usize..];
         let fine = &mut self.fine[tile];
         let mut farthest = 0.0;
-        simd::run(Isa::Avx512, Reduce { depth, stride: self.width as usize, columns, rows, fine, farthest: &mut farthest });
+        simd::run(
+            Isa::Avx512,
+            Reduce { depth, stride: self.width as usize, columns, rows, fine, farthest: &mut farthest },
+        );
         self.raise(column, row, farthest);
     }
     /// Puts a tile's value in its place and brings all above it up to date.
@@ -198,13 +217,17 @@ impl Pyramid {
         }
     }
 
-    /// The at most four cells, of the finest level on which there are no more, that cover a rectangle of pixels (not
-    /// empty, in the image): first and last.
+    /// The at most four cells, of the finest level on which there are no more, that cover a rectangle of
+    /// pixels (not empty, in the image): first and last.
     #[inline]
     pub fn cover(&self, r: PixelRect) -> (PyramidCell, PyramidCell) {
         let side = (r.x1 - r.x0).max(r.y1 - r.y0);
         let level = u32::BITS - (side - 1).leading_zeros();
-        let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: (x >> level) as u16, y: (y >> level) as u16 };
+        let cell = |x: u32, y: u32| PyramidCell {
+            level: level as u8,
+            x: (x >> level) as u16,
+            y: (y >> level) as u16,
+        };
         (cell(r.x0, r.y0), cell(r.x1 - 1, r.y1 - 1))
     }
     /// The finest single cell that covers a rectangle of pixels (not empty, in the image).
@@ -226,17 +249,24 @@ impl Pyramid {
         }
         farthest
     }
-    /// Panics unless every value that is not stale is the farthest of the pixels below it, and no other is nearer.
+    /// Panics unless every value that is not stale is the farthest of the pixels below it, and no other is
+    /// nearer.
     pub fn assert_well_formed(&self, depth: &[f32]) {
         for level in 1..=self.root() {
             let (columns, rows) = self.size(level);
             for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x as u16, y as u16))) {
                 let cell = PyramidCell { level: level as u8, x, y };
                 let p = cell.pixels(self.width, self.height);
-                let pixels = (p.y0..p.y1).flat_map(|y| (p.x0..p.x1).map(move |x| (y * self.width + x) as usize));
-                let (truth, held) = (pixels.map(|i| depth[i]).fold(f32::INFINITY, f32::min), self.farthest(depth, cell));
+                let pixels =
+                    (p.y0..p.y1).flat_map(|y| (p.x0..p.x1).map(move |x| (y * self.width + x) as usize));
+                let (truth, held) =
+                    (pixels.map(|i| depth[i]).fold(f32::INFINITY, f32::min), self.farthest(depth, cell));
                 assert!(held <= truth, "{cell:?} holds {held}, nearer than {truth}");
-                let is_stale = if level <= TILE_LEVEL { self.is_stale(cell) } else { self.state.iter().any(|s| s & STALE != 0) };
+                let is_stale = if level <= TILE_LEVEL {
+                    self.is_stale(cell)
+                } else {
+                    self.state.iter().any(|s| s & STALE != 0)
+                };
                 assert!(is_stale || held == truth, "{cell:?} holds {held}, not {truth}");
             }
         }
@@ -280,8 +310,8 @@ impl Work for Reduce<'_> {
     }
 }
 
-/// Each value the least of four of a square of `SIDE` columns: first of two rows, which is plain SIMD, then of
-/// neighbors.
+/// Each value the least of four of a square of `SIDE` columns: first of two rows, which is plain SIMD, then
+/// of neighbors.
 #[inline(always)]
 fn halve<const SIDE: usize>(from: &[f32], to: &mut [f32]) {
     for (rows, to) in from.chunks_exact(2 * SIDE).zip(to.chunks_exact_mut(SIDE / 2)) {

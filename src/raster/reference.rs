@@ -13,13 +13,21 @@ use crate::geometry::{Flat, PrimId, Solid, View, orient3d};
 use crate::scene::Scene;
 
 /// Triangles into an image; see [`super::Drawable::draw_reference`].
-pub(super) fn draw_image(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>, prims: &[PrimId], options: &Options) {
+pub(super) fn draw_image(
+    target: &mut Target,
+    scene: &Scene<Solid>,
+    view: &View<Solid>,
+    prims: &[PrimId],
+    options: &Options,
+) {
     check_size(target, view);
     let camera = Camera::new(view);
     for &prim in prims {
         let Some(corners) = scene.corners(prim) else { continue };
         let [a, b, c] = corners.map(|c| scene.points()[c as usize]);
-        if options.backface_culling && orient3d(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), view.eye.position.as_dvec3()) <= 0.0 {
+        if options.backface_culling
+            && orient3d(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), view.eye.position.as_dvec3()) <= 0.0
+        {
             continue;
         }
         // Clipping leaves a triangle that needs none as it is.
@@ -67,7 +75,13 @@ fn put(target: &mut Target, x: i32, y: i32, plane: &Plane, id: u32) {
 }
 
 /// Segments into a line of pixels; see [`super::Drawable::draw_reference`].
-pub(super) fn draw_line(target: &mut Target, scene: &Scene<Flat>, view: &View<Flat>, prims: &[PrimId], options: &Options) {
+pub(super) fn draw_line(
+    target: &mut Target,
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prims: &[PrimId],
+    options: &Options,
+) {
     check_size(target, view);
     let camera = Camera::new(view);
     for &prim in prims {

@@ -56,7 +56,15 @@ impl Plane {
     #[inline(always)]
     fn new(at: Vertex, dx: f32, dy: f32, low: f32, high: f32) -> Self {
         let usable = dx.abs().max(dy.abs()) < STEEPEST;
-        Self { x: at.x, y: at.y, z: at.z, dx: if usable { dx } else { 0.0 }, dy: if usable { dy } else { 0.0 }, low, high }
+        Self {
+            x: at.x,
+            y: at.y,
+            z: at.z,
+            dx: if usable { dx } else { 0.0 },
+            dy: if usable { dy } else { 0.0 },
+            low,
+            high,
+        }
     }
     /// Depth at the start of row `y`: the part that does not depend on the column.
     #[inline(always)]
@@ -74,7 +82,10 @@ pub(super) fn center(pixel: i32) -> i32 {
 /// The pixels `from..to` whose centers lie in the closed grid interval, half-open.
 #[inline(always)]
 pub(super) fn pixels(low: i32, high: i32, from: u32, to: u32) -> (i32, i32) {
-    (((low + CENTER - 1) >> SUBPIXEL_BITS).max(from as i32), (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(to as i32))
+    (
+        ((low + CENTER - 1) >> SUBPIXEL_BITS).max(from as i32),
+        (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(to as i32),
+    )
 }
 
 /// Twice the signed area; positive if clockwise on the screen (y down).
@@ -103,7 +114,8 @@ impl Edge {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         // A center on the edge belongs to the triangle to its right or below it.
         let top_left = dy < 0 || (dy == 0 && dx > 0);
-        let e = i64::from(dx) * i64::from(y - a.y) - i64::from(dy) * i64::from(x - a.x) - i64::from(!top_left);
+        let e =
+            i64::from(dx) * i64::from(y - a.y) - i64::from(dy) * i64::from(x - a.x) - i64::from(!top_left);
         Self { at: e >> SUBPIXEL_BITS, dx: -dy, dy: dx }
     }
     /// One over the size of the change per column; infinite for a horizontal edge.

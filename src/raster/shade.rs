@@ -10,7 +10,12 @@ const AMBIENT: f32 = 0.35;
 /// The image in the scene's own colors under a light at the eye: material color times
 /// `0.35 + 0.65 |cos|` of the angle between the face's normal and the direction to the eye, both sides
 /// alike. `background` (linear) fills the rest. RGBA, sRGB-encoded, row by row.
-pub fn shade<S: Drawable>(target: &Target, scene: &Scene<S>, view: &View<S>, background: [f32; 3]) -> Vec<u8> {
+pub fn shade<S: Drawable>(
+    target: &Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    background: [f32; 3],
+) -> Vec<u8> {
     shade_with(target, scene, view, background, |prim| scene.color_of(prim))
 }
 
@@ -43,7 +48,8 @@ pub fn shade_with<S: Drawable>(
 
 /// Brightness of a face under a light at the eye.
 fn headlight<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
-    let middle = scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32);
+    let middle =
+        scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32);
     let (normal, toward) = (scene.normal(prim), view.eye.position - middle);
     let lengths = normal.length() * toward.length();
     let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
@@ -85,8 +91,8 @@ impl DepthScale {
     }
 }
 
-/// A gray picture of depths (`1/w`): near is dark, far is light, on the scale of the depths that occur in `all`; `empty`, where
-/// nothing was drawn, is white. RGBA.
+/// A gray picture of depths (`1/w`): near is dark, far is light, on the scale of the depths that occur in
+/// `all`; `empty`, where nothing was drawn, is white. RGBA.
 pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -> Vec<u8> {
     let drawn = all.iter().copied().filter(|d| *d > empty);
     let (nearest, farthest) = drawn.clone().fold((0f32, f32::INFINITY), |(n, f), d| (n.max(d), f.min(d)));
@@ -98,6 +104,12 @@ pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -
         DepthScale::Equalized => ranks.partition_point(|r| *r > d) as f32 / ranks.len() as f32,
     };
     // The lightest gray stays apart from white.
-    let gray = |d: f32| if d <= empty { 255 } else { (20.0 + 205.0 * Some(share(d)).filter(|s| s.is_finite()).unwrap_or(0.0).clamp(0.0, 1.0)) as u8 };
+    let gray = |d: f32| {
+        if d <= empty {
+            255
+        } else {
+            (20.0 + 205.0 * Some(share(d)).filter(|s| s.is_finite()).unwrap_or(0.0).clamp(0.0, 1.0)) as u8
+        }
+    };
     depths.iter().map(|&d| gray(d)).flat_map(|g| [g, g, g, 255]).collect()
 }

@@ -21,7 +21,10 @@ impl Isa {
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq") && is_x86_feature_detected!("avx512vl") {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+            {
                 return Self::Avx512;
             }
             if is_x86_feature_detected!("avx2") {
@@ -85,7 +88,8 @@ pub(super) trait Lanes: Copy {
     /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
     /// Touches the slices' lanes only: both have the same length, at most `N`.
     fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32);
-    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`]. At most `N` are given.
+    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`]. At most
+    /// `N` are given.
     fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F);
 }
 
@@ -249,7 +253,10 @@ mod x86 {
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __m256i, z: __m256, id: u32) {
             let lanes = depth.len().min(item.len()).min(8);
             unsafe {
-                let held = _mm256_cmpgt_epi32(_mm256_set1_epi32(lanes as i32), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+                let held = _mm256_cmpgt_epi32(
+                    _mm256_set1_epi32(lanes as i32),
+                    _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+                );
                 let inside = _mm256_and_si256(inside, held);
                 let old = _mm256_maskload_ps(depth.as_ptr(), inside);
                 let nearer = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old));
@@ -260,7 +267,8 @@ mod x86 {
                     // Unsigned comparison by a flip of the sign bits.
                     let flip = _mm256_set1_epi32(i32::MIN);
                     let old_id = _mm256_xor_si256(_mm256_maskload_epi32(item.as_ptr().cast(), tied), flip);
-                    let lower = _mm256_cmpgt_epi32(old_id, _mm256_xor_si256(_mm256_set1_epi32(id as i32), flip));
+                    let lower =
+                        _mm256_cmpgt_epi32(old_id, _mm256_xor_si256(_mm256_set1_epi32(id as i32), flip));
                     wins = _mm256_or_si256(wins, _mm256_and_si256(tied, lower));
                 }
                 if _mm256_testz_si256(wins, wins) == 0 {
@@ -273,7 +281,10 @@ mod x86 {
         fn merge_depth(self, depth: &mut [f32], inside: __m256i, z: __m256) {
             let lanes = depth.len().min(8);
             unsafe {
-                let held = _mm256_cmpgt_epi32(_mm256_set1_epi32(lanes as i32), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+                let held = _mm256_cmpgt_epi32(
+                    _mm256_set1_epi32(lanes as i32),
+                    _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+                );
                 let inside = _mm256_and_si256(inside, held);
                 let old = _mm256_maskload_ps(depth.as_ptr(), inside);
                 let wins = _mm256_and_si256(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old)), inside);

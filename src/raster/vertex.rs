@@ -88,17 +88,24 @@ impl Camera {
         let near = w < self.near;
         let off_grid = !near & ((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) > GUARD);
         let beyond_far = !near & (z < self.depth_far);
-        let sides = u32::from(x < -w) | u32::from(x > w) << 1 | u32::from(y < -w) << 2 | u32::from(y > w) << 3;
+        let sides =
+            u32::from(x < -w) | u32::from(x > w) << 1 | u32::from(y < -w) << 2 | u32::from(y > w) << 3;
         let outside = sides | u32::from(beyond_far) << 4 | u32::from(near) << 5 | u32::from(off_grid) << 6;
         let on_grid = outside & NEEDS_CLIP == 0;
-        Vertex { x: if on_grid { round(at[0]) } else { 0 }, y: if on_grid { round(at[1]) } else { 0 }, z, outside }
+        Vertex {
+            x: if on_grid { round(at[0]) } else { 0 },
+            y: if on_grid { round(at[1]) } else { 0 },
+            z,
+            outside,
+        }
     }
 
     /// Grid coordinates before snapping, and depth.
     #[inline(always)]
     fn place(&self, [x, y, w]: Clip) -> ([f64; 2], f32) {
         let inverse = 1.0 / w;
-        let at = [self.middle[0] + x * inverse * self.middle[0], self.middle[1] - y * inverse * self.middle[1]];
+        let at =
+            [self.middle[0] + x * inverse * self.middle[0], self.middle[1] - y * inverse * self.middle[1]];
         (at, (inverse as f32).min(f32::MAX))
     }
 
@@ -109,7 +116,13 @@ impl Camera {
         corners.iter().for_each(|&c| polygon.push(c));
         let [gx, gy] = self.middle.map(|m| GUARD / m);
         // Inside is plane·(x, y, w) ≥ offset.
-        let planes = [([0.0, 0.0, 1.0], self.near), ([1.0, 0.0, gx], 0.0), ([-1.0, 0.0, gx], 0.0), ([0.0, 1.0, gy], 0.0), ([0.0, -1.0, gy], 0.0)];
+        let planes = [
+            ([0.0, 0.0, 1.0], self.near),
+            ([1.0, 0.0, gx], 0.0),
+            ([-1.0, 0.0, gx], 0.0),
+            ([0.0, 1.0, gy], 0.0),
+            ([0.0, -1.0, gy], 0.0),
+        ];
         for (plane, offset) in planes {
             let distance = |c: &Clip| (plane[0] * c[0] + plane[1] * c[1]) + plane[2] * c[2] - offset;
             if polygon.corners().iter().any(|c| distance(c) < 0.0) {

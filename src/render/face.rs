@@ -20,8 +20,12 @@ use crate::drawing::{Font, metrics};
 pub(super) fn subset(font: Font, used: &BTreeSet<char>) -> Option<Vec<u8>> {
     let bytes = metrics::font_bytes(font);
     let mut remapper = GlyphRemapper::new();
-    let map: Vec<(char, u16)> =
-        used.iter().map(|c| (*c, metrics::glyph(font, *c).id)).filter(|(_, id)| *id != 0).map(|(c, id)| (c, remapper.remap(id))).collect();
+    let map: Vec<(char, u16)> = used
+        .iter()
+        .map(|c| (*c, metrics::glyph(font, *c).id))
+        .filter(|(_, id)| *id != 0)
+        .map(|(c, id)| (c, remapper.remap(id)))
+        .collect();
     if map.is_empty() {
         return None;
     }
@@ -159,7 +163,11 @@ mod tests {
             let widths = small.glyph_metrics(Size::unscaled(), LocationRef::default());
             for c in &used {
                 let id = small.charmap().map(*c).unwrap_or_else(|| panic!("{font:?} lost {c:?}"));
-                assert_eq!(widths.advance_width(id).map(|w| w / em), Some(metrics::glyph(font, *c).advance), "{font:?} {c:?}");
+                assert_eq!(
+                    widths.advance_width(id).map(|w| w / em),
+                    Some(metrics::glyph(font, *c).advance),
+                    "{font:?} {c:?}"
+                );
                 assert!(small.outline_glyphs().get(id).is_some());
             }
             assert_eq!(small.charmap().map('z'), None);

@@ -1,6 +1,7 @@
 //! Hatches as clipped lines and dots, for readers that have no patterns of their own.
 //!
-//! The phase is fixed to the paper, so the hatches of neighboring areas run on into each other and agree with the
+//! The phase is fixed to the paper, so the hatches of neighboring areas run on into each other and agree with
+//! the
 //! `<pattern>` of an SVG file. Any simple polygon will do. Cost: lines inside the window times corners.
 
 use glam::{Vec2, vec2};
@@ -54,7 +55,12 @@ fn places(from: f32, to: f32) -> std::ops::Range<i32> {
 fn scan(points: &[Vec2], normal: Vec2, window: [Vec2; 2], put: &mut impl FnMut(Vec2, Vec2)) {
     let along = normal.perp();
     let corners = [window[0], vec2(window[1].x, window[0].y), window[1], vec2(window[0].x, window[1].y)];
-    let span = |points: &[Vec2]| points.iter().map(|p| normal.dot(*p)).fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let span = |points: &[Vec2]| {
+        points
+            .iter()
+            .map(|p| normal.dot(*p))
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)))
+    };
     let (area, seen) = (span(points), span(&corners));
     let mut cuts = Vec::new();
     for i in places(area.0.max(seen.0), area.1.min(seen.1)) {
@@ -116,7 +122,9 @@ mod tests {
         let mut next = || (rng.next_u32() % 1000) as f32 / 10.0;
         for _ in 0..200 {
             // A star around the middle is simple, and seldom convex.
-            let points: Vec<Vec2> = (0..7).map(|i| vec2(50.0, 50.0) + Vec2::from_angle(i as f32 * 0.897) * (5.0 + next() * 0.4)).collect();
+            let points: Vec<Vec2> = (0..7)
+                .map(|i| vec2(50.0, 50.0) + Vec2::from_angle(i as f32 * 0.897) * (5.0 + next() * 0.4))
+                .collect();
             let area: f32 = (0..7).map(|i| points[i].perp_dot(points[(i + 1) % 7])).sum::<f32>().abs() / 2.0;
             let lines = hatching(&points, Hatch::Diagonal, WINDOW).lines;
             for [a, b] in &lines {
@@ -134,9 +142,17 @@ mod tests {
             let h = hatching(&huge, hatch, WINDOW);
             assert!(h.lines.len() < 120 && h.dots.len() < 1000, "{hatch:?}");
             assert!(h.lines.len() + h.dots.len() > 30, "{hatch:?}");
-            assert!(h.lines.iter().flatten().chain(&h.dots).all(|p| p.min_element() > -0.1 && p.max_element() < 100.1));
+            assert!(
+                h.lines
+                    .iter()
+                    .flatten()
+                    .chain(&h.dots)
+                    .all(|p| p.min_element() > -0.1 && p.max_element() < 100.1)
+            );
         }
-        assert!(hatching(&huge, Hatch::Diagonal, [Vec2::ZERO, Vec2::splat(f32::INFINITY)]).lines.len() <= 4001);
+        assert!(
+            hatching(&huge, Hatch::Diagonal, [Vec2::ZERO, Vec2::splat(f32::INFINITY)]).lines.len() <= 4001
+        );
         assert!(hatching(&[], Hatch::Cross, WINDOW).lines.is_empty());
     }
 }

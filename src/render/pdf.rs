@@ -35,7 +35,8 @@ pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> 
     if !(size.is_finite() && size.min_element() >= 1.0 && size.max_element() <= LONGEST_PT) {
         return Err(RenderError::Page { width_pt: size.x, height_pt: size.y });
     }
-    let settings = PageSettings::from_wh(size.x, size.y).ok_or(RenderError::Page { width_pt: size.x, height_pt: size.y })?;
+    let settings = PageSettings::from_wh(size.x, size.y)
+        .ok_or(RenderError::Page { width_pt: size.x, height_pt: size.y })?;
     let mut document = Document::new();
     document.set_metadata(about(drawing));
     let fonts = Font::ALL
@@ -83,7 +84,9 @@ fn recipe_file(recipe: &str) -> EmbeddedFile {
     EmbeddedFile {
         path: RECIPE_FILE.into(),
         mime_type: MimeType::new("application/json"),
-        description: Some("How cullscope made this figure; open the file in cullscope to go on from here.".into()),
+        description: Some(
+            "How cullscope made this figure; open the file in cullscope to go on from here.".into(),
+        ),
         association_kind: AssociationKind::Source,
         data: Data::from(recipe.as_bytes().to_vec()),
         modification_date: None,
@@ -102,7 +105,11 @@ struct Canvas<'a> {
 impl Canvas<'_> {
     fn fill(&mut self, [r, g, b]: Rgb, alpha: f32) {
         let opacity = NormalizedF32::new(alpha).unwrap_or(NormalizedF32::ONE);
-        self.surface.set_fill(Some(Fill { paint: rgb::Color::new(r, g, b).into(), opacity, ..Fill::default() }));
+        self.surface.set_fill(Some(Fill {
+            paint: rgb::Color::new(r, g, b).into(),
+            opacity,
+            ..Fill::default()
+        }));
         self.surface.set_stroke(None);
     }
 
@@ -186,17 +193,35 @@ impl Canvas<'_> {
             .char_indices()
             .map(|(i, c)| {
                 let glyph = metrics::glyph(line.font, c);
-                KrillaGlyph::new(GlyphId::new(u32::from(glyph.id)), glyph.advance, 0.0, 0.0, 0.0, i..i + c.len_utf8(), None)
+                KrillaGlyph::new(
+                    GlyphId::new(u32::from(glyph.id)),
+                    glyph.advance,
+                    0.0,
+                    0.0,
+                    0.0,
+                    i..i + c.len_utf8(),
+                    None,
+                )
             })
             .collect();
         let font = self.fonts[line.font as usize].clone();
-        self.surface.draw_glyphs(Point::from_xy(start, line.at.y), &glyphs, font, line.text, line.size_pt, false);
+        self.surface.draw_glyphs(
+            Point::from_xy(start, line.at.y),
+            &glyphs,
+            font,
+            line.text,
+            line.size_pt,
+            false,
+        );
     }
 
     fn image(&mut self, min: Vec2, max: Vec2, pixels: &Pixels) {
         let Some(size) = Size::from_wh(max.x - min.x, max.y - min.y) else { return };
         self.surface.push_transform(&Transform::from_translate(min.x, min.y));
-        self.surface.draw_image(Image::from_rgba8(self.look.see(&pixels.rgba).into_owned(), pixels.width, pixels.height), size);
+        self.surface.draw_image(
+            Image::from_rgba8(self.look.see(&pixels.rgba).into_owned(), pixels.width, pixels.height),
+            size,
+        );
         self.surface.pop();
     }
 }
@@ -234,13 +259,16 @@ fn circle(at: Vec2, radius: f32) -> Option<Path> {
 
 /// The recipe in a PDF file that this room wrote (and that no other program has packed anew).
 pub(super) fn recipe(bytes: &[u8]) -> Option<String> {
-    let find = |from: usize, what: &[u8]| bytes.get(from..)?.windows(what.len()).position(|w| w == what).map(|i| from + i);
+    let find = |from: usize, what: &[u8]| {
+        bytes.get(from..)?.windows(what.len()).position(|w| w == what).map(|i| from + i)
+    };
     let kind = find(0, b"/Type/EmbeddedFile").or_else(|| find(0, b"/Type /EmbeddedFile"))?;
     // The object's dictionary lies between the last "obj" before its type and the next "stream".
     let begin = bytes[..kind].windows(4).rposition(|w| w == b" obj")?;
     let stream = find(kind, b"stream")?;
     let dictionary = std::str::from_utf8(&bytes[begin..stream]).ok()?;
-    let length: String = dictionary.split_once("/Length")?.1.trim_start().chars().take_while(char::is_ascii_digit).collect();
+    let length: String =
+        dictionary.split_once("/Length")?.1.trim_start().chars().take_while(char::is_ascii_digit).collect();
     let data = stream + b"stream".len();
     let data = data + usize::from(bytes.get(data) == Some(&b'\r'));
     let data = data + usize::from(bytes.get(data) == Some(&b'\n'));

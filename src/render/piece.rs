@@ -103,7 +103,11 @@ pub(super) fn paint(part: Part, style: &Style) -> Paint {
         Part::Line => Paint { stroke: Some(line), ..none },
         Part::Head => Paint { fill: Some((style.stroke, 1.0)), ..none },
         Part::Dot => {
-            let rim = (style.dot != style.stroke).then_some(Stroke { color: style.stroke, width_pt: style.width_pt.min(0.9), dash: &[] });
+            let rim = (style.dot != style.stroke).then_some(Stroke {
+                color: style.stroke,
+                width_pt: style.width_pt.min(0.9),
+                dash: &[],
+            });
             Paint { fill: Some((style.dot, 1.0)), stroke: rim, ..none }
         }
         Part::Text => Paint { fill: Some((style.text, 1.0)), ..none },
@@ -154,11 +158,17 @@ pub(super) fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piec
             Some(*at + above - Vec2::new(0.0, *radius_pt))
         }
         Mark::Text { at, text, size_pt, anchor, font } => {
-            push(Part::Text, Shape::Text(Line { at: *at, text, size_pt: *size_pt, anchor: *anchor, font: *font }));
+            push(
+                Part::Text,
+                Shape::Text(Line { at: *at, text, size_pt: *size_pt, anchor: *anchor, font: *font }),
+            );
             None
         }
         Mark::Image { corners: [a, b], pixels } => {
-            if pixels.width > 0 && pixels.height > 0 && pixels.rgba.len() == 4 * pixels.width as usize * pixels.height as usize {
+            if pixels.width > 0
+                && pixels.height > 0
+                && pixels.rgba.len() == 4 * pixels.width as usize * pixels.height as usize
+            {
                 push(Part::Image, Shape::Image { min: a.min(*b), max: a.max(*b), pixels });
             }
             None
@@ -199,7 +209,8 @@ fn arrow<'a>(from: Vec2, to: Vec2, style: &Style, push: &mut impl FnMut(Part, Sh
     push(Part::Head, Shape::Path { points: Cow::Owned(vec![to, base + side, base - side]), closed: true });
 }
 
-/// Where the sign of a line or area stands: the mean of a closed outline's corners, the middle of a line's middle edge.
+/// Where the sign of a line or area stands: the mean of a closed outline's corners, the middle of a line's
+/// middle edge.
 fn middle(points: &[Vec2], closed: bool) -> Option<Vec2> {
     match points {
         [] => None,
@@ -220,7 +231,9 @@ fn finite(mark: &Mark<Vec2>) -> bool {
         Mark::Area(points) => points.len() > 2 && points.iter().all(near),
         Mark::Arrow(a, b) => near(a) && near(b),
         Mark::Dot { at, radius_pt } => near(at) && radius_pt.is_finite() && *radius_pt > 0.0,
-        Mark::Text { at, text, size_pt, .. } => near(at) && !text.is_empty() && size_pt.is_finite() && *size_pt > 0.0,
+        Mark::Text { at, text, size_pt, .. } => {
+            near(at) && !text.is_empty() && size_pt.is_finite() && *size_pt > 0.0
+        }
         Mark::Image { corners, .. } => corners.iter().all(near),
     }
 }

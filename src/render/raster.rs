@@ -27,13 +27,21 @@ pub enum PngSize {
 }
 
 /// A drawing as a PNG file.
-pub fn png(drawing: &Drawing, look: impl Into<Look>, size: PngSize, metadata: Option<&str>) -> Result<Vec<u8>, RenderError> {
+pub fn png(
+    drawing: &Drawing,
+    look: impl Into<Look>,
+    size: PngSize,
+    metadata: Option<&str>,
+) -> Result<Vec<u8>, RenderError> {
     let (pixels, dpi) = pixels_of(drawing, look.into(), size)?;
-    let texts: Vec<(&str, &str)> =
-        [("Title", drawing.title.as_str()), ("Description", drawing.description.as_str()), (RECIPE_KEY, metadata.unwrap_or(""))]
-            .into_iter()
-            .filter(|(_, text)| !text.is_empty())
-            .collect();
+    let texts: Vec<(&str, &str)> = [
+        ("Title", drawing.title.as_str()),
+        ("Description", drawing.description.as_str()),
+        (RECIPE_KEY, metadata.unwrap_or("")),
+    ]
+    .into_iter()
+    .filter(|(_, text)| !text.is_empty())
+    .collect();
     Ok(encode_at(pixels.width, pixels.height, &pixels.rgba, &texts, Some(dpi)))
 }
 
@@ -58,12 +66,22 @@ fn pixels_of(drawing: &Drawing, look: Look, size: PngSize) -> Result<(Pixels, f3
         return Err(RenderError::Size { width_px: px.x, height_px: px.y });
     }
     let text = write(drawing, look, &SvgOptions::default(), false);
-    let options = usvg::Options { fontdb: fonts(), font_family: metrics::family(Font::Regular).to_owned(), ..usvg::Options::default() };
+    let options = usvg::Options {
+        fontdb: fonts(),
+        font_family: metrics::family(Font::Regular).to_owned(),
+        ..usvg::Options::default()
+    };
     let tree = usvg::Tree::from_str(&text, &options).map_err(|e| RenderError::Picture(e.to_string()))?;
-    let mut pixmap = Pixmap::new(px.x as u32, px.y as u32).ok_or(RenderError::Size { width_px: px.x, height_px: px.y })?;
+    let mut pixmap =
+        Pixmap::new(px.x as u32, px.y as u32).ok_or(RenderError::Size { width_px: px.x, height_px: px.y })?;
     let transform = Transform::from_scale(px.x / tree.size().width(), px.y / tree.size().height());
     resvg::render(&tree, transform, &mut pixmap.as_mut());
-    let rgba: Vec<u8> = pixmap.pixels().iter().map(|p| p.demultiply()).flat_map(|p| [p.red(), p.green(), p.blue(), p.alpha()]).collect();
+    let rgba: Vec<u8> = pixmap
+        .pixels()
+        .iter()
+        .map(|p| p.demultiply())
+        .flat_map(|p| [p.red(), p.green(), p.blue(), p.alpha()])
+        .collect();
     Ok((Pixels { width: pixmap.width(), height: pixmap.height(), rgba: rgba.into() }, scale * 72.0))
 }
 
@@ -99,7 +117,8 @@ fn encode_at(width: u32, height: u32, rgba: &[u8], texts: &[(&str, &str)], dpi: 
         &whole
     };
     let opaque = data.chunks_exact(4).all(|p| p[3] == 255);
-    let rgb: Vec<u8> = if opaque { data.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect() } else { Vec::new() };
+    let rgb: Vec<u8> =
+        if opaque { data.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect() } else { Vec::new() };
     let mut out = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut out, width, height);
     encoder.set_color(if opaque { ::png::ColorType::Rgb } else { ::png::ColorType::Rgba });
@@ -107,7 +126,11 @@ fn encode_at(width: u32, height: u32, rgba: &[u8], texts: &[(&str, &str)], dpi: 
     encoder.set_compression(::png::Compression::Balanced);
     if let Some(dpi) = dpi {
         let per_meter = (dpi / 0.0254).round() as u32;
-        encoder.set_pixel_dims(Some(::png::PixelDimensions { xppu: per_meter, yppu: per_meter, unit: ::png::Unit::Meter }));
+        encoder.set_pixel_dims(Some(::png::PixelDimensions {
+            xppu: per_meter,
+            yppu: per_meter,
+            unit: ::png::Unit::Meter,
+        }));
     }
     for (key, text) in texts {
         // Keywords are our own and valid; texts may be anything.

@@ -1,14 +1,15 @@
 //! Drawings on an egui painter: the same pieces as in files, in our fonts.
 //!
-//! Cost: marks outside the clip rectangle cost a bounding box; ten thousand marks fit into a frame. Picture marks
-//! become textures (nearest filter), kept while they are shown.
+//! Cost: marks outside the clip rectangle cost a bounding box; ten thousand marks fit into a frame. Picture
+//! marks become textures (nearest filter), kept while they are shown.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use eframe::egui::epaint::{CircleShape, Mesh, PathShape, PathStroke, TextShape};
 use eframe::egui::{
-    self, Color32, ColorImage, FontData, FontDefinitions, FontFamily, FontId, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions,
+    self, Color32, ColorImage, FontData, FontDefinitions, FontFamily, FontId, Pos2, Rect, Shape, Stroke,
+    TextureHandle, TextureOptions,
 };
 use glam::{Vec2, vec2};
 
@@ -32,8 +33,8 @@ pub fn family(font: Font) -> FontFamily {
     FontFamily::Name(format!("cullscope-{}", font.name()).into())
 }
 
-/// Registers our three fonts as families of their own and as egui's proportional and monospace fonts; egui's stay behind
-/// them for icons.
+/// Registers our three fonts as families of their own and as egui's proportional and monospace fonts; egui's
+/// stay behind them for icons.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::default();
     for font in Font::ALL {
@@ -41,7 +42,15 @@ pub fn install_fonts(ctx: &egui::Context) {
         fonts.font_data.insert(name.clone(), Arc::new(FontData::from_static(metrics::font_bytes(font))));
         let general = if font == Font::Mono { FontFamily::Monospace } else { FontFamily::Proportional };
         let mut names = vec![name.clone()];
-        names.extend(fonts.families.get(&general).into_iter().flatten().filter(|n| !n.starts_with("cullscope-")).cloned());
+        names.extend(
+            fonts
+                .families
+                .get(&general)
+                .into_iter()
+                .flatten()
+                .filter(|n| !n.starts_with("cullscope-"))
+                .cloned(),
+        );
         if font != Font::Bold {
             fonts.families.insert(general, names.clone());
         }
@@ -93,7 +102,8 @@ pub fn paint_paper(painter: &egui::Painter, size_pt: Vec2, look: impl Into<Look>
     painter.rect_filled(Rect::from_min_size(origin, size), 0.0, color(look.into().paper()));
 }
 
-/// Paints a drawing so that its paper's corner is at `origin` and a point of 1/72 inch is `scale` points of egui.
+/// Paints a drawing so that its paper's corner is at `origin` and a point of 1/72 inch is `scale` points of
+/// egui.
 pub fn paint(painter: &egui::Painter, drawing: &Drawing, look: impl Into<Look>, origin: Pos2, scale: f32) {
     let scale = if scale.is_finite() { scale.max(1e-3) } else { return };
     let look = look.into();
@@ -109,7 +119,8 @@ pub fn paint(painter: &egui::Painter, drawing: &Drawing, look: impl Into<Look>, 
         (false, Font::Mono) => FontFamily::Monospace,
         (false, _) => FontFamily::Proportional,
     });
-    let mut screen = Screen { painter, sight: look.sight, origin, scale, window, families, shapes: Vec::new() };
+    let mut screen =
+        Screen { painter, sight: look.sight, origin, scale, window, families, shapes: Vec::new() };
     let styles = look.styles();
     let mut pieces = Vec::new();
     for item in drawing.painted() {
@@ -149,7 +160,9 @@ impl Screen<'_> {
     fn piece(&mut self, piece: &Piece, paint: &Paint) {
         match &piece.shape {
             piece::Shape::Path { points, closed } => {
-                let (min, max) = points.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+                let (min, max) = points
+                    .iter()
+                    .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
                 if self.seen(min, max) {
                     self.path(points, *closed, paint);
                 }
@@ -162,7 +175,10 @@ impl Screen<'_> {
             piece::Shape::Text(line) => {
                 let [min, max] = metrics::text_box(line.at, line.text, line.font, line.size_pt, line.anchor);
                 if self.seen(min, max) {
-                    self.text(line, paint.fill.map_or(Color32::PLACEHOLDER, |(c, alpha)| color_with(c, alpha)));
+                    self.text(
+                        line,
+                        paint.fill.map_or(Color32::PLACEHOLDER, |(c, alpha)| color_with(c, alpha)),
+                    );
                 }
             }
             piece::Shape::Image { min, max, pixels } => {
@@ -185,12 +201,15 @@ impl Screen<'_> {
         let line = Stroke::new(stroke.width_pt * self.scale, color(stroke.color));
         if stroke.dash.is_empty() {
             let points = points.iter().map(|p| self.at(*p)).collect();
-            let path = if closed { PathShape::closed_line(points, line) } else { PathShape::line(points, line) };
+            let path =
+                if closed { PathShape::closed_line(points, line) } else { PathShape::line(points, line) };
             self.shapes.push(path.into());
             return;
         }
         let mut mesh = Mesh::default();
-        for_each_dash(points, closed, stroke.dash, self.window, |a, b| add_quad(&mut mesh, self.at(a), self.at(b), line));
+        for_each_dash(points, closed, stroke.dash, self.window, |a, b| {
+            add_quad(&mut mesh, self.at(a), self.at(b), line)
+        });
         self.shapes.push(mesh.into());
     }
 
@@ -214,7 +233,11 @@ impl Screen<'_> {
         // Zoomed far out, a hatch is a tint.
         if HATCH_PT * self.scale < 1.5 {
             let polygon = points.iter().map(|p| self.at(*p)).collect();
-            self.shapes.push(Shape::convex_polygon(polygon, color_with(stroke, HATCH_WIDTH_PT / HATCH_PT), PathStroke::NONE));
+            self.shapes.push(Shape::convex_polygon(
+                polygon,
+                color_with(stroke, HATCH_WIDTH_PT / HATCH_PT),
+                PathStroke::NONE,
+            ));
             return;
         }
         let found = hatching(points, hatch, self.window);
@@ -225,7 +248,12 @@ impl Screen<'_> {
         }
         for at in found.dots {
             let (center, r) = (self.at(at), HATCH_WIDTH_PT * self.scale);
-            add_quad(&mut mesh, center - egui::vec2(r, 0.0), center + egui::vec2(r, 0.0), Stroke::new(2.0 * r, line.color));
+            add_quad(
+                &mut mesh,
+                center - egui::vec2(r, 0.0),
+                center + egui::vec2(r, 0.0),
+                Stroke::new(2.0 * r, line.color),
+            );
         }
         self.shapes.push(mesh.into());
     }
@@ -238,7 +266,11 @@ impl Screen<'_> {
         }
         let font = FontId::new(size, self.families[line.font as usize].clone());
         let galley = self.painter.layout_no_wrap(line.text.to_owned(), font, color);
-        let Some(baseline) = galley.rows.first().and_then(|row| Some(row.pos.y + row.row.glyphs.first()?.pos.y)) else { return };
+        let Some(baseline) =
+            galley.rows.first().and_then(|row| Some(row.pos.y + row.row.glyphs.first()?.pos.y))
+        else {
+            return;
+        };
         let start = metrics::start_pt(line.at.x, line.text, line.font, line.size_pt, line.anchor);
         let corner = self.at(vec2(start, line.at.y)) - egui::vec2(0.0, baseline);
         self.shapes.push(TextShape::new(corner, galley, color).into());
@@ -259,7 +291,9 @@ fn add_quad(mesh: &mut Mesh, a: Pos2, b: Pos2, stroke: Stroke) {
     let (inner, outer) = ((stroke.width - 1.0).max(0.0) / 2.0, (stroke.width.max(1.0) + 1.0) / 2.0);
     let solid = stroke.color.gamma_multiply(strength);
     let first = mesh.vertices.len() as u32;
-    for (side, c) in [(-outer, Color32::TRANSPARENT), (-inner, solid), (inner, solid), (outer, Color32::TRANSPARENT)] {
+    for (side, c) in
+        [(-outer, Color32::TRANSPARENT), (-inner, solid), (inner, solid), (outer, Color32::TRANSPARENT)]
+    {
         let offset = along.rot90() * side;
         mesh.colored_vertex(a + offset, c);
         mesh.colored_vertex(b + offset, c);
@@ -275,7 +309,13 @@ fn add_quad(mesh: &mut Mesh, a: Pos2, b: Pos2, stroke: Stroke) {
 }
 
 /// Calls `put` with each dash of a line as far as it may be seen; dashes that turn a corner come in parts.
-fn for_each_dash(points: &[Vec2], closed: bool, dash: &[f32], window: [Vec2; 2], mut put: impl FnMut(Vec2, Vec2)) {
+fn for_each_dash(
+    points: &[Vec2],
+    closed: bool,
+    dash: &[f32],
+    window: [Vec2; 2],
+    mut put: impl FnMut(Vec2, Vec2),
+) {
     let period: f32 = dash.iter().sum();
     let edges = if closed { points.len() } else { points.len().saturating_sub(1) };
     let mut walked = 0.0;
@@ -335,7 +375,9 @@ struct Kept {
 }
 
 fn texture(ctx: &egui::Context, pixels: &Pixels, sight: Sight) -> egui::TextureId {
-    let textures = ctx.data_mut(|d| d.get_temp_mut_or_default::<Textures>(egui::Id::NULL.with("cullscope-pictures")).clone());
+    let textures = ctx.data_mut(|d| {
+        d.get_temp_mut_or_default::<Textures>(egui::Id::NULL.with("cullscope-pictures")).clone()
+    });
     let pass = ctx.cumulative_pass_nr();
     let mut kept = textures.0.lock();
     kept.retain(|_, k| k.used_pass + 2 >= pass);
@@ -361,7 +403,11 @@ fn image(pixels: &Pixels, most: usize) -> ColorImage {
         return ColorImage::from_rgba_unmultiplied([w, h], &pixels.rgba);
     }
     let rows = (0..h).step_by(step);
-    let thin: Vec<u8> = rows.flat_map(|y| (0..w).step_by(step).flat_map(move |x| (0..4).map(move |c| pixels.rgba[4 * (y * w + x) + c]))).collect();
+    let thin: Vec<u8> = rows
+        .flat_map(|y| {
+            (0..w).step_by(step).flat_map(move |x| (0..4).map(move |c| pixels.rgba[4 * (y * w + x) + c]))
+        })
+        .collect();
     ColorImage::from_rgba_unmultiplied([w.div_ceil(step), h.div_ceil(step)], &thin)
 }
 

@@ -26,7 +26,8 @@ pub enum Sight {
 
 impl Sight {
     /// Every sight, in the order of menus.
-    pub const ALL: [Sight; 5] = [Sight::Full, Sight::Gray, Sight::Protanopia, Sight::Deuteranopia, Sight::Tritanopia];
+    pub const ALL: [Sight; 5] =
+        [Sight::Full, Sight::Gray, Sight::Protanopia, Sight::Deuteranopia, Sight::Tritanopia];
 
     /// Name for menus.
     pub fn name(self) -> &'static str {
@@ -44,9 +45,21 @@ impl Sight {
         let rows: [[f32; 3]; 3] = match self {
             Sight::Full => return color,
             Sight::Gray => [LUMINANCE; 3],
-            Sight::Protanopia => [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
-            Sight::Deuteranopia => [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
-            Sight::Tritanopia => [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+            Sight::Protanopia => [
+                [0.152286, 1.052583, -0.204868],
+                [0.114503, 0.786281, 0.099216],
+                [-0.003882, -0.048116, 1.051998],
+            ],
+            Sight::Deuteranopia => [
+                [0.367322, 0.860646, -0.227968],
+                [0.280085, 0.672501, 0.047413],
+                [-0.011820, 0.042940, 0.968881],
+            ],
+            Sight::Tritanopia => [
+                [1.255528, -0.076749, -0.178779],
+                [-0.078411, 0.930809, 0.147602],
+                [0.004733, 0.691367, 0.303900],
+            ],
         };
         let seen = linear(color);
         rows.map(|row| encode(row.iter().zip(seen).map(|(a, b)| a * b).sum()))
@@ -118,7 +131,11 @@ mod tests {
         assert_eq!(Sight::Gray.see([0, 0, 255]), [76; 3]);
         for sight in Sight::ALL {
             for gray in [[0; 3], [119; 3], [255; 3]] {
-                assert!(difference(sight.see(gray), gray) < 1.5, "{sight:?} changes gray {gray:?} to {:?}", sight.see(gray));
+                assert!(
+                    difference(sight.see(gray), gray) < 1.5,
+                    "{sight:?} changes gray {gray:?} to {:?}",
+                    sight.see(gray)
+                );
             }
         }
     }

@@ -37,14 +37,21 @@ pub fn svg(drawing: &Drawing, look: impl Into<Look>, options: &SvgOptions) -> St
 
 /// The same with or without fonts inside; our own rasterizer has them anyway.
 pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: bool) -> String {
-    let mut writer = Writer { look, outline_text: options.outline_text, body: String::new(), parts: BTreeSet::new(), chars: BTreeMap::new() };
+    let mut writer = Writer {
+        look,
+        outline_text: options.outline_text,
+        body: String::new(),
+        parts: BTreeSet::new(),
+        chars: BTreeMap::new(),
+    };
     writer.layers(drawing);
     let size = drawing.size_pt.max(Vec2::ONE);
     let (w, h) = (number(size.x), number(size.y));
     let mut out = String::with_capacity(writer.body.len() + 4096);
     let _ = writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {w} {h}\" role=\"img\" aria-labelledby=\"title description\">",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {w} {h}\" \
+         role=\"img\" aria-labelledby=\"title description\">",
         number(size.x * MM_PER_PT),
         number(size.y * MM_PER_PT),
     );
@@ -109,7 +116,13 @@ impl Writer {
                 body.push_str("\"/>\n");
             }
             Shape::Circle { at, radius_pt } => {
-                let _ = writeln!(body, "<circle {class} cx=\"{}\" cy=\"{}\" r=\"{}\"/>", number(at.x), number(at.y), number(*radius_pt));
+                let _ = writeln!(
+                    body,
+                    "<circle {class} cx=\"{}\" cy=\"{}\" r=\"{}\"/>",
+                    number(at.x),
+                    number(at.y),
+                    number(*radius_pt)
+                );
             }
             Shape::Text(line) if self.outline_text => {
                 let _ = write!(body, "<path {class} d=\"");
@@ -124,7 +137,9 @@ impl Writer {
                 let rgba = self.look.see(&pixels.rgba);
                 let _ = writeln!(
                     body,
-                    "<image{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>",
+                    "<image{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
+                     preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
+                     href=\"data:image/png;base64,{}\"/>",
                     number(min.x),
                     number(min.y),
                     number(size.x),
@@ -167,13 +182,15 @@ impl Writer {
                 let data = BASE64.encode(file);
                 let _ = writeln!(
                     out,
-                    "@font-face {{ font-family: \"{family}\"; font-weight: {weight}; src: url(data:font/ttf;base64,{data}) format(\"truetype\"); }}"
+                    "@font-face {{ font-family: \"{family}\"; font-weight: {weight}; src: \
+                     url(data:font/ttf;base64,{data}) format(\"truetype\"); }}"
                 );
             }
             let generic = if *font == Font::Mono { "monospace" } else { "sans-serif" };
             let _ = writeln!(
                 out,
-                ".{} {{ font-family: \"{family}\", {generic}; font-weight: {weight}; font-kerning: none; font-variant-ligatures: none; }}",
+                ".{} {{ font-family: \"{family}\", {generic}; font-weight: {weight}; font-kerning: none; \
+                 font-variant-ligatures: none; }}",
                 font.name()
             );
         }
@@ -187,24 +204,35 @@ impl Writer {
     }
 
     fn patterns(&self, out: &mut String) {
-        let hatched: Vec<Role> = self.parts.iter().filter(|(_, part)| *part == Part::Hatch).map(|(role, _)| *role).collect();
+        let hatched: Vec<Role> =
+            self.parts.iter().filter(|(_, part)| *part == Part::Hatch).map(|(role, _)| *role).collect();
         if hatched.is_empty() {
             return;
         }
         out.push_str("<defs>\n");
         for role in hatched {
             let style = self.look.style(role);
-            let (s, half, width, color) = (number(HATCH_PT), number(HATCH_PT / 2.0), number(HATCH_WIDTH_PT), hex(style.stroke));
+            let (s, half, width, color) =
+                (number(HATCH_PT), number(HATCH_PT / 2.0), number(HATCH_WIDTH_PT), hex(style.stroke));
             let _ = write!(
                 out,
-                "<pattern id=\"hatch-{}\" patternUnits=\"userSpaceOnUse\" width=\"{s}\" height=\"{s}\" patternTransform=\"rotate(45)\">",
+                "<pattern id=\"hatch-{}\" patternUnits=\"userSpaceOnUse\" width=\"{s}\" height=\"{s}\" \
+                 patternTransform=\"rotate(45)\">",
                 role.name()
             );
             let _ = match style.hatch {
                 Hatch::None => Ok(()),
-                Hatch::Diagonal => write!(out, "<path d=\"M{half} 0V{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>"),
-                Hatch::Cross => write!(out, "<path d=\"M{half} 0V{s}M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\" fill=\"none\"/>"),
-                Hatch::Dots => write!(out, "<circle cx=\"{half}\" cy=\"{half}\" r=\"{width}\" fill=\"{color}\"/>"),
+                Hatch::Diagonal => {
+                    write!(out, "<path d=\"M{half} 0V{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>")
+                }
+                Hatch::Cross => write!(
+                    out,
+                    "<path d=\"M{half} 0V{s}M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\" \
+                     fill=\"none\"/>"
+                ),
+                Hatch::Dots => {
+                    write!(out, "<circle cx=\"{half}\" cy=\"{half}\" r=\"{width}\" fill=\"{color}\"/>")
+                }
             };
             out.push_str("</pattern>\n");
         }
@@ -221,7 +249,8 @@ fn rule(role: Role, paint: &Paint) -> String {
         (None, None) => "fill: none;".to_owned(),
     };
     let Some(Stroke { color, width_pt, dash }) = paint.stroke else { return format!("{fill} stroke: none;") };
-    let mut rule = format!("{fill} stroke: {}; stroke-width: {}; stroke-linejoin: round;", hex(color), number(width_pt));
+    let mut rule =
+        format!("{fill} stroke: {}; stroke-width: {}; stroke-linejoin: round;", hex(color), number(width_pt));
     if !dash.is_empty() {
         let lengths: Vec<String> = dash.iter().map(|d| number(*d)).collect();
         let _ = write!(rule, " stroke-dasharray: {};", lengths.join(" "));
@@ -276,7 +305,10 @@ fn unescape(text: &str) -> String {
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('&') {
         out.push_str(before);
-        let Some((entity, tail)) = after.split_once(';').filter(|(entity, _)| entity.chars().all(|c| c == '#' || c.is_ascii_alphanumeric())) else {
+        let Some((entity, tail)) = after
+            .split_once(';')
+            .filter(|(entity, _)| entity.chars().all(|c| c == '#' || c.is_ascii_alphanumeric()))
+        else {
             out.push('&');
             rest = after;
             continue;
@@ -288,7 +320,9 @@ fn unescape(text: &str) -> String {
             "gt" => Some('>'),
             "quot" => Some('"'),
             "apos" => Some('\''),
-            _ => entity.strip_prefix("#x").map_or_else(|| number(entity.strip_prefix('#')?, 10), |hex| number(hex, 16)),
+            _ => entity
+                .strip_prefix("#x")
+                .map_or_else(|| number(entity.strip_prefix('#')?, 10), |hex| number(hex, 16)),
         };
         match c {
             Some(c) => out.push(c),
@@ -315,7 +349,9 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_have_no_negative_zero() {
-        for (x, text) in [(0.0, "0"), (-0.001, "0"), (1.5, "1.5"), (100.0, "100"), (-2.345, "-2.35"), (1e6, "1000000")] {
+        for (x, text) in
+            [(0.0, "0"), (-0.001, "0"), (1.5, "1.5"), (100.0, "100"), (-2.345, "-2.35"), (1e6, "1000000")]
+        {
             assert_eq!(number(x), text);
         }
     }
@@ -324,7 +360,8 @@ mod tests {
     fn recipes_survive_other_programs() {
         let recipe_text = "{\"a\": \"<&amp;> '\u{fc}\"}\n";
         assert_eq!(unescape(&escape(recipe_text)), recipe_text);
-        let rewritten = "<svg><metadata id='other'>x</metadata><metadata\n  id=\"recipe\"\n>{&#34;a&#x22;: 1 &unknown; & &apos;}</metadata></svg>";
+        let rewritten = "<svg><metadata id='other'>x</metadata><metadata\n  id=\"recipe\"\n>{&#34;a&#x22;: 1 \
+                         &unknown; & &apos;}</metadata></svg>";
         assert_eq!(recipe(rewritten).as_deref(), Some("{\"a\": 1 &unknown; & '}"));
         assert_eq!(recipe("<metadata id=\"recipe\">cut off"), None);
     }

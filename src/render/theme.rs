@@ -1,9 +1,9 @@
 //! What roles look like: the only place with colors.
 //!
-//! Hues are those of Okabe and Ito ("Color Universal Design", 2008), which stay apart in all three dichromacies.
-//! No state is told by its hue alone: each has a line style, a hatch or a sign of its own as well, so that a
-//! gray print and every eye can tell them apart (a test checks both). Nothing means "good" or "bad".
-//! Widths and dashes are in points.
+//! Hues are those of Okabe and Ito ("Color Universal Design", 2008), which stay apart in all three
+//! dichromacies. No state is told by its hue alone: each has a line style, a hatch or a sign of its own as
+//! well, so that a gray print and every eye can tell them apart (a test checks both). Nothing means "good" or
+//! "bad". Widths and dashes are in points.
 
 use std::borrow::Cow;
 
@@ -130,8 +130,8 @@ impl Theme {
     }
 
     fn base(self) -> Base {
-        // Orange and purple are a little deeper than Okabe and Ito's on light grounds, blue and vermillion lighter on
-        // dark ones: a thin line needs a contrast of 2 to be seen at all.
+        // Orange and purple are a little deeper than Okabe and Ito's on light grounds, blue and vermillion
+        // lighter on dark ones: a thin line needs a contrast of 2 to be seen at all.
         let light = Base {
             paper: [252, 252, 251],
             ink: [28, 28, 30],
@@ -149,9 +149,15 @@ impl Theme {
         };
         match self {
             Theme::Light => light,
-            Theme::Print => {
-                Base { paper: WHITE, ink: BLACK, core: BLACK, faint: [96, 96, 96], scene: [80, 80, 80], outside: [128, 128, 128], ..light }
-            }
+            Theme::Print => Base {
+                paper: WHITE,
+                ink: BLACK,
+                core: BLACK,
+                faint: [96, 96, 96],
+                scene: [80, 80, 80],
+                outside: [128, 128, 128],
+                ..light
+            },
             Theme::Dark => Base {
                 paper: [27, 29, 33],
                 ink: [232, 232, 235],
@@ -191,20 +197,48 @@ impl Theme {
         };
         match role {
             Role::Ink => Style { fill: Some((b.ink, 0.06)), ..plain(b.ink, 0.75) },
-            Role::Faint => Style { fill: Some((b.faint, 0.08)), ..plain(mix(b.faint, b.paper, 0.35), 0.5) }.with_text(b.faint, &b),
+            Role::Faint => Style { fill: Some((b.faint, 0.08)), ..plain(mix(b.faint, b.paper, 0.35), 0.5) }
+                .with_text(b.faint, &b),
             Role::Scene => Style { fill: Some((b.scene, 0.14)), ..plain(b.scene, 0.9) },
             Role::Undecided => Style { fill: Some((b.paper, 1.0)), dot: b.paper, ..plain(b.ink, 0.5) },
-            Role::Partial => Style { dash: LONG, fill: Some((b.sky, 0.10)), dot: b.paper, ..plain(b.sky, 0.9) },
+            Role::Partial => {
+                Style { dash: LONG, fill: Some((b.sky, 0.10)), dot: b.paper, ..plain(b.sky, 0.9) }
+            }
             Role::Visible => Style { fill: Some((b.blue, 0.45)), ..plain(b.blue, 1.3) },
-            Role::Hidden => Style { dash: DASHED, hatch: Hatch::Diagonal, fill: Some((b.orange, 0.16)), ..plain(b.orange, 1.1) },
+            Role::Hidden => Style {
+                dash: DASHED,
+                hatch: Hatch::Diagonal,
+                fill: Some((b.orange, 0.16)),
+                ..plain(b.orange, 1.1)
+            },
             Role::Outside => Style { dash: DOTTED, dot: b.paper, ..plain(b.outside, 0.9) },
             Role::Occluder => Style { fill: Some((b.ink, 0.62)), ..plain(b.ink, 2.4) },
-            Role::Approximated => Style { dash: DASH_DOTS, hatch: Hatch::Cross, fill: Some((b.purple, 0.12)), ..plain(b.purple, 1.1) },
-            Role::Wrong => Style { sign: Some(('!', b.ink)), fill: Some((b.vermillion, 0.40)), ..plain(b.vermillion, 2.0) },
-            Role::Current => Style { halo: Some((b.yellow, 5.0)), fill: Some((b.yellow, 0.25)), text: b.ink, ..plain(b.core, 1.1) },
-            Role::Selected => Style { halo: Some((b.sky, 4.0)), dash: &[3.0, 1.5], text: b.ink, ..plain(b.core, 1.3) },
+            Role::Approximated => Style {
+                dash: DASH_DOTS,
+                hatch: Hatch::Cross,
+                fill: Some((b.purple, 0.12)),
+                ..plain(b.purple, 1.1)
+            },
+            Role::Wrong => Style {
+                sign: Some(('!', b.ink)),
+                fill: Some((b.vermillion, 0.40)),
+                ..plain(b.vermillion, 2.0)
+            },
+            Role::Current => Style {
+                halo: Some((b.yellow, 5.0)),
+                fill: Some((b.yellow, 0.25)),
+                text: b.ink,
+                ..plain(b.core, 1.1)
+            },
+            Role::Selected => {
+                Style { halo: Some((b.sky, 4.0)), dash: &[3.0, 1.5], text: b.ink, ..plain(b.core, 1.3) }
+            }
             Role::Eye => Style { fill: Some((b.green, 0.10)), ..plain(b.green, 1.3) },
-            Role::Evidence => Style { dash: DASH_DOT, fill: Some((b.purple, 0.10)), ..plain(mix(b.purple, b.ink, 0.35), 1.0) },
+            Role::Evidence => Style {
+                dash: DASH_DOT,
+                fill: Some((b.purple, 0.10)),
+                ..plain(mix(b.purple, b.ink, 0.35), 1.0)
+            },
             Role::Paper => Style { fill: Some((b.paper, 1.0)), text: b.ink, ..plain(b.paper, 0.75) },
         }
     }
@@ -298,8 +332,8 @@ impl Style {
         Style { text: readable(color, base.ink, base.paper, 4.5), ..self }
     }
 
-    /// Whether lines and areas of two styles differ by more than hue: dash, sign, halo, or a width that the eye takes
-    /// for another one (by 0.7 pt and by half). Hatches do not count, as lines have none.
+    /// Whether lines and areas of two styles differ by more than hue: dash, sign, halo, or a width that the
+    /// eye takes for another one (by 0.7 pt and by half). Hatches do not count, as lines have none.
     pub fn differs_in_form(&self, other: &Style) -> bool {
         let (thin, thick) = (self.width_pt.min(other.width_pt), self.width_pt.max(other.width_pt));
         self.dash != other.dash
@@ -373,7 +407,10 @@ mod tests {
     fn states_differ_in_form() {
         for theme in Theme::ALL {
             for (a, b) in pairs() {
-                assert!(theme.style(a).differs_in_form(&theme.style(b)), "{theme:?}: {a:?} and {b:?} differ by hue only");
+                assert!(
+                    theme.style(a).differs_in_form(&theme.style(b)),
+                    "{theme:?}: {a:?} and {b:?} differ by hue only"
+                );
             }
         }
     }
@@ -386,8 +423,16 @@ mod tests {
                     let look = Look { theme, sight };
                     let (p, q) = (look.style(a), look.style(b));
                     let apart = difference(p.stroke, q.stroke) >= 12.0;
-                    assert!(apart || p.differs_in_form(&q), "{look:?}: {a:?} and {b:?}: {}", difference(p.stroke, q.stroke));
-                    assert!(sight != Sight::Full || difference(p.stroke, q.stroke) >= 12.0 || (a, b) == (Role::Undecided, Role::Occluder));
+                    assert!(
+                        apart || p.differs_in_form(&q),
+                        "{look:?}: {a:?} and {b:?}: {}",
+                        difference(p.stroke, q.stroke)
+                    );
+                    assert!(
+                        sight != Sight::Full
+                            || difference(p.stroke, q.stroke) >= 12.0
+                            || (a, b) == (Role::Undecided, Role::Occluder)
+                    );
                 }
             }
         }
@@ -411,9 +456,17 @@ mod tests {
         for theme in Theme::ALL {
             for role in Role::ALL {
                 let (style, paper) = (theme.style(role), theme.paper());
-                assert!(contrast(style.text, paper) >= 4.5, "{theme:?} {role:?} text {}", contrast(style.text, paper));
-                let line = contrast(style.halo.map_or(style.stroke, |h| h.0), paper).max(contrast(style.stroke, paper));
-                assert!(role == Role::Paper || line >= if role == Role::Faint { 1.7 } else { 2.5 }, "{theme:?} {role:?} line {line}");
+                assert!(
+                    contrast(style.text, paper) >= 4.5,
+                    "{theme:?} {role:?} text {}",
+                    contrast(style.text, paper)
+                );
+                let line = contrast(style.halo.map_or(style.stroke, |h| h.0), paper)
+                    .max(contrast(style.stroke, paper));
+                assert!(
+                    role == Role::Paper || line >= if role == Role::Faint { 1.7 } else { 2.5 },
+                    "{theme:?} {role:?} line {line}"
+                );
             }
             let p = theme.panel();
             for (text, ground) in [
@@ -426,7 +479,11 @@ mod tests {
                 (p.text, p.lit_line),
                 (p.accent, p.canvas),
             ] {
-                assert!(contrast(text, ground) >= 4.5, "{theme:?} {text:?} on {ground:?}: {}", contrast(text, ground));
+                assert!(
+                    contrast(text, ground) >= 4.5,
+                    "{theme:?} {text:?} on {ground:?}: {}",
+                    contrast(text, ground)
+                );
             }
         }
     }

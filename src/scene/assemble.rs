@@ -65,11 +65,17 @@ pub(super) fn assemble(
 ) -> Result<Parts<Solid>, SceneError> {
     let count: usize = mesh.faces.iter().map(|f| f.ids as usize).sum();
     if count > MAX_PRIMS {
-        return Err(SceneError::Format { path: source.to_owned(), why: format!("{count} triangles are more than the limit of {MAX_PRIMS}") });
+        return Err(SceneError::Format {
+            path: source.to_owned(),
+            why: format!("{count} triangles are more than the limit of {MAX_PRIMS}"),
+        });
     }
     let origin = choose_origin(&mesh.points, options.recenter);
     if origin != DVec3::ZERO {
-        report.note(format!("recentered: ({}, {}, {}) was subtracted from all coordinates", origin.x, origin.y, origin.z));
+        report.note(format!(
+            "recentered: ({}, {}, {}) was subtracted from all coordinates",
+            origin.x, origin.y, origin.z
+        ));
     }
     let (mut points, usable) = round(&mesh.points, origin);
     let same_as = if options.weld { weld(&points, &usable) } else { (0..points.len() as u32).collect() };
@@ -88,7 +94,10 @@ pub(super) fn assemble(
             return Err(SceneError::Cancelled(source.to_owned()));
         }
         if !cut.face(face, corners, &points, &usable, &same_as, options) {
-            report.note(format!("a concave polygon of {} corners is too long to be cut, so it was left out", corners.len()));
+            report.note(format!(
+                "a concave polygon of {} corners is too long to be cut, so it was left out",
+                corners.len()
+            ));
         }
     }
     let Cut { mut prims, prim_object, prim_material, mut faces, dropped, .. } = cut;
@@ -128,7 +137,10 @@ fn choose_origin(points: &[DVec3], recenter: Recenter) -> DVec3 {
     let usable = points.iter().filter(|p| p.abs().max_element() <= MAX_COORDINATE);
     let (low, high) = usable.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
     let (center, extent) = ((low + high) * 0.5, (high - low).max_element());
-    if !center.is_finite() || extent <= 0.0 || (recenter == Recenter::Auto && center.abs().max_element() <= FAR * extent) {
+    if !center.is_finite()
+        || extent <= 0.0
+        || (recenter == Recenter::Auto && center.abs().max_element() <= FAR * extent)
+    {
         return DVec3::ZERO;
     }
     // The power of two at or below the extent: the exponent bits alone.
@@ -137,7 +149,8 @@ fn choose_origin(points: &[DVec3], recenter: Recenter) -> DVec3 {
     if origin.is_finite() { origin } else { DVec3::ZERO }
 }
 
-/// 32-bit points, and which of them may be used. `+ 0.0` turns −0 into 0, so that equal points have equal bits.
+/// 32-bit points, and which of them may be used. `+ 0.0` turns −0 into 0, so that equal points have equal
+/// bits.
 fn round(points: &[DVec3], origin: DVec3) -> (Vec<Vec3>, Vec<bool>) {
     let rounded = points.iter().map(|p| {
         let p = *p - origin;
@@ -147,7 +160,8 @@ fn round(points: &[DVec3], origin: DVec3) -> (Vec<Vec3>, Vec<bool>) {
     rounded.unzip()
 }
 
-/// For each point the least index of a point at the same place. Sorts indices, for the same answer everywhere.
+/// For each point the least index of a point at the same place. Sorts indices, for the same answer
+/// everywhere.
 fn weld(points: &[Vec3], usable: &[bool]) -> Vec<u32> {
     let key = |i: u32| points[i as usize].to_array().map(f32::to_bits);
     let mut same_as: Vec<u32> = (0..points.len() as u32).collect();
@@ -174,12 +188,21 @@ struct Cut {
 
 impl Cut {
     /// Adds the triangles of a face; `false` if it is too long to be cut.
-    fn face(&mut self, face: &RawFace, corners: &[u32], points: &[Vec3], usable: &[bool], same_as: &[u32], options: &LoadOptions) -> bool {
+    fn face(
+        &mut self,
+        face: &RawFace,
+        corners: &[u32],
+        points: &[Vec3],
+        usable: &[bool],
+        same_as: &[u32],
+        options: &LoadOptions,
+    ) -> bool {
         let first = self.prims.len();
         let end = first + face.ids as usize;
         self.prim_object.resize(end, ObjectId(face.object));
         self.prim_material.resize(end, MaterialId(face.material));
-        let lost = face.lost.or_else(|| corners.iter().any(|c| !usable[*c as usize]).then_some(Dropped::NotFinite));
+        let lost =
+            face.lost.or_else(|| corners.iter().any(|c| !usable[*c as usize]).then_some(Dropped::NotFinite));
         if let Some(why) = lost {
             self.prims.resize(end, None);
             self.dropped.push((why, face.ids as usize));
@@ -228,7 +251,8 @@ impl Cut {
         while corners.len() > 1 && corners.first() == corners.last() {
             corners.pop();
         }
-        let prims: Vec<PrimId> = (first..end).filter(|p| self.prims[*p].is_some()).map(|p| PrimId(p as u32)).collect();
+        let prims: Vec<PrimId> =
+            (first..end).filter(|p| self.prims[*p].is_some()).map(|p| PrimId(p as u32)).collect();
         if corners.len() > 3 && prims.len() > 1 {
             self.faces.push(Face { corners, prims });
         }
@@ -245,7 +269,12 @@ pub(super) fn has_area(p: [Vec3; 3]) -> bool {
 /// Leaves out points that nothing uses, in order; returns how many went.
 fn compact(points: &mut Vec<Vec3>, prims: &mut [Option<[u32; 3]>], faces: &mut [Face]) -> usize {
     let mut used = vec![false; points.len()];
-    prims.iter().flatten().flatten().chain(faces.iter().flat_map(|f| &f.corners)).for_each(|c| used[*c as usize] = true);
+    prims
+        .iter()
+        .flatten()
+        .flatten()
+        .chain(faces.iter().flat_map(|f| &f.corners))
+        .for_each(|c| used[*c as usize] = true);
     let before = points.len();
     let mut to = vec![0u32; before];
     let mut next = 0;
@@ -258,6 +287,11 @@ fn compact(points: &mut Vec<Vec3>, prims: &mut [Option<[u32; 3]>], faces: &mut [
     }
     points.truncate(next as usize);
     points.shrink_to_fit();
-    prims.iter_mut().flatten().flatten().chain(faces.iter_mut().flat_map(|f| &mut f.corners)).for_each(|c| *c = to[*c as usize]);
+    prims
+        .iter_mut()
+        .flatten()
+        .flatten()
+        .chain(faces.iter_mut().flat_map(|f| &mut f.corners))
+        .for_each(|c| *c = to[*c as usize]);
     before - points.len()
 }

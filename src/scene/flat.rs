@@ -86,7 +86,9 @@ pub(super) fn read(bytes: &[u8], source: &str, options: &LoadOptions) -> Result<
 /// A view file where a scene is expected is a likely slip, worth its own words.
 fn explain(error: SceneError, bytes: &[u8]) -> SceneError {
     match error {
-        SceneError::Syntax { path, line, why } if why.starts_with("unknown field `views`") || why.starts_with("unknown field `width`") => {
+        SceneError::Syntax { path, line, why }
+            if why.starts_with("unknown field `views`") || why.starts_with("unknown field `width`") =>
+        {
             let why = "this is a view file, not a flatland scene; give it with --view".to_owned();
             SceneError::Syntax { path, line, why }
         }
@@ -108,7 +110,11 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn fail<T>(&self, path: &[Step], why: impl Into<String>) -> Result<T, SceneError> {
-        Err(SceneError::Syntax { path: self.source.to_owned(), line: line_of(self.bytes, path), why: why.into() })
+        Err(SceneError::Syntax {
+            path: self.source.to_owned(),
+            line: line_of(self.bytes, path),
+            why: why.into(),
+        })
     }
 
     fn parts(&self, file: File) -> Result<Parts<Flat>, SceneError> {
@@ -119,7 +125,8 @@ impl Reader<'_> {
         }
         let fov = file.fov_degrees.unwrap_or(FOV_DEGREES);
         if !(fov > 0.1 && fov < 179.0) {
-            return self.fail(&[Key("fov_degrees")], format!("fov_degrees must lie between 0.1 and 179, not {fov}"));
+            return self
+                .fail(&[Key("fov_degrees")], format!("fov_degrees must lie between 0.1 and 179, not {fov}"));
         }
         let prim_object = self.object_of_segments(&file, &mut report)?;
         let objects = self.objects(&file, prim_object.iter().map(|o| o.at() + 1).max().unwrap_or(0))?;
@@ -157,8 +164,16 @@ impl Reader<'_> {
             for (k, &s) in segments.iter().enumerate() {
                 let here = [Key("objects"), At(o), At(k)];
                 match of.get_mut(s) {
-                    None => return self.fail(&here, format!("object {o} names segment {s}, but there are only {count}")),
-                    Some(Some(other)) => return self.fail(&here, format!("segment {s} is in object {other} and in object {o}")),
+                    None => {
+                        return self.fail(
+                            &here,
+                            format!("object {o} names segment {s}, but there are only {count}"),
+                        );
+                    }
+                    Some(Some(other)) => {
+                        return self
+                            .fail(&here, format!("segment {s} is in object {other} and in object {o}"));
+                    }
                     Some(free) => *free = Some(o),
                 }
             }
@@ -176,7 +191,8 @@ impl Reader<'_> {
         let count = file.objects.len();
         if !file.object_names.is_empty() && file.object_names.len() != count {
             let names = file.object_names.len();
-            return self.fail(&[Key("object_names")], format!("there are {names} object_names for {count} objects"));
+            return self
+                .fail(&[Key("object_names")], format!("there are {names} object_names for {count} objects"));
         }
         let name = |o: usize| match file.object_names.get(o) {
             Some(name) => name.clone(),
@@ -184,7 +200,9 @@ impl Reader<'_> {
             None if count == 0 => "walls".into(),
             None => "rest".into(),
         };
-        let mut objects: Vec<Object> = (0..used.max(count)).map(|o| Object { name: name(o), group: String::new(), motion: None }).collect();
+        let mut objects: Vec<Object> = (0..used.max(count))
+            .map(|o| Object { name: name(o), group: String::new(), motion: None })
+            .collect();
         for (moved, frames) in &file.motions {
             let here = [Key("motions"), Key(moved.as_str())];
             if frames.is_empty() {
@@ -192,7 +210,10 @@ impl Reader<'_> {
             }
             let bad = frames.iter().position(|f| !f.iter().all(|v| v.abs() <= MAX_COORDINATE));
             if let Some(k) = bad {
-                return self.fail(&[here[0], here[1], At(k)], format!("frame {k} of the motion of `{moved}` is too large"));
+                return self.fail(
+                    &[here[0], here[1], At(k)],
+                    format!("frame {k} of the motion of `{moved}` is too large"),
+                );
             }
             let motion: Arc<[Pose]> = frames.iter().map(|f| pose(*f)).collect();
             let mut found = false;
@@ -208,7 +229,11 @@ impl Reader<'_> {
     }
 
     /// Materials, and which of them each object has.
-    fn materials(&self, file: &File, objects: &[Object]) -> Result<(Vec<Material>, Vec<MaterialId>), SceneError> {
+    fn materials(
+        &self,
+        file: &File,
+        objects: &[Object],
+    ) -> Result<(Vec<Material>, Vec<MaterialId>), SceneError> {
         let mut materials = vec![Material { name: "default".into(), color: GRAY }];
         let mut of_object = vec![MaterialId(0); objects.len()];
         for (name, color) in &file.colors {
@@ -249,7 +274,11 @@ impl Reader<'_> {
             }
             prims.push(Some(ends.map(|p| {
                 let next = points.len() as u32;
-                let id = if self.options.weld { *places.entry(p.to_array().map(f32::to_bits)).or_insert(next) } else { next };
+                let id = if self.options.weld {
+                    *places.entry(p.to_array().map(f32::to_bits)).or_insert(next)
+                } else {
+                    next
+                };
                 if id == next {
                     points.push(p);
                 } else {
@@ -262,8 +291,15 @@ impl Reader<'_> {
         (points, prims)
     }
 
-    fn path(&self, key: &str, stands: &[[f64; 4]], fov: f64, diagonal: f64) -> Result<Option<ViewPath<Flat>>, SceneError> {
-        let diagonal = if diagonal.is_finite() && diagonal > 0.0 { diagonal.min(MAX_COORDINATE) } else { 1.0 };
+    fn path(
+        &self,
+        key: &str,
+        stands: &[[f64; 4]],
+        fov: f64,
+        diagonal: f64,
+    ) -> Result<Option<ViewPath<Flat>>, SceneError> {
+        let diagonal =
+            if diagonal.is_finite() && diagonal > 0.0 { diagonal.min(MAX_COORDINATE) } else { 1.0 };
         // Near enough to cut nothing that an eye in free space stands before, and far behind everything.
         let (near, far) = ((diagonal * 1e-4).min(0.05) as f32, (diagonal * 4.0) as f32);
         let mut list = Vec::with_capacity(stands.len());
@@ -281,12 +317,17 @@ impl Reader<'_> {
         let mut facts = Vec::with_capacity(file.expect.len());
         for (i, fact) in file.expect.iter().enumerate() {
             if fact.eye >= file.eyes.len() {
-                let why = format!("fact {i} is about eye {}, but there are only {}", fact.eye, file.eyes.len());
+                let why =
+                    format!("fact {i} is about eye {}, but there are only {}", fact.eye, file.eyes.len());
                 return self.fail(&[Key("expect"), At(i), Key("eye")], why);
             }
             let prims = |key: &'static str, list: &[usize]| {
                 if let Some(k) = list.iter().position(|s| *s >= file.segments.len()) {
-                    let why = format!("fact {i} names segment {}, but there are only {}", list[k], file.segments.len());
+                    let why = format!(
+                        "fact {i} names segment {}, but there are only {}",
+                        list[k],
+                        file.segments.len()
+                    );
                     return self.fail(&[Key("expect"), At(i), Key(key), At(k)], why);
                 }
                 Ok(list.iter().map(|s| PrimId(*s as u32)).collect())
@@ -304,12 +345,17 @@ impl Reader<'_> {
 }
 
 fn extent(points: &[Vec2]) -> [f64; 4] {
-    let (low, high) = points.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p.as_dvec2()), h.max(p.as_dvec2())));
+    let (low, high) = points
+        .iter()
+        .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(p.as_dvec2()), h.max(p.as_dvec2())));
     [low.x, low.y, high.x, high.y]
 }
 
 /// Rotation about the flatland origin, then translation.
 fn pose([x, y, degrees]: [f64; 3]) -> Pose {
     let half = (degrees * 0.5).to_radians();
-    Pose { rotation: [0.0, 0.0, half.sin() as f32, half.cos() as f32], translation: [x as f32, y as f32, 0.0] }
+    Pose {
+        rotation: [0.0, 0.0, half.sin() as f32, half.cos() as f32],
+        translation: [x as f32, y as f32, 0.0],
+    }
 }

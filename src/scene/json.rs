@@ -7,11 +7,16 @@ use super::text::without_mark;
 
 /// Reads a value out of JSON text.
 pub(super) fn from_slice<T: DeserializeOwned>(bytes: &[u8], source: &str) -> Result<T, SceneError> {
-    let text = without_mark(bytes).map_err(|why| SceneError::Format { path: source.to_owned(), why: why.into() })?;
+    let text =
+        without_mark(bytes).map_err(|why| SceneError::Format { path: source.to_owned(), why: why.into() })?;
     serde_json::from_slice(text).map_err(|e| {
         let why = e.to_string();
         let at = format!(" at line {} column {}", e.line(), e.column());
-        SceneError::Syntax { path: source.to_owned(), line: e.line().max(1), why: why.strip_suffix(&at).unwrap_or(&why).to_owned() }
+        SceneError::Syntax {
+            path: source.to_owned(),
+            line: e.line().max(1),
+            why: why.strip_suffix(&at).unwrap_or(&why).to_owned(),
+        }
     })
 }
 
@@ -87,7 +92,9 @@ impl Scan<'_> {
                     continue;
                 }
                 _ => {
-                    while self.at < self.text.len() && !matches!(self.peek(), b',' | b']' | b'}' | b' ' | b'\n' | b'\r' | b'\t') {
+                    while self.at < self.text.len()
+                        && !matches!(self.peek(), b',' | b']' | b'}' | b' ' | b'\n' | b'\r' | b'\t')
+                    {
                         self.at += 1;
                     }
                 }
@@ -134,7 +141,8 @@ mod tests {
 
     #[test]
     fn lines_of_values_are_found() {
-        let text = b"{\n \"a\\\"\": [1,\n {\"b\": \"]\"}, 2],\n \"c\":\n [[0],\n  [1, -2.5e3, true],\n  [2]]\n}";
+        let text =
+            b"{\n \"a\\\"\": [1,\n {\"b\": \"]\"}, 2],\n \"c\":\n [[0],\n  [1, -2.5e3, true],\n  [2]]\n}";
         let line = |path: &[Step]| line_of(text, path);
         assert_eq!(line(&[]), 1);
         assert_eq!(line(&[Step::Key("a\\\"")]), 2);

@@ -40,14 +40,21 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     fn default() -> Self {
-        Self { weld: true, drop_degenerate: true, merge_coplanar: false, recenter: Recenter::Auto, read_views: true }
+        Self {
+            weld: true,
+            drop_degenerate: true,
+            merge_coplanar: false,
+            recenter: Recenter::Auto,
+            read_views: true,
+        }
     }
 }
 
 /// Loads a scene: a path to `.obj`, `.gltf`, `.glb` or a flatland `.json`, or `generate:NAME[?key=value&…]`.
 ///
 /// # Errors
-/// One sentence with the file and, where there is one, the line; [`SceneError::Cancelled`] if `progress` asks to stop.
+/// One sentence with the file and, where there is one, the line; [`SceneError::Cancelled`] if `progress` asks
+/// to stop.
 pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<AnyScene, SceneError> {
     if let Some(call) = source.strip_prefix("generate:") {
         return Scene::new(generate::generate(call, options, progress)?).map(AnyScene::from);
@@ -58,7 +65,8 @@ pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Res
     };
     progress.report(0.0, "reading");
     let bytes = read_file(path, source, kind.limit_bytes())?;
-    let mut scene = read(kind, &bytes, Some(path.parent().unwrap_or(Path::new(""))), source, options, progress)?;
+    let mut scene =
+        read(kind, &bytes, Some(path.parent().unwrap_or(Path::new(""))), source, options, progress)?;
     if let (AnyScene::Solid(solid), true) = (&mut scene, options.read_views) {
         let mut found = Vec::new();
         let mut notes = Vec::new();
@@ -72,15 +80,23 @@ pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Res
     Ok(scene)
 }
 
-/// Loads a scene out of memory, such as a file that was dropped on a window. `source` is named in errors, and its
-/// extension says what the bytes are. No file is opened: materials and buffers beside it are not there.
+/// Loads a scene out of memory, such as a file that was dropped on a window. `source` is named in errors, and
+/// its extension says what the bytes are. No file is opened: materials and buffers beside it are not there.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_bytes(bytes: &[u8], source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<AnyScene, SceneError> {
+pub fn load_bytes(
+    bytes: &[u8],
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<AnyScene, SceneError> {
     match kind_of(source) {
         Some(kind) => read(kind, bytes, None, source, options, progress),
-        None => Err(SceneError::Format { path: source.to_owned(), why: format!("this kind of file cannot be read; {KNOWN}") }),
+        None => Err(SceneError::Format {
+            path: source.to_owned(),
+            why: format!("this kind of file cannot be read; {KNOWN}"),
+        }),
     }
 }
 

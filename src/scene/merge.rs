@@ -1,8 +1,8 @@
-//! Merging coplanar neighbors into larger convex polygons: for the scene's own faces those of one object and one
-//! material, for occluders whatever their object and material.
+//! Merging coplanar neighbors into larger convex polygons: for the scene's own faces those of one object and
+//! one material, for occluders whatever their object and material.
 //!
-//! Greedy, in the order of ids: a polygon swallows the neighbor across an edge as long as the two together are
-//! planar and convex by the same test that faces of a file pass. The primitives stay as they are; only
+//! Greedy, in the order of ids: a polygon swallows the neighbor across an edge as long as the two together
+//! are planar and convex by the same test that faces of a file pass. The primitives stay as they are; only
 //! [`Parts::faces`] grows. Cost: a sort of the edges, and O(n) merges of polygons of at most [`MAX_CORNERS`].
 
 use glam::{DVec3, Vec3};
@@ -54,14 +54,17 @@ impl Scene<Solid> {
 
 impl Scene<Flat> {
     /// The live segments, those merged that continue each other exactly straight on: what occluders are in
-    /// flatland. The first primitive gives the direction. Ordered by their first primitive. `None` when cancelled.
+    /// flatland. The first primitive gives the direction. Ordered by their first primitive. `None` when
+    /// cancelled.
     pub fn convex_polygons(&self, progress: &dyn Progress) -> Option<Vec<Face>> {
         progress.report(0.0, "merging collinear segments");
-        let mut next: Vec<(u32, PrimId)> = self.live().iter().filter_map(|&p| Some((self.corners(p)?[0], p))).collect();
+        let mut next: Vec<(u32, PrimId)> =
+            self.live().iter().filter_map(|&p| Some((self.corners(p)?[0], p))).collect();
         next.sort_unstable();
         let mut ends: Vec<u32> = self.live().iter().filter_map(|&p| Some(self.corners(p)?[1])).collect();
         ends.sort_unstable();
-        let times = |list: &[u32], c: u32| list.partition_point(|e| *e <= c) - list.partition_point(|e| *e < c);
+        let times =
+            |list: &[u32], c: u32| list.partition_point(|e| *e <= c) - list.partition_point(|e| *e < c);
         // The one segment that goes on from a point at which one segment ends.
         let follower = |c: u32| {
             let first = next.partition_point(|e| e.0 < c);
@@ -70,7 +73,9 @@ impl Scene<Flat> {
             alone.then_some(found.1)
         };
         let at = |c: u32| self.points()[c as usize].as_dvec2();
-        let goes_on = |[a, b]: [u32; 2], to: u32| orient2d(at(a), at(b), at(to)) == 0.0 && (at(b) - at(a)).dot(at(to) - at(b)) > 0.0;
+        let goes_on = |[a, b]: [u32; 2], to: u32| {
+            orient2d(at(a), at(b), at(to)) == 0.0 && (at(b) - at(a)).dot(at(to) - at(b)) > 0.0
+        };
         let straight = |p: PrimId| {
             let corners = self.corners(p)?;
             let after = follower(corners[1])?;
@@ -111,7 +116,9 @@ impl<'a> Merger<'a> {
             }
         }
         polygons.sort_by_key(|(_, prims)| prims[0]);
-        let kind = |p: PrimId| if mixed { (0, 0) } else { (parts.prim_object[p.at()].0, parts.prim_material[p.at()].0) };
+        let kind = |p: PrimId| {
+            if mixed { (0, 0) } else { (parts.prim_object[p.at()].0, parts.prim_material[p.at()].0) }
+        };
         let kinds = polygons.iter().map(|(_, prims)| kind(prims[0])).collect();
         let (rings, prims): (Vec<_>, Vec<_>) = polygons.into_iter().unzip();
         let mut edges: Vec<(u32, u32, u32)> = Vec::new();
@@ -120,7 +127,16 @@ impl<'a> Merger<'a> {
         }
         edges.sort_unstable();
         let into = (0..rings.len() as u32).collect();
-        Self { points: &parts.points, rings, prims, kinds, edges, into, cutter: Cutter::default(), scratch: Vec::new() }
+        Self {
+            points: &parts.points,
+            rings,
+            prims,
+            kinds,
+            edges,
+            into,
+            cutter: Cutter::default(),
+            scratch: Vec::new(),
+        }
     }
 
     /// Merges what can be merged; whether it was not cancelled.
@@ -175,10 +191,17 @@ impl<'a> Merger<'a> {
             let ring = &self.rings[polygon];
             let (a, b) = (ring[k], ring[(k + 1) % ring.len()]);
             let Some(other) = self.owner(b, a).map(|o| o as usize) else { continue };
-            if other == polygon || self.kinds[other] != self.kinds[polygon] || !self.faces_alike(polygon, other) {
+            if other == polygon
+                || self.kinds[other] != self.kinds[polygon]
+                || !self.faces_alike(polygon, other)
+            {
                 continue;
             }
-            let Some(joined) = join(&self.rings[polygon], &self.rings[other]).filter(|j| j.len() <= MAX_CORNERS) else { continue };
+            let Some(joined) =
+                join(&self.rings[polygon], &self.rings[other]).filter(|j| j.len() <= MAX_CORNERS)
+            else {
+                continue;
+            };
             self.load(&joined);
             if self.cutter.cut(&self.scratch) == Shape::Convex {
                 self.rings[polygon] = joined;
@@ -271,7 +294,8 @@ mod tests {
         let hills = merged(&grid(12, |i, j| if (i * 7 + j * 5) % 11 == 0 { 0.4 } else { 0.0 }));
         let mut seen = vec![false; hills.prim_count()];
         for face in hills.faces() {
-            let corners: Vec<DVec3> = face.corners.iter().map(|c| hills.points()[*c as usize].as_dvec3()).collect();
+            let corners: Vec<DVec3> =
+                face.corners.iter().map(|c| hills.points()[*c as usize].as_dvec3()).collect();
             assert_eq!(Cutter::default().cut(&corners), Shape::Convex);
             let area: f64 = face.prims.iter().map(|p| f64::from(hills.normal(*p).length())).sum();
             assert!((newell(&corners).length() - area).abs() < 1e-4 * area);

@@ -95,7 +95,8 @@ pub struct Parts<S: Space> {
     pub prim_object: Vec<ObjectId>,
     /// Material of each primitive.
     pub prim_material: Vec<MaterialId>,
-    /// Planar convex polygons of more than one primitive. A primitive that none of them names stands for itself.
+    /// Planar convex polygons of more than one primitive. A primitive that none of them names stands for
+    /// itself.
     pub faces: Vec<Face>,
     /// Objects by [`ObjectId`].
     pub objects: Vec<Object>,
@@ -153,13 +154,17 @@ impl<S: Space> Scene<S> {
             return Err(bad("a per-primitive table has another length than the primitives"));
         }
         let in_points = |c: &u32| (*c as usize) < parts.points.len();
-        if !parts.prims.iter().flatten().all(|c| c.as_ref().iter().all(in_points)) || !parts.faces.iter().all(|f| f.corners.iter().all(in_points)) {
+        if !parts.prims.iter().flatten().all(|c| c.as_ref().iter().all(in_points))
+            || !parts.faces.iter().all(|f| f.corners.iter().all(in_points))
+        {
             return Err(bad("a corner points past the last point"));
         }
         if !parts.points.iter().all(|p| crate::geometry::Vector::is_finite(*p)) {
             return Err(bad("a point is not finite"));
         }
-        if parts.prim_object.iter().any(|o| o.at() >= parts.objects.len()) || parts.prim_material.iter().any(|m| m.at() >= parts.materials.len()) {
+        if parts.prim_object.iter().any(|o| o.at() >= parts.objects.len())
+            || parts.prim_material.iter().any(|m| m.at() >= parts.materials.len())
+        {
             return Err(bad("a primitive names an object or material that is not there"));
         }
         let live: Vec<PrimId> = (0..n as u32).map(PrimId).filter(|p| parts.prims[p.at()].is_some()).collect();
@@ -269,9 +274,11 @@ impl<S: Space> Scene<S> {
     /// Bytes that the tables take, names left out.
     pub fn memory_bytes(&self) -> usize {
         use std::mem::size_of;
-        let faces: usize = self.parts.faces.iter().map(|f| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len())).sum();
+        let faces: usize =
+            self.parts.faces.iter().map(|f| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len())).sum();
         self.parts.points.len() * size_of::<S::Vector>()
-            + self.parts.prims.len() * (size_of::<Option<S::Corners>>() + size_of::<ObjectId>() + size_of::<MaterialId>())
+            + self.parts.prims.len()
+                * (size_of::<Option<S::Corners>>() + size_of::<ObjectId>() + size_of::<MaterialId>())
             + self.live.len() * size_of::<PrimId>()
             + faces
     }
@@ -344,10 +351,18 @@ pub fn framing_view<S: Space>(bounds: &Aabb<S::Vector>, width: u32, height: u32)
     let fov = 60f32.to_radians();
     let center = bounds.center();
     let radius = (bounds.diagonal() * 0.5).max(1e-3);
-    let toward = S::Vector::from_fn(|a| if S::Vector::AXES == 2 { [0.0, -1.0][a] } else { [0.6, 0.5, 0.8][a] });
+    let toward =
+        S::Vector::from_fn(|a| if S::Vector::AXES == 2 { [0.0, -1.0][a] } else { [0.6, 0.5, 0.8][a] });
     let distance = radius / (fov * 0.5).sin() * 1.05;
     let position = center + toward * (distance / toward.length());
     let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { 0.0 });
-    let eye = Eye { position, target: center, up, fov, near: (distance - radius * 1.02).max(distance * 1e-3), far: distance + radius * 1.1 };
+    let eye = Eye {
+        position,
+        target: center,
+        up,
+        fov,
+        near: (distance - radius * 1.02).max(distance * 1e-3),
+        far: distance + radius * 1.1,
+    };
     View { eye, width, height: if S::Vector::AXES == 2 { 1 } else { height } }
 }

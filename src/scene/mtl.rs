@@ -17,7 +17,12 @@ const MAX_LIBRARIES: usize = 256;
 pub(super) const GRAY: [f32; 3] = [0.7; 3];
 
 /// The materials of these names, in order; the empty name is the default.
-pub(super) fn resolve(names: &[String], libraries: &[(usize, String)], folder: Option<&Path>, report: &mut Report) -> Vec<Material> {
+pub(super) fn resolve(
+    names: &[String],
+    libraries: &[(usize, String)],
+    folder: Option<&Path>,
+    report: &mut Report,
+) -> Vec<Material> {
     let mut colors = BTreeMap::new();
     for (line, library) in libraries.iter().take(MAX_LIBRARIES) {
         if let Some(folder) = folder {
@@ -25,7 +30,8 @@ pub(super) fn resolve(names: &[String], libraries: &[(usize, String)], folder: O
         }
     }
     if libraries.len() > MAX_LIBRARIES {
-        report.note(format!("only the first {MAX_LIBRARIES} of {} material files were read", libraries.len()));
+        report
+            .note(format!("only the first {MAX_LIBRARIES} of {} material files were read", libraries.len()));
     }
     let mut missing = 0;
     let materials = names.iter().map(|name| match colors.get(name) {
@@ -47,12 +53,19 @@ pub(super) fn resolve(names: &[String], libraries: &[(usize, String)], folder: O
 }
 
 /// A line names one file, or several with spaces between; a name may hold spaces itself.
-fn read_library(folder: &Path, line: usize, names: &str, colors: &mut BTreeMap<String, [f32; 3]>, report: &mut Report) {
+fn read_library(
+    folder: &Path,
+    line: usize,
+    names: &str,
+    colors: &mut BTreeMap<String, [f32; 3]>,
+    report: &mut Report,
+) {
     let whole = beside(folder, names);
     let several: Vec<&str> = names.split_ascii_whitespace().collect();
     let names = if whole.is_ok() || several.len() < 2 { vec![names] } else { several };
     for name in names {
-        let read = beside(folder, name).and_then(|path| read_file(&path, name, LIMIT_BYTES).map_err(|e| e.to_string()));
+        let read = beside(folder, name)
+            .and_then(|path| read_file(&path, name, LIMIT_BYTES).map_err(|e| e.to_string()));
         match read {
             Ok(bytes) => parse(&bytes, name, colors, report),
             Err(why) if why.starts_with(name) => report.note(format!("line {line}: material file {why}")),
@@ -73,7 +86,8 @@ pub(super) fn parse(bytes: &[u8], file: &str, colors: &mut BTreeMap<String, [f32
             (b"newmtl", rest) => {
                 let name = name_of(rest);
                 if colors.contains_key(&name) {
-                    report.note(format!("{file}:{line}: material `{name}` is defined twice; the first counts"));
+                    report
+                        .note(format!("{file}:{line}: material `{name}` is defined twice; the first counts"));
                     current = None;
                 } else {
                     colors.insert(name.clone(), GRAY);
@@ -86,7 +100,8 @@ pub(super) fn parse(bytes: &[u8], file: &str, colors: &mut BTreeMap<String, [f32
                     Some(color) => {
                         colors.insert(name.clone(), color);
                     }
-                    None => report.note(format!("{file}:{line}: `Kd` of `{name}` is not three numbers; it is gray")),
+                    None => report
+                        .note(format!("{file}:{line}: `Kd` of `{name}` is not three numbers; it is gray")),
                 }
             }
             _ => {}

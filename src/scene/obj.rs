@@ -44,10 +44,11 @@ pub(super) fn read(
         return Err(format(pass.why_empty(text)));
     }
     pass.drop_bad_faces();
-    let mut mesh = pass.through_tobj(&Part { whole: progress, start: 0.4, length: 0.3 }).map_err(|e| match e {
-        _ if progress.cancelled() => SceneError::Cancelled(source.to_owned()),
-        why => format(format!("tobj refused it: {why}")),
-    })?;
+    let mut mesh =
+        pass.through_tobj(&Part { whole: progress, start: 0.4, length: 0.3 }).map_err(|e| match e {
+            _ if progress.cancelled() => SceneError::Cancelled(source.to_owned()),
+            why => format(format!("tobj refused it: {why}")),
+        })?;
     pass.tell();
     mesh.materials = mtl::resolve(&pass.material_names, &pass.libraries, folder, &mut pass.report);
     mesh.objects = std::mem::take(&mut pass.objects);
@@ -133,22 +134,30 @@ impl<'a> Pass<'a> {
             b"vt" | b"vn" | b"s" => {}
             b"l" => *self.ignored.entry("line elements").or_default() += 1,
             b"p" => *self.ignored.entry("point elements").or_default() += 1,
-            b"vp" | b"curv" | b"curv2" | b"surf" | b"deg" | b"cstype" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp"
-            | b"end" | b"con" | b"mg" => *self.ignored.entry("free-form statements").or_default() += 1,
-            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib" | b"shadow_obj" | b"trace_obj" | b"ctech" | b"stech" => {}
+            b"vp" | b"curv" | b"curv2" | b"surf" | b"deg" | b"cstype" | b"bmat" | b"step" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"mg" => {
+                *self.ignored.entry("free-form statements").or_default() += 1
+            }
+            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib" | b"shadow_obj"
+            | b"trace_obj" | b"ctech" | b"stech" => {}
             _ if key.is_empty() || key.starts_with(b"#") => {}
             _ => self.unknown_statement(line, key),
         }
     }
 
     fn unknown_statement(&mut self, line: usize, key: &[u8]) {
-        let key = if self.unknown.len() < MAX_UNKNOWN || self.unknown.contains_key(key) { &key[..key.len().min(24)] } else { b"others" };
+        let key = if self.unknown.len() < MAX_UNKNOWN || self.unknown.contains_key(key) {
+            &key[..key.len().min(24)]
+        } else {
+            b"others"
+        };
         self.unknown.entry(key.to_vec()).or_insert((line, 0)).1 += 1;
     }
 
     fn point(&mut self, line: usize, rest: &[u8]) {
         let mut coordinates = words(rest);
-        let three: [Option<(&[u8], f64)>; 3] = std::array::from_fn(|_| coordinates.next().and_then(|w| Some((w, number(w)?))));
+        let three: [Option<(&[u8], f64)>; 3] =
+            std::array::from_fn(|_| coordinates.next().and_then(|w| Some((w, number(w)?))));
         let fault = match three {
             [Some(x), Some(y), Some(z)] if [x.1, y.1, z.1].iter().all(|c| c.is_finite()) => {
                 for (word, _) in [x, y, z] {
@@ -195,13 +204,21 @@ impl<'a> Pass<'a> {
         }
         let (object, material) = (self.current_object(), self.current_material());
         let end = self.corners.len() as u32;
-        self.faces.push(Statement { line: line as u32, end, ids: count - 2, object, material, lost: lost.map(|l| l.0) });
+        self.faces.push(Statement {
+            line: line as u32,
+            end,
+            ids: count - 2,
+            object,
+            material,
+            lost: lost.map(|l| l.0),
+        });
     }
 
     /// The 0-based point that a word such as `7`, `-1` or `7/2/3` names. It may lie ahead in the file.
     fn corner(&self, word: &[u8]) -> Result<u32, Dropped> {
         let index = word.split(|b| *b == b'/').next().unwrap_or(word);
-        let index: i64 = std::str::from_utf8(index).ok().and_then(|i| i.parse().ok()).ok_or(Dropped::Malformed)?;
+        let index: i64 =
+            std::str::from_utf8(index).ok().and_then(|i| i.parse().ok()).ok_or(Dropped::Malformed)?;
         let at = if index < 0 { self.faults.len() as i64 + index } else { index - 1 };
         u32::try_from(at).map_err(|_| Dropped::OutOfRange)
     }
@@ -257,7 +274,8 @@ impl<'a> Pass<'a> {
             let range = start..face.end as usize;
             start = range.end;
             for &c in self.corners[range.clone()].iter().filter(|_| face.lost.is_none()) {
-                let fault = if c as usize >= points { Some(Dropped::OutOfRange) } else { self.faults[c as usize] };
+                let fault =
+                    if c as usize >= points { Some(Dropped::OutOfRange) } else { self.faults[c as usize] };
                 if fault == Some(Dropped::OutOfRange) && notes.len() <= Report::MAX_NOTES {
                     let line = face.line;
                     notes.push(format!(
@@ -287,16 +305,27 @@ impl<'a> Pass<'a> {
         let clean = std::mem::take(&mut self.clean);
         let whole = clean.len() + self.corners.len() * 8;
         let points = PointLines { text: &clean, at: 0, fresh: true };
-        let faces = FaceLines { corners: &self.corners, faces: &self.faces, start: 0, line: Vec::new(), at: 0 };
-        let mut reader = BufReader::with_capacity(1 << 16, Watched { inner: points.chain(faces), progress, read: 0, whole });
+        let faces =
+            FaceLines { corners: &self.corners, faces: &self.faces, start: 0, line: Vec::new(), at: 0 };
+        let mut reader = BufReader::with_capacity(
+            1 << 16,
+            Watched { inner: points.chain(faces), progress, read: 0, whole },
+        );
         let options = tobj::LoadOptions { ignore_points: true, ignore_lines: true, ..Default::default() };
         let (models, _) = tobj::load_obj_buf(&mut reader, &options, |_| Ok(Default::default()))?;
         if let Some(model) = models.into_iter().next() {
-            mesh.points = model.mesh.positions.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)).collect();
+            mesh.points =
+                model.mesh.positions.as_chunks::<3>().0.iter().map(|p| DVec3::from_array(*p)).collect();
             mesh.corners = model.mesh.indices;
         }
         let faces = std::mem::take(&mut self.faces);
-        let raw = |f: Statement| super::assemble::RawFace { end: f.end, ids: f.ids, object: f.object, material: f.material, lost: f.lost };
+        let raw = |f: Statement| super::assemble::RawFace {
+            end: f.end,
+            ids: f.ids,
+            object: f.object,
+            material: f.material,
+            lost: f.lost,
+        };
         mesh.faces = faces.into_iter().map(raw).collect();
         Ok(mesh)
     }
@@ -307,7 +336,12 @@ impl<'a> Pass<'a> {
         }
         let (line, count) = self.not_utf8;
         if count > 0 {
-            self.note(line, format_args!("not UTF-8 from here on in {count} lines; names are shown as far as they can be"));
+            self.note(
+                line,
+                format_args!(
+                    "not UTF-8 from here on in {count} lines; names are shown as far as they can be"
+                ),
+            );
         }
         for (key, (line, count)) in std::mem::take(&mut self.unknown) {
             self.note(line, format_args!("unknown statement `{}`, {count} times, ignored", name_of(&key)));
@@ -316,7 +350,8 @@ impl<'a> Pass<'a> {
 
     fn why_empty(&self, text: &[u8]) -> String {
         let head = text.trim_ascii_start();
-        let begins = |with: &str| head.get(..with.len()).is_some_and(|h| h.eq_ignore_ascii_case(with.as_bytes()));
+        let begins =
+            |with: &str| head.get(..with.len()).is_some_and(|h| h.eq_ignore_ascii_case(with.as_bytes()));
         let is_stl = begins("solid") && self.unknown.contains_key(&b"facet"[..]);
         let looks = match () {
             _ if head.is_empty() => "the file is empty",

@@ -8,19 +8,32 @@ use super::Scene;
 use crate::geometry::{Eye, Space, Vector, View, ViewPath, figure_eight, raise};
 
 /// The figure-8 walkthrough of the papers' experiments through the middle of a scene, in `count` views of
-/// 1024 pixels. In space at eye height, 1.6 units above the lowest point, or at half the height of a lower scene.
+/// 1024 pixels. In space at eye height, 1.6 units above the lowest point, or at half the height of a lower
+/// scene.
 pub fn figure_eight_path<S: Space>(scene: &Scene<S>, count: usize) -> ViewPath<S> {
     let bounds = scene.bounds();
     let flat = S::Vector::AXES == 2;
     // The ground plane's second axis is y in flatland and −z in space.
-    let ground = |v: S::Vector| DVec2::new(f64::from(v.get(0)), if flat { f64::from(v.get(1)) } else { -f64::from(v.get(2)) });
+    let ground = |v: S::Vector| {
+        DVec2::new(f64::from(v.get(0)), if flat { f64::from(v.get(1)) } else { -f64::from(v.get(2)) })
+    };
     let half = (ground(bounds.size()).abs() * 0.35).max(DVec2::splat(1e-6));
     let height = f64::from(bounds.min.get(1)) + (f64::from(bounds.size().get(1)) * 0.5).min(1.6);
-    let place = |p: DVec2| if flat { S::Vector::from_fn(|a| p[a] as f32) } else { S::Vector::from_fn(|a| raise(p, height)[a] as f32) };
+    let place = |p: DVec2| {
+        if flat {
+            S::Vector::from_fn(|a| p[a] as f32)
+        } else {
+            S::Vector::from_fn(|a| raise(p, height)[a] as f32)
+        }
+    };
     let reach = f64::from(bounds.diagonal()).max(1e-6);
     let views = figure_eight(ground(bounds.center()), half, count.max(1)).into_iter().map(|(at, along)| {
         let (position, target) = (place(at), place(at + along * reach * 0.1));
-        View { eye: eye::<S>(position, target, reach as f32), width: 1024, height: if flat { 1 } else { 1024 } }
+        View {
+            eye: eye::<S>(position, target, reach as f32),
+            width: 1024,
+            height: if flat { 1 } else { 1024 },
+        }
     });
     ViewPath { name: "figure 8".into(), views: views.collect() }
 }
@@ -41,7 +54,11 @@ pub fn random_views<S: Space>(scene: &Scene<S>, count: usize, seed: u64) -> Vec<
             }
         };
         let target = position + direction * (reach * 0.1);
-        View { eye: eye::<S>(position, target, reach), width: 256, height: if S::Vector::AXES == 2 { 1 } else { 256 } }
+        View {
+            eye: eye::<S>(position, target, reach),
+            width: 256,
+            height: if S::Vector::AXES == 2 { 1 } else { 256 },
+        }
     };
     (0..count).map(view).collect()
 }
@@ -64,7 +81,13 @@ mod tests {
         assert_ne!(views, random_views(&scene, 50, 4));
         assert!(views.iter().all(|v| v.eye.fault().is_none() && scene.bounds().contains(v.eye.position)));
         let path = figure_eight_path(&scene, 40);
-        assert!(path.views.len() == 40 && path.views.iter().all(|v| v.eye.fault().is_none() && scene.bounds().contains(v.eye.position)));
+        assert!(
+            path.views.len() == 40
+                && path
+                    .views
+                    .iter()
+                    .all(|v| v.eye.fault().is_none() && scene.bounds().contains(v.eye.position))
+        );
     }
 
     #[test]

@@ -2,7 +2,8 @@
 //!
 //! A convex one becomes the fan (0, i, i+1), any other is handed to ear clipping along the normal that
 //! Newell's sum gives (Sutherland, Sproull and Schumacker 1974, appendix); signs are exact. Cost: O(n) for a
-//! convex polygon; for others O(n²) with a small factor (ear clipping with a z-order curve: 10 ms for 5,000 corners,
+//! convex polygon; for others O(n²) with a small factor (ear clipping with a z-order curve: 10 ms for 5,000
+//! corners,
 //! 5 to 9 s for 100,000).
 
 use earcut::Earcut;
@@ -77,13 +78,18 @@ impl Cutter {
     fn project(&mut self, corners: &[DVec3], normal: DVec3) {
         let size = normal.abs();
         let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
-        let (u, v) = if normal[axis] > 0.0 { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+        let (u, v) = if normal[axis] > 0.0 {
+            ((axis + 1) % 3, (axis + 2) % 3)
+        } else {
+            ((axis + 2) % 3, (axis + 1) % 3)
+        };
         self.flat.clear();
         self.flat.extend(corners.iter().map(|c| [c[u], c[v]]));
     }
 }
 
-/// Twice the vector area. Relative to the first corner, so that it does not round with the distance from the origin.
+/// Twice the vector area. Relative to the first corner, so that it does not round with the distance from the
+/// origin.
 pub(super) fn newell(corners: &[DVec3]) -> DVec3 {
     let first = corners[0];
     corners.windows(2).map(|w| (w[0] - first).cross(w[1] - first)).sum()
@@ -131,7 +137,12 @@ mod tests {
     }
     fn area(corners: &[DVec3], triangles: &[u32]) -> f64 {
         let corner = |i: u32| corners[i as usize];
-        triangles.as_chunks::<3>().0.iter().map(|t| 0.5 * (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length()).sum()
+        triangles
+            .as_chunks::<3>()
+            .0
+            .iter()
+            .map(|t| 0.5 * (corner(t[1]) - corner(t[0])).cross(corner(t[2]) - corner(t[0])).length())
+            .sum()
     }
 
     #[test]
@@ -163,7 +174,8 @@ mod tests {
 
     #[test]
     fn a_bent_square_is_a_fan_but_no_polygon() {
-        let corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.1), (0.0, 1.0, 0.0)].map(|(x, y, z)| DVec3::new(x, y, z));
+        let corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.1), (0.0, 1.0, 0.0)]
+            .map(|(x, y, z)| DVec3::new(x, y, z));
         let mut cutter = Cutter::default();
         assert_eq!(cutter.cut(&corners), Shape::Bent);
         assert_eq!(cutter.triangles, [0, 1, 2, 0, 2, 3]);
@@ -175,7 +187,10 @@ mod tests {
         let teeth = 25_000;
         for k in (0..teeth).rev() {
             let x = f64::from(k) * 2.0;
-            corners.extend([(x + 2.0, 0.0), (x + 1.0, 5.0 + f64::from(k % 7)), (x, 0.0)].map(|(x, y)| DVec3::new(x, y, 0.0)));
+            corners.extend(
+                [(x + 2.0, 0.0), (x + 1.0, 5.0 + f64::from(k % 7)), (x, 0.0)]
+                    .map(|(x, y)| DVec3::new(x, y, 0.0)),
+            );
         }
         corners[0].x = f64::from(teeth) * 2.0;
         corners.push(DVec3::new(0.0, -1.0, 0.0));

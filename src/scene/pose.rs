@@ -12,7 +12,8 @@ impl Pose {
     pub fn apply<V: Vector>(&self, point: V) -> V {
         let [x, y, z, w] = self.rotation.map(f64::from);
         let at = |a: usize| if a < V::AXES { f64::from(point.get(a)) } else { 0.0 };
-        let moved = DQuat::from_xyzw(x, y, z, w) * DVec3::new(at(0), at(1), at(2)) + DVec3::from_array(self.translation.map(f64::from));
+        let moved = DQuat::from_xyzw(x, y, z, w) * DVec3::new(at(0), at(1), at(2))
+            + DVec3::from_array(self.translation.map(f64::from));
         V::from_fn(|a| moved[a] as f32)
     }
 }
@@ -24,10 +25,12 @@ impl<S: Space> Scene<S> {
     }
 
     /// The scene at `frame`, each motion repeated: the same ids, objects and materials. Points that a moving
-    /// object shares with another one become its own. Where a motion leads out of the numbers, it is not applied.
+    /// object shares with another one become its own. Where a motion leads out of the numbers, it is not
+    /// applied.
     pub fn posed(&self, frame: usize) -> Self {
         let pose_of = |motion: &[Pose]| motion.get(frame % motion.len().max(1)).copied();
-        let poses: Vec<Option<Pose>> = self.objects().iter().map(|o| o.motion.as_deref().and_then(pose_of)).collect();
+        let poses: Vec<Option<Pose>> =
+            self.objects().iter().map(|o| o.motion.as_deref().and_then(pose_of)).collect();
         if poses.iter().all(Option::is_none) {
             return self.clone();
         }
@@ -76,14 +79,23 @@ mod tests {
         let half = std::f32::consts::FRAC_1_SQRT_2;
         let turn = Pose { rotation: [0.0, 0.0, half, half], translation: [2.0, 0.0, 0.0] };
         let still = Pose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
-        parts.objects.push(Object { name: "leaf".into(), group: String::new(), motion: Some(Arc::new([still, turn])) });
+        parts.objects.push(Object {
+            name: "leaf".into(),
+            group: String::new(),
+            motion: Some(Arc::new([still, turn])),
+        });
         parts.prim_object[1] = ObjectId(1);
         let scene = Scene::new(parts).expect("valid");
         assert_eq!(scene.frame_count(), 2);
         let posed = scene.posed(3);
         let ends = |p: u32| posed.prim_points(PrimId(p)).collect::<Vec<_>>();
         assert_eq!(ends(0), [Vec2::ZERO, Vec2::X], "the wall shares a point with the leaf and stands still");
-        assert!(ends(1)[0].distance(Vec2::new(2.0, 1.0)) < 1e-6 && ends(1)[1].distance(Vec2::new(1.0, 1.0)) < 1e-6, "{:?}", ends(1));
+        assert!(
+            ends(1)[0].distance(Vec2::new(2.0, 1.0)) < 1e-6
+                && ends(1)[1].distance(Vec2::new(1.0, 1.0)) < 1e-6,
+            "{:?}",
+            ends(1)
+        );
         assert_eq!(scene.posed(2).bounds(), scene.bounds());
     }
 }

@@ -19,7 +19,8 @@ pub fn soup<S: Space>(seed: u64, n: u32) -> Arc<Scene<S>> {
         let center = S::Vector::from_fn(|_| signed(10.0));
         points.extend((0..corners).map(|_| center + S::Vector::from_fn(|_| signed(0.8))));
     }
-    let prims = (0..n).map(|i| Some(S::corners_from(std::array::from_fn(|k| i * corners + k as u32)))).collect();
+    let prims =
+        (0..n).map(|i| Some(S::corners_from(std::array::from_fn(|k| i * corners + k as u32)))).collect();
     let parts = Parts {
         name: "soup".into(),
         source: format!("soup {seed}"),

@@ -13,7 +13,8 @@ use super::SceneError;
 /// Reads a regular file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`SceneError::Io`] if it cannot be opened or read, [`SceneError::Format`] if it is no regular file or too long.
+/// [`SceneError::Io`] if it cannot be opened or read, [`SceneError::Format`] if it is no regular file or too
+/// long.
 pub(super) fn read_file(path: &Path, shown: &str, limit_bytes: u64) -> Result<Vec<u8>, SceneError> {
     let io = |why| SceneError::Io { path: shown.to_owned(), why };
     let format = |why: String| SceneError::Format { path: shown.to_owned(), why };
@@ -43,7 +44,9 @@ pub(super) fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
     if relative.as_os_str().is_empty() || !plain {
         return Err("the name leads out of the model's folder, so it was not opened".into());
     }
-    let reason = |e: io::Error| if e.kind() == io::ErrorKind::NotFound { "there is no such file".to_owned() } else { e.to_string() };
+    let reason = |e: io::Error| {
+        if e.kind() == io::ErrorKind::NotFound { "there is no such file".to_owned() } else { e.to_string() }
+    };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let home = folder.canonicalize().map_err(reason)?;
     let found = folder.join(relative).canonicalize().map_err(reason)?;
@@ -155,7 +158,9 @@ mod tests {
     #[test]
     fn names_that_lead_out_are_refused() {
         let here = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-        for name in ["../Cargo.toml", "/dev/zero", "/etc/passwd", "", "scene/../../Cargo.toml", "..\\Cargo.toml"] {
+        for name in
+            ["../Cargo.toml", "/dev/zero", "/etc/passwd", "", "scene/../../Cargo.toml", "..\\Cargo.toml"]
+        {
             assert!(beside(&here, name).is_err(), "{name}");
         }
         assert!(beside(&here, "./scene/mod.rs").is_ok());

@@ -1,6 +1,12 @@
 //! Views and paths of views as JSON, in and out.
 //!
-//! Space: `{"width":W,"height":H,"views":[{"eye":[x,y,z],"target":[x,y,z],"up":[0,1,0],"fov_y_degrees":60,"near":0.1,"far":1000}]}`.
+//! Space:
+//!
+//! ```json
+//! {"width":W,"height":H,"views":[
+//!   {"eye":[x,y,z],"target":[x,y,z],"up":[0,1,0],"fov_y_degrees":60,"near":0.1,"far":1000}]}
+//! ```
+//!
 //! Flatland: two numbers a vector, no `up`, `fov_degrees`, height 1. Files hold the model's own coordinates;
 //! the scene's origin is subtracted on the way in and added on the way out.
 
@@ -65,12 +71,19 @@ pub fn read_views_for(path: &str, scene: &AnyScene) -> Result<AnyPath, SceneErro
 /// What is wrong, with the line.
 pub fn parse_views<S: Space>(bytes: &[u8], source: &str, origin: DVec3) -> Result<ViewPath<S>, SceneError> {
     let file: File = from_slice(bytes, source)?;
-    let fail = |path: &[Step], why: String| SceneError::Syntax { path: source.to_owned(), line: line_of(bytes, path), why };
+    let fail = |path: &[Step], why: String| SceneError::Syntax {
+        path: source.to_owned(),
+        line: line_of(bytes, path),
+        why,
+    };
     let flat = S::Vector::AXES == 2;
     let (width, height) = (file.width.unwrap_or(1024), file.height.unwrap_or(if flat { 1 } else { 1024 }));
     for (key, size) in [("width", width), ("height", height)] {
         if !(1..=MAX_PIXELS).contains(&size) {
-            return Err(fail(&[Step::Key(key)], format!("{key} must be 1 to {MAX_PIXELS} pixels, not {size}")));
+            return Err(fail(
+                &[Step::Key(key)],
+                format!("{key} must be 1 to {MAX_PIXELS} pixels, not {size}"),
+            ));
         }
     }
     if flat && height != 1 {
@@ -83,7 +96,11 @@ pub fn parse_views<S: Space>(bytes: &[u8], source: &str, origin: DVec3) -> Resul
     for (i, entry) in file.views.iter().enumerate() {
         let eye = eye_of::<S>(entry, origin);
         let eye = eye.and_then(|e: Eye<S>| e.fault().map_or(Ok(e), |why| Err(why.into())));
-        views.push(View { eye: eye.map_err(|why| fail(&[Step::Key("views"), Step::At(i)], format!("view {i}: {why}")))?, width, height });
+        views.push(View {
+            eye: eye.map_err(|why| fail(&[Step::Key("views"), Step::At(i)], format!("view {i}: {why}")))?,
+            width,
+            height,
+        });
     }
     Ok(ViewPath { name: file.name.unwrap_or_else(|| path_name(source)), views })
 }
@@ -91,7 +108,8 @@ pub fn parse_views<S: Space>(bytes: &[u8], source: &str, origin: DVec3) -> Resul
 /// `walk` of `NAME.walk.views.json`, else `views`.
 fn path_name(source: &str) -> String {
     let file = Path::new(source).file_name().map(|f| f.to_string_lossy().into_owned()).unwrap_or_default();
-    let name = file.strip_suffix(".views.json").and_then(|f| f.rsplit_once('.')).map(|(_, name)| name.to_owned());
+    let name =
+        file.strip_suffix(".views.json").and_then(|f| f.rsplit_once('.')).map(|(_, name)| name.to_owned());
     name.filter(|n| !n.is_empty()).unwrap_or_else(|| "views".into())
 }
 
@@ -107,7 +125,11 @@ fn eye_of<S: Space>(entry: &Entry, origin: DVec3) -> Result<Eye<S>, String> {
         (2, None, Some(d)) | (3, Some(d), None) => d,
         (2, None, None) => 90.0,
         (_, None, None) => 60.0,
-        (2, ..) => return Err("flatland has `fov_degrees`, the angle across the image, and no `fov_y_degrees`".into()),
+        (2, ..) => {
+            return Err(
+                "flatland has `fov_degrees`, the angle across the image, and no `fov_y_degrees`".into()
+            );
+        }
         _ => return Err("space has `fov_y_degrees`, the vertical angle, and no `fov_degrees`".into()),
     };
     let up = match &entry.up {
@@ -125,24 +147,33 @@ fn eye_of<S: Space>(entry: &Entry, origin: DVec3) -> Result<Eye<S>, String> {
     })
 }
 
-/// Writes a path as JSON text, one view a line; what [`parse_views`] reads back is the same view, bit for bit,
-/// where `origin` is zero.
+/// Writes a path as JSON text, one view a line; what [`parse_views`] reads back is the same view, bit for
+/// bit, where `origin` is zero.
 pub fn write_views<S: Space>(path: &ViewPath<S>, origin: DVec3) -> String {
     let (width, height) = path.views.first().map_or((1024, 1024), |v| (v.width, v.height));
     let vector = |v: S::Vector, origin: DVec3| {
         let numbers: Vec<String> = (0..S::Vector::AXES).map(|a| coordinate(v.get(a), origin[a])).collect();
         format!("[{}]", numbers.join(","))
     };
-    let mut text = format!("{{\"name\":{},\"width\":{width},\"height\":{height},\"views\":[", serde_json::Value::from(path.name.as_str()));
+    let mut text = format!(
+        "{{\"name\":{},\"width\":{width},\"height\":{height},\"views\":[",
+        serde_json::Value::from(path.name.as_str())
+    );
     for (i, View { eye, .. }) in path.views.iter().enumerate() {
         let comma = if i == 0 { "" } else { "," };
         let (up, angle) = match S::Vector::AXES {
             2 => (String::new(), "fov_degrees"),
             _ => (format!("\"up\":{},", vector(eye.up, DVec3::ZERO)), "fov_y_degrees"),
         };
-        let (position, target, fov) = (vector(eye.position, origin), vector(eye.target, origin), degrees(eye.fov));
+        let (position, target, fov) =
+            (vector(eye.position, origin), vector(eye.target, origin), degrees(eye.fov));
         // Writing to a string cannot fail.
-        let _ = write!(text, "{comma}\n{{\"eye\":{position},\"target\":{target},{up}\"{angle}\":{fov},\"near\":{},\"far\":{}}}", eye.near, eye.far);
+        let _ = write!(
+            text,
+            "{comma}\n{{\"eye\":{position},\"target\":{target},{up}\"{angle}\":{fov},\"near\":{},\
+             \"far\":{}}}",
+            eye.near, eye.far
+        );
     }
     text.push_str("\n]}\n");
     text
@@ -156,11 +187,19 @@ fn coordinate(value: f32, origin: f64) -> String {
 fn degrees(radians: f32) -> String {
     let exact = f64::from(radians).to_degrees();
     let short = (0..7).map(|digits| format!("{exact:.digits$}"));
-    short.into_iter().find(|s| s.parse::<f64>().is_ok_and(|d| d.to_radians() as f32 == radians)).unwrap_or_else(|| exact.to_string())
+    short
+        .into_iter()
+        .find(|s| s.parse::<f64>().is_ok_and(|d| d.to_radians() as f32 == radians))
+        .unwrap_or_else(|| exact.to_string())
 }
 
 /// The paths that lie beside a model. A broken one becomes a note.
-pub(super) fn beside_model(model: &Path, origin: DVec3, paths: &mut Vec<ViewPath<Solid>>, notes: &mut Vec<String>) {
+pub(super) fn beside_model(
+    model: &Path,
+    origin: DVec3,
+    paths: &mut Vec<ViewPath<Solid>>,
+    notes: &mut Vec<String>,
+) {
     for ending in ["views.json", "walk.views.json"] {
         let file = model.with_file_name(format!("{}.{ending}", stem(model)));
         if !file.is_file() {
@@ -174,7 +213,12 @@ pub(super) fn beside_model(model: &Path, origin: DVec3, paths: &mut Vec<ViewPath
 }
 
 /// A flatland eye that stands at `[x, y]` and looks along `[dx, dy]`.
-pub(super) fn flat_view(stand: [f64; 4], fov_degrees: f64, near: f32, far: f32) -> Result<View<Flat>, &'static str> {
+pub(super) fn flat_view(
+    stand: [f64; 4],
+    fov_degrees: f64,
+    near: f32,
+    far: f32,
+) -> Result<View<Flat>, &'static str> {
     let [x, y, dx, dy] = stand;
     let position = glam::Vec2::new(x as f32, y as f32);
     let target = glam::Vec2::new((x + dx) as f32, (y + dy) as f32);
@@ -196,7 +240,8 @@ mod tests {
             near: 0.01,
             far: 123456.7,
         };
-        let path = ViewPath { name: "to \"and\" fro".into(), views: vec![View { eye, width: 640, height: 480 }; 3] };
+        let path =
+            ViewPath { name: "to \"and\" fro".into(), views: vec![View { eye, width: 640, height: 480 }; 3] };
         let text = write_views(&path, DVec3::ZERO);
         assert_eq!(parse_views::<Solid>(text.as_bytes(), "t", DVec3::ZERO).expect("valid"), path);
         assert!(text.contains("\"fov_y_degrees\":47.25,"), "{text}");

@@ -1,6 +1,7 @@
 //! The open trace format: a run as JSON Lines, for any program to write or read.
 //!
-//! Line 1 is the header, `{"trace":1,"scene":…,"method":…,"params":{…},"view":{…}}`; then one object an event,
+//! Line 1 is the header, `{"trace":1,"scene":…,"method":…,"params":{…},"view":{…}}`; then one object an
+//! event,
 //! `{"step":k,"frame":f,"event":"NodeClassified","line":"Visible:4",…}` with fields named by the method.
 //! `step` k is the state after the first k events of its frame: it starts at 1 and ascends; steps may be left
 //! out (a coarse trace leaves out the lines of pseudocode). `frame` never descends. `line` is the line of
@@ -96,8 +97,18 @@ impl TraceError {
 /// # Errors
 /// What `to` returns.
 pub fn write_header(header: &Header, to: &mut impl Write) -> io::Result<()> {
-    write!(to, "{{\"trace\":{VERSION},\"scene\":{},\"method\":{}", Json::from(&*header.scene), Json::from(&*header.method))?;
-    write!(to, ",\"params\":{},\"view\":{}", Json::from(header.params.clone()), Json::from(header.view.clone()))?;
+    write!(
+        to,
+        "{{\"trace\":{VERSION},\"scene\":{},\"method\":{}",
+        Json::from(&*header.scene),
+        Json::from(&*header.method)
+    )?;
+    write!(
+        to,
+        ",\"params\":{},\"view\":{}",
+        Json::from(header.params.clone()),
+        Json::from(header.view.clone())
+    )?;
     for (key, value) in &header.more {
         write!(to, ",{}:{value}", Json::from(&**key))?;
     }
@@ -120,7 +131,13 @@ pub fn knob_json(value: &KnobValue) -> Json {
 ///
 /// # Errors
 /// What `to` returns.
-pub fn write_film<S: Space>(film: &dyn Film<S>, frame: u64, detail: Detail, to: &mut impl Write, stop: &dyn Fn(usize) -> bool) -> io::Result<u64> {
+pub fn write_film<S: Space>(
+    film: &dyn Film<S>,
+    frame: u64,
+    detail: Detail,
+    to: &mut impl Write,
+    stop: &dyn Fn(usize) -> bool,
+) -> io::Result<u64> {
     let code = film.card().code;
     let (mut line, mut written) = (None, 0);
     for (i, event) in film.events().iter().enumerate() {
@@ -145,7 +162,14 @@ pub fn write_film<S: Space>(film: &dyn Film<S>, frame: u64, detail: Detail, to: 
     Ok(written)
 }
 
-fn write_entry(to: &mut impl Write, step: u64, frame: u64, kind: &str, line: Option<&str>, fields: &[Field]) -> io::Result<()> {
+fn write_entry(
+    to: &mut impl Write,
+    step: u64,
+    frame: u64,
+    kind: &str,
+    line: Option<&str>,
+    fields: &[Field],
+) -> io::Result<()> {
     write!(to, "{{\"step\":{step},\"frame\":{frame},\"event\":{}", Json::from(kind))?;
     if let Some(line) = line {
         write!(to, ",\"line\":{}", Json::from(line))?;
@@ -194,11 +218,22 @@ impl<R: BufRead> Reader<R> {
     /// When line 1 is not a header of this version.
     pub fn new(from: R) -> Result<(Header, Self), TraceError> {
         let mut reader = Self { from, line: 0, last: None };
-        let Some(mut object) = reader.object()? else { return Err(reader.bad("the file is empty; line 1 must be the header")) };
+        let Some(mut object) = reader.object()? else {
+            return Err(reader.bad("the file is empty; line 1 must be the header"));
+        };
         match object.remove("trace") {
             Some(v) if v.as_u64() == Some(VERSION) => {}
-            Some(v) => return Err(reader.bad(format!("this is trace version {}; only version {VERSION} is known", shortened(&v)))),
-            None => return Err(reader.bad("`trace` is missing; line 1 must be the header, such as {\"trace\":1,…}")),
+            Some(v) => {
+                return Err(reader.bad(format!(
+                    "this is trace version {}; only version {VERSION} is known",
+                    shortened(&v)
+                )));
+            }
+            None => {
+                return Err(
+                    reader.bad("`trace` is missing; line 1 must be the header, such as {\"trace\":1,…}")
+                );
+            }
         }
         let header = Header {
             scene: reader.text(&mut object, "scene")?,
@@ -228,11 +263,15 @@ impl<R: BufRead> Reader<R> {
         match self.last {
             _ if step == 0 => return Err(self.bad("`step` is 0; the first event of a frame leads to step 1")),
             Some((f, _)) if frame < f => return Err(self.bad(format!("frame {frame} comes after frame {f}"))),
-            Some((f, s)) if frame == f && step <= s => return Err(self.bad(format!("step {step} comes after step {s} of the same frame"))),
+            Some((f, s)) if frame == f && step <= s => {
+                return Err(self.bad(format!("step {step} comes after step {s} of the same frame")));
+            }
             _ => self.last = Some((frame, step)),
         }
         if let Some((key, _)) = object.iter().find(|(_, v)| !is_field(v)) {
-            return Err(self.bad(format!("`{key}` must be a number, a word, true, false, null or a list of numbers")));
+            return Err(
+                self.bad(format!("`{key}` must be a number, a word, true, false, null or a list of numbers"))
+            );
         }
         Ok(Some(Entry { step, frame, event, line, fields: object }))
     }
@@ -282,7 +321,9 @@ impl<R: BufRead> Reader<R> {
     }
     fn whole(&self, object: &mut Map<String, Json>, key: &str) -> Result<u64, TraceError> {
         let value = self.field(object, key)?;
-        value.as_u64().ok_or_else(|| self.bad(format!("`{key}` must be a whole number from 0, not {}", shortened(&value))))
+        value.as_u64().ok_or_else(|| {
+            self.bad(format!("`{key}` must be a whole number from 0, not {}", shortened(&value)))
+        })
     }
 }
 

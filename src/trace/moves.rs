@@ -28,7 +28,8 @@ impl Detail {
 pub struct Moves {
     /// Of an `Entered`: the matching `Left`; of a `Left`: its `Entered`; otherwise itself.
     partner: Vec<u32>,
-    /// Index of the `Entered` around each event, or `NONE`. (An `Entered` and its `Left` lie in the node around them.)
+    /// Index of the `Entered` around each event, or `NONE`. (An `Entered` and its `Left` lie in the node
+    /// around them.)
     around: Vec<u32>,
 }
 
@@ -37,7 +38,8 @@ const NONE: u32 = u32::MAX;
 impl Moves {
     /// Reads the events once.
     pub fn new(events: &[Event]) -> Self {
-        let mut moves = Self { partner: (0..events.len() as u32).collect(), around: Vec::with_capacity(events.len()) };
+        let mut moves =
+            Self { partner: (0..events.len() as u32).collect(), around: Vec::with_capacity(events.len()) };
         let mut open: Vec<u32> = Vec::new();
         for (i, event) in events.iter().enumerate() {
             if let Event::Left(_) = event
@@ -74,7 +76,9 @@ impl Moves {
         match next {
             Some(i) if matches!(events[i], Event::Entered(_)) => self.partner[i] as usize + 1,
             // Just entered: finish this node.
-            Some(i) if i > 0 && i == step && matches!(events[i - 1], Event::Entered(_)) => self.partner[i - 1] as usize + 1,
+            Some(i) if i > 0 && i == step && matches!(events[i - 1], Event::Entered(_)) => {
+                self.partner[i - 1] as usize + 1
+            }
             Some(i) => i + 1,
             None => events.len(),
         }
@@ -129,18 +133,25 @@ impl Moves {
     }
     /// The line of pseudocode at a step: the last one reached.
     pub fn line(&self, events: &[Event], step: usize) -> Option<u8> {
-        events[..step.min(events.len())].iter().rev().find_map(|e| if let Event::Line(l) = e { Some(*l) } else { None })
+        events[..step.min(events.len())]
+            .iter()
+            .rev()
+            .find_map(|e| if let Event::Line(l) = e { Some(*l) } else { None })
     }
     /// How deep event `at` is nested.
     pub fn depth(&self, at: usize) -> usize {
-        std::iter::successors(Some(self.around[at]), |&e| (e != NONE).then(|| self.around[e as usize])).take_while(|&e| e != NONE).count()
+        std::iter::successors(Some(self.around[at]), |&e| (e != NONE).then(|| self.around[e as usize]))
+            .take_while(|&e| e != NONE)
+            .count()
     }
 }
 
 /// What an event is about, if it is about a node or primitive.
 pub fn subject(event: &Event) -> (Option<NodeId>, Option<PrimId>) {
     match *event {
-        Event::Entered(n) | Event::Left(n) | Event::Queued(n, _) | Event::DecidedNode(n, _) => (Some(n), None),
+        Event::Entered(n) | Event::Left(n) | Event::Queued(n, _) | Event::DecidedNode(n, _) => {
+            (Some(n), None)
+        }
         Event::DecidedPrim(p, _) => (None, Some(p)),
         _ => (None, None),
     }

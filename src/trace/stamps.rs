@@ -46,8 +46,14 @@ pub struct Counts {
 
 impl Counts {
     /// The order of [`Counts::prims`].
-    pub const VERDICTS: [Verdict; 6] =
-        [Verdict::Outside, Verdict::Hidden, Verdict::Partial, Verdict::Visible, Verdict::Approximated, Verdict::OverBudget];
+    pub const VERDICTS: [Verdict; 6] = [
+        Verdict::Outside,
+        Verdict::Hidden,
+        Verdict::Partial,
+        Verdict::Visible,
+        Verdict::Approximated,
+        Verdict::OverBudget,
+    ];
     /// Primitives with this verdict.
     pub fn of(&self, verdict: Verdict) -> usize {
         self.prims[verdict as usize]
@@ -146,6 +152,10 @@ impl Stamps {
     pub fn counts(&self, step: usize) -> Counts {
         let upto = |steps: &Vec<u32>| steps.partition_point(|&s| s as usize <= step);
         let prims = std::array::from_fn(|v| upto(&self.decided_steps[v]));
-        Counts { nodes_entered: upto(&self.entered_steps), prims, undecided: self.live - prims.iter().sum::<usize>() }
+        Counts {
+            nodes_entered: upto(&self.entered_steps),
+            prims,
+            undecided: self.live - prims.iter().sum::<usize>(),
+        }
     }
 }

@@ -50,7 +50,11 @@ fn stamps_equal_the_fold<S: Methods>(method: &str, settings: &[(&str, &str)]) {
         }
         let counts = stamps.counts(step);
         for v in Counts::VERDICTS {
-            assert_eq!(counts.of(v), fold.iter().flatten().filter(|f| **f == v).count(), "{method}: {v:?} at step {step}");
+            assert_eq!(
+                counts.of(v),
+                fold.iter().flatten().filter(|f| **f == v).count(),
+                "{method}: {v:?} at step {step}"
+            );
         }
         assert_eq!(counts.undecided, fold.iter().filter(|f| f.is_none()).count());
         let entered = film.events()[..step].iter().filter(|e| matches!(e, Event::Entered(_))).count();
@@ -152,7 +156,11 @@ fn the_line_is_the_last_one_reached() {
 fn a_capped_film_says_so_and_can_be_stepped() {
     let scene = samples::soup::<Flat>(9, 200);
     let view = framing_view::<Flat>(&scene.bounds(), 64, 1);
-    let mut run = Flat::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+    let mut run = Flat::method("frustum")
+        .expect("a method")
+        .ready(&scene, &Settings::default(), &Quiet)
+        .expect("ok")
+        .expect("ok");
     let whole = run.record(&view, usize::MAX);
     let capped = run.record(&view, 7);
     assert_eq!(capped.film.events(), &whole.film.events()[..7]);

@@ -2,17 +2,21 @@
 //!
 //! A certificate is what a film recorded as evidence of a cull, or a decision that something is hidden.
 //!
-//! - *Outside a plane*: the plane, the box and its distance. The checker derives the planes anew from the Eye's definition, in f64, and
-//!   shares no arithmetic with [`crate::geometry::Frustum`]; it asks that the box holds every point it stands for, that every
-//!   corner lies outside the plane named, and that the recorded distances are right within their recorded error and the
+//! - *Outside a plane*: the plane, the box and its distance. The checker derives the planes anew from the
+//!   Eye's definition, in f64, and shares no arithmetic with [`crate::geometry::Frustum`]; it asks that the
+//! box holds every point it stands for, that every
+//!   corner lies outside the plane named, and that the recorded distances are right within their recorded
+//! error and the
 //!   rounding of the view's axes to 32 bits, which methods and rasterizer share.
 //! - *Facing away*: the eye lies strictly behind the primitive's plane, in exact arithmetic.
-//! - *Behind*, of a node or of an object whose occlusion was recorded: every pixel center's ray that meets its box meets a surface
-//!   of the whole scene first, and no primitive that lies in the box owns a pixel. The module `hidden` says how, and what is
+//! - *Behind*, of a node or of an object whose occlusion was recorded: every pixel center's ray that meets
+//!   its box meets a surface of the whole scene first, and no primitive that lies in the box owns a pixel.
+//! The module `hidden` says how, and what is
 //!   allowed for rounding. Below a node that was proven hidden nothing is left to prove.
 //! - *Unseen*, of a primitive that was decided by itself: it owns no pixel.
 //!
-//! Cost: O(events + primitives culled), and of what is hidden the image once and O(pixels in the rectangle of each box).
+//! Cost: O(events + primitives culled), and of what is hidden the image once and O(pixels in the rectangle of
+//! each box).
 
 use std::cell::OnceCell;
 
@@ -90,11 +94,22 @@ pub fn certificates<S: Drawable>(film: &dyn Film<S>) -> Vec<Certificate> {
                 let fields = film.fields(i).1;
                 hidden_object(&fields).map_or_else(
                     || certificate(step, &fields),
-                    |object| behind(Subject::Object(object), Aabb::of(of_object(film.scene(), object).flat_map(|p| film.scene().prim_points(p)))),
+                    |object| {
+                        behind(
+                            Subject::Object(object),
+                            Aabb::of(
+                                of_object(film.scene(), object).flat_map(|p| film.scene().prim_points(p)),
+                            ),
+                        )
+                    },
                 )
             }
-            Event::DecidedNode(node, Verdict::Hidden) => behind(Subject::Node(node), film.hierarchy().bounds(node)),
-            Event::DecidedPrim(prim, Verdict::Hidden) => Some(Certificate { step, subject: Subject::Prim(prim), claim: Claim::Unseen }),
+            Event::DecidedNode(node, Verdict::Hidden) => {
+                behind(Subject::Node(node), film.hierarchy().bounds(node))
+            }
+            Event::DecidedPrim(prim, Verdict::Hidden) => {
+                Some(Certificate { step, subject: Subject::Prim(prim), claim: Claim::Unseen })
+            }
             _ => None,
         }
     };
@@ -114,7 +129,8 @@ fn of_object<S: Drawable>(scene: &Scene<S>, object: ObjectId) -> impl Iterator<I
 fn hidden_object(fields: &[Field]) -> Option<ObjectId> {
     let get = |name: &str| fields.iter().find(|f| f.name == name).map(|f| &f.value);
     let Some(Value::Integer(object)) = get("object") else { return None };
-    let full = matches!(get("occlusion"), Some(Value::Word(word)) if word == "full") || get("members").is_some();
+    let full =
+        matches!(get("occlusion"), Some(Value::Word(word)) if word == "full") || get("members").is_some();
     u32::try_from(*object).ok().filter(|_| full).map(ObjectId)
 }
 
@@ -138,7 +154,9 @@ fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
                 box_max: list("box_max")?,
             }
         }
-        (None, Some(Value::Number(distance))) if *distance < 0.0 => Claim::FacesAway { eye_distance: *distance },
+        (None, Some(Value::Number(distance))) if *distance < 0.0 => {
+            Claim::FacesAway { eye_distance: *distance }
+        }
         _ => return None,
     };
     Some(Certificate { step, subject, claim })
@@ -180,10 +198,14 @@ pub fn check_film<S: Drawable>(film: &dyn Film<S>) -> Result<usize, Rejection> {
             Event::DecidedPrim(p, Verdict::Outside) => Subject::Prim(p),
             _ => continue,
         };
-        // Evidence stands right before the decision that rests on it; that of an object holds for all its primitives.
+        // Evidence stands right before the decision that rests on it; that of an object holds for all its
+        // primitives.
         let of_object = matches!(subject, Subject::Prim(p) if objects[film.scene().object_of(p).at()]);
         if !of_object && proven.iter().rev().take(8).all(|s| *s != subject) {
-            return Err(Rejection { step, why: format!("{subject:?} is called outside without a certificate") });
+            return Err(Rejection {
+                step,
+                why: format!("{subject:?} is called outside without a certificate"),
+            });
         }
     }
     Ok(certificates.len())
@@ -217,7 +239,10 @@ const AXIS_HALF_ULPS: f64 = 8.0;
 impl<'a, S: Drawable> Checker<'a, S> {
     /// For the certificates of a film.
     pub fn of(film: &'a dyn Film<S>) -> Self {
-        let one_sided = film.knobs().iter().any(|(knob, value)| knob.name == "backface-culling" && *value == KnobValue::Switch(true));
+        let one_sided = film
+            .knobs()
+            .iter()
+            .any(|(knob, value)| knob.name == "backface-culling" && *value == KnobValue::Switch(true));
         Self { one_sided, ..Self::new(film.scene(), film.hierarchy(), film.view()) }
     }
 
@@ -232,7 +257,8 @@ impl<'a, S: Drawable> Checker<'a, S> {
         // `blur` is how much the axis' own error exceeds that of the line of sight.
         let mut pair = |names: [&'static str; 2], axis: DVec3, slope: f64, blur: f64| {
             for (name, sum) in [(names[0], forward * slope + axis), (names[1], forward * slope - axis)] {
-                let rounding = ((forward * slope).abs() + axis.abs() + DVec3::splat(blur - 1.0)) * (half_ulps / sum.length());
+                let rounding = ((forward * slope).abs() + axis.abs() + DVec3::splat(blur - 1.0))
+                    * (half_ulps / sum.length());
                 planes.push(Plane { name, normal: sum.normalize(), offset: 0.0, rounding });
             }
         };
@@ -249,7 +275,15 @@ impl<'a, S: Drawable> Checker<'a, S> {
         let rounding = forward.abs() * half_ulps;
         planes.push(Plane { name: "near", normal: forward, offset: -f64::from(eye.near), rounding });
         planes.push(Plane { name: "far", normal: -forward, offset: f64::from(eye.far), rounding });
-        Self { scene, hierarchy, view: *view, one_sided: false, sight: OnceCell::new(), eye: position, planes }
+        Self {
+            scene,
+            hierarchy,
+            view: *view,
+            one_sided: false,
+            sight: OnceCell::new(),
+            eye: position,
+            planes,
+        }
     }
 
     /// Checks one certificate.
@@ -258,10 +292,12 @@ impl<'a, S: Drawable> Checker<'a, S> {
     /// What does not hold.
     pub fn check(&self, certificate: &Certificate) -> Result<(), Rejection> {
         let checked = match (&certificate.claim, certificate.subject) {
-            (Claim::FacesAway { eye_distance }, Subject::Prim(prim)) if self.is_live(prim) => self.faces_away(prim, *eye_distance),
-            (Claim::Beyond { plane, far_corner, error, box_min, box_max }, subject) => {
-                self.points(subject).and_then(|points| self.beyond(&points, plane, *far_corner, *error, &[box_min, box_max]))
+            (Claim::FacesAway { eye_distance }, Subject::Prim(prim)) if self.is_live(prim) => {
+                self.faces_away(prim, *eye_distance)
             }
+            (Claim::Beyond { plane, far_corner, error, box_min, box_max }, subject) => self
+                .points(subject)
+                .and_then(|points| self.beyond(&points, plane, *far_corner, *error, &[box_min, box_max])),
             (Claim::Unseen, Subject::Prim(prim)) if self.is_live(prim) => self.sight().unseen(prim),
             (Claim::Behind { box_min, box_max }, subject @ (Subject::Node(_) | Subject::Object(_))) => {
                 self.prims(subject).and_then(|prims| self.behind(subject, prims, box_min, box_max))
@@ -279,15 +315,27 @@ impl<'a, S: Drawable> Checker<'a, S> {
         self.sight.get_or_init(|| Sight::new(self.scene, &self.view, self.one_sided))
     }
 
-    fn behind(&self, subject: Subject, mut prims: Vec<PrimId>, box_min: &[f64], box_max: &[f64]) -> Result<(), String> {
+    fn behind(
+        &self,
+        subject: Subject,
+        mut prims: Vec<PrimId>,
+        box_min: &[f64],
+        box_max: &[f64],
+    ) -> Result<(), String> {
         if box_min.len() != S::Vector::AXES || box_max.len() != S::Vector::AXES {
             return Err("the box has another number of axes than the space".into());
         }
-        let [low, high] = [box_min, box_max].map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
-        let holds = |p: PrimId| self.scene.prim_points(p).map(widened).all(|p| p.cmpge(low).all() && p.cmple(high).all());
-        // A primitive that crosses the border of a cell may stand with it and reach out of its box; an object never does.
+        let [low, high] =
+            [box_min, box_max].map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
+        let holds = |p: PrimId| {
+            self.scene.prim_points(p).map(widened).all(|p| p.cmpge(low).all() && p.cmple(high).all())
+        };
+        // A primitive that crosses the border of a cell may stand with it and reach out of its box; an object
+        // never does.
         let must_hold_all = matches!(subject, Subject::Object(_));
-        let of_node = |node: NodeId| (widened(self.hierarchy.bounds(node).min), widened(self.hierarchy.bounds(node).max));
+        let of_node = |node: NodeId| {
+            (widened(self.hierarchy.bounds(node).min), widened(self.hierarchy.bounds(node).max))
+        };
         if matches!(subject, Subject::Node(node) if of_node(node) != (low, high)) {
             return Err("the box is not that of the node".into());
         }
@@ -310,15 +358,27 @@ impl<'a, S: Drawable> Checker<'a, S> {
     /// Every primitive that a subject stands for.
     fn prims(&self, subject: Subject) -> Result<Vec<PrimId>, String> {
         Ok(match subject {
-            Subject::Node(node) if node.at() < self.hierarchy.node_count() => self.hierarchy.prims(node).to_vec(),
+            Subject::Node(node) if node.at() < self.hierarchy.node_count() => {
+                self.hierarchy.prims(node).to_vec()
+            }
             Subject::Prim(prim) if self.is_live(prim) => vec![prim],
-            Subject::Object(object) if object.at() < self.scene.objects().len() => of_object(self.scene, object).collect(),
+            Subject::Object(object) if object.at() < self.scene.objects().len() => {
+                of_object(self.scene, object).collect()
+            }
             other => return Err(format!("{other:?} is not in the scene")),
         })
     }
 
-    fn beyond(&self, points: &[DVec3], plane: &str, far_corner: f64, error: f64, bounds: &[&Vec<f64>; 2]) -> Result<(), String> {
-        let Some(Plane { normal, offset, rounding, .. }) = self.planes.iter().find(|p| p.name == plane) else {
+    fn beyond(
+        &self,
+        points: &[DVec3],
+        plane: &str,
+        far_corner: f64,
+        error: f64,
+        bounds: &[&Vec<f64>; 2],
+    ) -> Result<(), String> {
+        let Some(Plane { normal, offset, rounding, .. }) = self.planes.iter().find(|p| p.name == plane)
+        else {
             return Err(format!("the view volume has no plane `{plane}`"));
         };
         if bounds.iter().any(|b| b.len() != S::Vector::AXES) {
@@ -338,7 +398,9 @@ impl<'a, S: Drawable> Checker<'a, S> {
             return Err(format!("the recorded distance {far_corner} does not exceed its error {error}"));
         }
         if (distance - far_corner).abs() > error + slack {
-            return Err(format!("the recorded distance from the {plane} plane is {far_corner}, the true one {distance}"));
+            return Err(format!(
+                "the recorded distance from the {plane} plane is {far_corner}, the true one {distance}"
+            ));
         }
         Ok(())
     }
@@ -348,7 +410,11 @@ impl<'a, S: Drawable> Checker<'a, S> {
         let to_eye = self.eye - p[0];
         let (sign, normal, edges) = if S::Vector::AXES == 2 {
             let edge = p[1] - p[0];
-            (orient2d(flat(p[0]), flat(p[1]), flat(self.eye)), DVec3::new(-edge.y, edge.x, 0.0), edge.length())
+            (
+                orient2d(flat(p[0]), flat(p[1]), flat(self.eye)),
+                DVec3::new(-edge.y, edge.x, 0.0),
+                edge.length(),
+            )
         } else {
             let (u, v) = (p[1] - p[0], p[2] - p[0]);
             (orient3d(p[0], p[1], p[2], self.eye), u.cross(v), u.length() * v.length())

@@ -34,7 +34,8 @@ struct Image {
 /// Mean FLIP of two RGBA images (alpha is ignored) of `width` × `height` pixels: 0 equal, 1 as different as
 /// can be. Exactly 0 for equal images.
 pub fn flip_mean(reference: &[u8], test: &[u8], width: usize, height: usize) -> f64 {
-    let color_filters = [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
+    let color_filters =
+        [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
     let features = Features::new();
     // Every filter is as wide as the widest.
     let reach = color_filters.iter().map(|f| f.reach()).chain([features.reach]).max().unwrap_or(0);
@@ -58,7 +59,12 @@ struct Region {
 
 impl Region {
     fn grown(&self, by: usize, width: usize, height: usize) -> Self {
-        Self { x0: self.x0.saturating_sub(by), x1: (self.x1 + by).min(width), y0: self.y0.saturating_sub(by), y1: (self.y1 + by).min(height) }
+        Self {
+            x0: self.x0.saturating_sub(by),
+            x1: (self.x1 + by).min(width),
+            y0: self.y0.saturating_sub(by),
+            y1: (self.y1 + by).min(height),
+        }
     }
 }
 
@@ -68,7 +74,12 @@ fn changed(a: &[u8], b: &[u8], width: usize, height: usize) -> Option<Region> {
     for (i, (p, q)) in a.chunks_exact(4).zip(b.chunks_exact(4)).enumerate() {
         if p[..3] != q[..3] {
             let (x, y) = (i % width, i / width);
-            region = Region { x0: region.x0.min(x), x1: region.x1.max(x + 1), y0: region.y0.min(y), y1: region.y1.max(y + 1) };
+            region = Region {
+                x0: region.x0.min(x),
+                x1: region.x1.max(x + 1),
+                y0: region.y0.min(y),
+                y1: region.y1.max(y + 1),
+            };
         }
     }
     (region.x1 > 0).then_some(region)
@@ -88,7 +99,8 @@ fn flip_map(reference: &Image, test: &Image, color: &[Spread; 3], features: &Fea
     let pixel = |i: usize| {
         let color = redistribute(hyab(&reference.0[i], &test.0[i]).powf(QC), most);
         let ([edge_r, point_r], [edge_t, point_t]) = (reference.1[i], test.1[i]);
-        let feature = ((edge_r - edge_t).abs().max((point_r - point_t).abs()) / 2f64.sqrt()).powf(QF).clamp(0.0, 1.0);
+        let feature =
+            ((edge_r - edge_t).abs().max((point_r - point_t).abs()) / 2f64.sqrt()).powf(QF).clamp(0.0, 1.0);
         // Section 4.3: a difference of features makes a difference of colors more visible.
         color.powf(1.0 - feature)
     };
@@ -98,7 +110,11 @@ fn flip_map(reference: &Image, test: &Image, color: &[Spread; 3], features: &Fea
 /// Section 4.1: small and medium differences use 95 % of the range.
 fn redistribute(difference: f64, most: f64) -> f64 {
     let knee = PC * most;
-    if difference < knee { difference * PT / knee } else { PT + (difference - knee) / (most - knee) * (1.0 - PT) }
+    if difference < knee {
+        difference * PT / knee
+    } else {
+        PT + (difference - knee) / (most - knee) * (1.0 - PT)
+    }
 }
 
 /// Section 4.1: the image as the eye's contrast sensitivity lets it through, in Hunt-adjusted CIELAB.
@@ -133,7 +149,11 @@ impl Kernel {
             for x in 0..width {
                 let tap = |(k, weight): (usize, &f64)| {
                     let offset = k as isize - reach;
-                    let at = if vertical { clamp(y as isize + offset, height) * width + x } else { y * width + clamp(x as isize + offset, width) };
+                    let at = if vertical {
+                        clamp(y as isize + offset, height) * width + x
+                    } else {
+                        y * width + clamp(x as isize + offset, width)
+                    };
                     weight * from[at]
                 };
                 to.push(self.0.iter().enumerate().map(tap).sum());
@@ -199,7 +219,8 @@ impl Features {
     /// Strength of edges and of points in the achromatic channel, per pixel.
     fn of(&self, image: &Image) -> Vec<[f64; 2]> {
         let (w, h) = (image.width, image.height);
-        let light: Vec<f64> = image.pixels.iter().map(|p| (opponent_of_xyz(xyz_of_linear(p))[0] + 16.0) / 116.0).collect();
+        let light: Vec<f64> =
+            image.pixels.iter().map(|p| (opponent_of_xyz(xyz_of_linear(p))[0] + 16.0) / 116.0).collect();
         let strength = |detector: &Kernel| {
             let x = self.gauss.along(&detector.along(&light, w, h, false), w, h, true);
             let y = detector.along(&self.gauss.along(&light, w, h, false), w, h, true);
@@ -244,7 +265,8 @@ fn white() -> Rgb {
 /// By Cramer's rule.
 fn linear_of_xyz(xyz: Rgb) -> Rgb {
     let column = |c: usize| [TO_XYZ[0][c], TO_XYZ[1][c], TO_XYZ[2][c]];
-    let cross = |a: Rgb, b: Rgb| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cross =
+        |a: Rgb, b: Rgb| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let dot = |a: Rgb, b: Rgb| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let [r, g, b] = [column(0), column(1), column(2)];
     let (gb, br, rg) = (cross(g, b), cross(b, r), cross(r, g));
@@ -325,9 +347,15 @@ mod tests {
         for (name, w, h, make, want) in cases {
             let [a, b] = images(w, h, make);
             let got = flip_mean(&a, &b, w, h);
-            assert!((got - want).abs() < 2e-5 * want.max(0.05), "{name}: {got}, the authors' program gives {want}");
+            assert!(
+                (got - want).abs() < 2e-5 * want.max(0.05),
+                "{name}: {got}, the authors' program gives {want}"
+            );
             let back = flip_mean(&b, &a, w, h);
-            assert!((back - got).abs() < 1e-12, "{name}: the difference of a pair does not depend on its order");
+            assert!(
+                (back - got).abs() < 1e-12,
+                "{name}: the difference of a pair does not depend on its order"
+            );
         }
     }
 
@@ -346,7 +374,8 @@ mod tests {
         b.copy_from_slice(&a);
         b[(88 * 120 + 3) * 4] ^= 0x80;
         let [ra, rb] = [&a, &b].map(|rgba| crop(rgba, 120, &Region { x0: 0, x1: 120, y0: 0, y1: 90 }));
-        let filters = [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
+        let filters =
+            [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
         let whole = flip_map(&ra, &rb, &filters, &Features::new()).iter().sum::<f64>() / (120.0 * 90.0);
         let near = flip_mean(&a, &b, 120, 90);
         assert!(near > 0.0 && (whole - near).abs() < 1e-12, "{whole} and {near}");

@@ -1,14 +1,16 @@
-//! Is what a method called hidden really hidden? Asked of an image and of rays, not of the method's own arithmetic.
+//! Is what a method called hidden really hidden? Asked of an image and of rays, not of the method's own
+//! arithmetic.
 //!
-//! The image is that of the whole scene, drawn once a view by the plain reference of the rasterizer. Of a box it is asked at every
-//! pixel center whose ray meets the box: does the image show a surface that is nearer than where that ray enters the
-//! box? Rays come from the definition of the Eye and meet boxes slab by slab, all in f64. Of a primitive it is asked
-//! that it owns no pixel.
+//! The image is that of the whole scene, drawn once a view by the plain reference of the rasterizer. Of a box
+//! it is asked at every pixel center whose ray meets the box: does the image show a surface that is nearer
+//! than where that ray enters the box? Rays come from the definition of the Eye and meet boxes slab by slab,
+//! all in f64. Of a primitive it is asked that it owns no pixel.
 //!
-//! Allowances, all in favor of the claim: vertices are snapped to 1/256 pixel, so a surface counts as being as near as it
-//! is anywhere within [`SNAP_PX`] of the pixel's center, but no nearer than its nearest corner; the axes of the view are
-//! rounded to 32 bits, so depths are compared with a relative slack of [`DEPTH_SLACK`]. Where only the allowance makes a surface
-//! near enough it must not belong to the subject itself, or else whatever fills the front of its own box would hide it.
+//! Allowances, all in favor of the claim: vertices are snapped to 1/256 pixel, so a surface counts as being
+//! as near as it is anywhere within [`SNAP_PX`] of the pixel's center, but no nearer than its nearest corner;
+//! the axes of the view are rounded to 32 bits, so depths are compared with a relative slack of
+//! [`DEPTH_SLACK`]. Where only the allowance makes a surface near enough it must not belong to the subject
+//! itself, or else whatever fills the front of its own box would hide it.
 //!
 //! Cost: the image once, O(primitives × pixels in their boxes); a claim O(pixels in the box's rectangle).
 
@@ -19,10 +21,11 @@ use crate::geometry::{PrimId, Vector, View};
 use crate::raster::{Drawable, Options, Target, visible};
 use crate::scene::Scene;
 
-/// How far the snapping of its corners to 1/256 pixel can move a surface, pixels in each direction: half a step, and
-/// as much again for the rounding of the view's axes over 16384 pixels.
+/// How far the snapping of its corners to 1/256 pixel can move a surface, pixels in each direction: half a
+/// step, and as much again for the rounding of the view's axes over 16384 pixels.
 const SNAP_PX: f64 = 1.0 / 256.0;
-/// Relative allowance on depths: 32 half-ulps of 32 bits, twice what the rasterizer's axes and planes come to.
+/// Relative allowance on depths: 32 half-ulps of 32 bits, twice what the rasterizer's axes and planes come
+/// to.
 const DEPTH_SLACK: f64 = 16.0 * f32::EPSILON as f64;
 
 /// The image of a whole scene and the rays through its pixels.
@@ -36,7 +39,8 @@ pub(super) struct Sight<'a, S: Drawable> {
     far: f64,
 }
 
-/// Rays through an image: at depth 1 a ray has come as far as `forward + right·x + up·y`, x and y from −1 to 1.
+/// Rays through an image: at depth 1 a ray has come as far as `forward + right·x + up·y`, x and y from −1 to
+/// 1.
 struct Rays {
     eye: DVec3,
     forward: DVec3,
@@ -68,7 +72,8 @@ impl Rays {
         self.forward + self.right * x + self.up * y
     }
 
-    /// The pixels that a box may cover, `[x0, x1, y0, y1]` half-open: all of them if part of it is not well before the eye.
+    /// The pixels that a box may cover, `[x0, x1, y0, y1]` half-open: all of them if part of it is not well
+    /// before the eye.
     fn rectangle(&self, corners: &[DVec3; 8], near: f64) -> [u32; 4] {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for corner in corners {
@@ -83,7 +88,9 @@ impl Rays {
                 high[a] = high[a].max(at[a]);
             }
         }
-        let pixel = |v: f64, by: f64, size: u32| ((v * 0.5 + 0.5) * f64::from(size) + by).clamp(0.0, f64::from(size)) as u32;
+        let pixel = |v: f64, by: f64, size: u32| {
+            ((v * 0.5 + 0.5) * f64::from(size) + by).clamp(0.0, f64::from(size)) as u32
+        };
         let (w, h) = (self.width, self.height);
         [pixel(low[0], -1.0, w), pixel(high[0], 2.0, w), pixel(low[1], -1.0, h), pixel(high[1], 2.0, h)]
     }
@@ -110,22 +117,37 @@ impl Rays {
 impl<'a, S: Drawable> Sight<'a, S> {
     /// Draws the whole scene, or where `one_sided` all that does not turn its back to the eye.
     pub fn new(scene: &'a Scene<S>, view: &View<S>, one_sided: bool) -> Self {
-        let prims: Vec<PrimId> = scene.live().iter().copied().filter(|&p| !one_sided || !turns_away(scene, view, p)).collect();
+        let prims: Vec<PrimId> =
+            scene.live().iter().copied().filter(|&p| !one_sided || !turns_away(scene, view, p)).collect();
         let mut image = Target::new(view);
         S::draw_reference(&mut image, scene, view, &prims, &Options::default());
         let mut seen = vec![false; scene.prim_count()];
         visible(&image).iter().for_each(|p| seen[p.at()] = true);
-        Self { scene, image, seen, rays: Rays::new(view), near: f64::from(view.eye.near), far: f64::from(view.eye.far) }
+        Self {
+            scene,
+            image,
+            seen,
+            rays: Rays::new(view),
+            near: f64::from(view.eye.near),
+            far: f64::from(view.eye.far),
+        }
     }
 
     /// Whether a primitive owns no pixel.
     pub fn unseen(&self, prim: PrimId) -> Result<(), String> {
-        if self.seen[prim.at()] { Err(format!("the {} {prim} is called hidden and owns a pixel", S::PRIM)) } else { Ok(()) }
+        if self.seen[prim.at()] {
+            Err(format!("the {} {prim} is called hidden and owns a pixel", S::PRIM))
+        } else {
+            Ok(())
+        }
     }
 
-    /// Whether every ray that meets a box meets a surface before, one that is not of `own` (ascending) where it is close.
+    /// Whether every ray that meets a box meets a surface before, one that is not of `own` (ascending) where
+    /// it is close.
     pub fn behind(&self, low: DVec3, high: DVec3, own: &[PrimId]) -> Result<(), String> {
-        let corners = std::array::from_fn(|k| DVec3::select(glam::BVec3::new(k & 1 == 0, k & 2 == 0, k & 4 == 0), low, high));
+        let corners = std::array::from_fn(|k| {
+            DVec3::select(glam::BVec3::new(k & 1 == 0, k & 2 == 0, k & 4 == 0), low, high)
+        });
         let depths = corners.map(|c: DVec3| (c - self.rays.eye).dot(self.rays.forward));
         let nearest = depths.into_iter().fold(f64::INFINITY, f64::min);
         let [x0, x1, y0, y1] = self.rays.rectangle(&corners, self.near);
@@ -145,11 +167,16 @@ impl<'a, S: Drawable> Sight<'a, S> {
                     continue;
                 }
                 if item == Target::NONE {
-                    return Err(format!("at pixel ({x}, {y}) a ray enters the box at depth {enter}, and no surface is shown"));
+                    return Err(format!(
+                        "at pixel ({x}, {y}) a ray enters the box at depth {enter}, and no surface is shown"
+                    ));
                 }
                 if !self.is_before(shown, PrimId(item), enter, own) {
                     let found = 1.0 / shown;
-                    return Err(format!("at pixel ({x}, {y}) a ray enters the box at depth {enter}, and the surface shown lies at {found}"));
+                    return Err(format!(
+                        "at pixel ({x}, {y}) a ray enters the box at depth {enter}, and the surface shown \
+                         lies at {found}"
+                    ));
                 }
             }
         }
@@ -166,13 +193,19 @@ impl<'a, S: Drawable> Sight<'a, S> {
         reach * enter >= 1.0 - DEPTH_SLACK && own.binary_search(&prim).is_err()
     }
 
-    /// By how much 1/depth of a primitive's plane changes within [`SNAP_PX`], and 1/depth of its nearest corner.
+    /// By how much 1/depth of a primitive's plane changes within [`SNAP_PX`], and 1/depth of its nearest
+    /// corner.
     fn reach(&self, prim: PrimId) -> (f64, f64) {
         let p: Vec<DVec3> = self.scene.prim_points(prim).map(|p| widened(p) - self.rays.eye).collect();
-        let normal = if S::Vector::AXES == 2 { DVec3::new(p[0].y - p[1].y, p[1].x - p[0].x, 0.0) } else { (p[1] - p[0]).cross(p[2] - p[0]) };
+        let normal = if S::Vector::AXES == 2 {
+            DVec3::new(p[0].y - p[1].y, p[1].x - p[0].x, 0.0)
+        } else {
+            (p[1] - p[0]).cross(p[2] - p[0])
+        };
         // On a ray 1/depth is normal·ray / normal·corner, and it changes as the ray does.
         let step = |axis: DVec3, size: u32| (normal.dot(axis) * 2.0 / f64::from(size)).abs();
-        let change = (step(self.rays.right, self.rays.width) + step(self.rays.up, self.rays.height)) * SNAP_PX;
+        let change =
+            (step(self.rays.right, self.rays.width) + step(self.rays.up, self.rays.height)) * SNAP_PX;
         let slope = change / normal.dot(p[0]).abs();
         let nearest = p.iter().map(|c| 1.0 / c.dot(self.rays.forward).max(self.near)).fold(0.0, f64::max);
         // An edge-on surface may be anywhere between its corners.
@@ -198,10 +231,15 @@ mod tests {
 
     /// The same in space, looking along −z.
     fn space() -> (Scene<Solid>, View<Solid>) {
-        let corner = |half: f32, z: f32| [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]].map(Vec3::from);
+        let corner = |half: f32, z: f32| {
+            [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]].map(Vec3::from)
+        };
         let points = [corner(1.0, -4.0), corner(0.5, -8.0)].concat();
-        let scene = Scene::new(Parts::simple("wall", points, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])).expect("a scene");
-        let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0, near: 0.1, far: 100.0 };
+        let scene =
+            Scene::new(Parts::simple("wall", points, vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]))
+                .expect("a scene");
+        let eye =
+            Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0, near: 0.1, far: 100.0 };
         (scene, View { eye, width: 120, height: 90 })
     }
 
@@ -226,9 +264,17 @@ mod tests {
         let (line, image) = (Sight::new(&flat, &flat_view, false), Sight::new(&solid, &solid_view, false));
         for ([half, near, far, aside], hidden) in BOXES {
             let (low, high) = (DVec3::new(aside - half, near, 0.0), DVec3::new(aside + half, far, 0.0));
-            assert_eq!(line.behind(low, high, &[]).is_ok(), hidden, "flatland: {half} from {near} to {far}, {aside} aside");
+            assert_eq!(
+                line.behind(low, high, &[]).is_ok(),
+                hidden,
+                "flatland: {half} from {near} to {far}, {aside} aside"
+            );
             let (low, high) = (DVec3::new(aside - half, -half, -far), DVec3::new(aside + half, half, -near));
-            assert_eq!(image.behind(low, high, &[]).is_ok(), hidden, "space: {half} from {near} to {far}, {aside} aside");
+            assert_eq!(
+                image.behind(low, high, &[]).is_ok(),
+                hidden,
+                "space: {half} from {near} to {far}, {aside} aside"
+            );
         }
         // A wall does not hide the box that it is itself the front of.
         let wall = [PrimId(0), PrimId(1)];

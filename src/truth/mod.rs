@@ -47,7 +47,11 @@ pub struct Judgement {
 impl Judgement {
     /// Drawn visible primitives / visible primitives; 1 where nothing is visible.
     pub fn coverage_ratio(&self) -> f64 {
-        if self.visible.is_empty() { 1.0 } else { (self.visible.len() - self.missed.len()) as f64 / self.visible.len() as f64 }
+        if self.visible.is_empty() {
+            1.0
+        } else {
+            (self.visible.len() - self.missed.len()) as f64 / self.visible.len() as f64
+        }
     }
     /// Wrong pixels / pixels.
     pub fn wrong_pixel_ratio(&self) -> f64 {
@@ -66,10 +70,22 @@ impl Judgement {
 impl Truth {
     /// Truth of a scene whose primitives have two sides, or one if `backface_culling`; drawn by `threads`.
     /// Images have a `background` (linear).
-    pub fn new<S: Drawable>(scene: &Scene<S>, backface_culling: bool, threads: usize, background: [f32; 3]) -> Self {
+    pub fn new<S: Drawable>(
+        scene: &Scene<S>,
+        backface_culling: bool,
+        threads: usize,
+        background: [f32; 3],
+    ) -> Self {
         // Sides are told by the one rule that methods use, so the rasterizer draws both.
         let options = Options { threads, ..Options::default() };
-        Self { prims: scene.live().to_vec(), facing: Vec::new(), backface_culling, options, all: Target::default(), background }
+        Self {
+            prims: scene.live().to_vec(),
+            facing: Vec::new(),
+            backface_culling,
+            options,
+            all: Target::default(),
+            background,
+        }
     }
 
     /// Draws the whole scene; what is visible, ascending.
@@ -91,7 +107,13 @@ impl Truth {
     }
 
     /// Compares an answer, `drawn` in any order and `image` drawn of it, with the whole scene.
-    pub fn judge<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>, drawn: &[PrimId], image: &Target) -> Judgement {
+    pub fn judge<S: Drawable>(
+        &mut self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        drawn: &[PrimId],
+        image: &Target,
+    ) -> Judgement {
         let visible = self.look(scene, view);
         let mut kept = vec![false; scene.prim_count()];
         drawn.iter().for_each(|p| kept[p.at()] = true);
@@ -100,7 +122,8 @@ impl Truth {
         let (mut wrong_pixels, mut flip) = (0, 0.0);
         if wrong_items > 0 {
             let [reference, test] = [&self.all, image].map(|t| shade(t, scene, view, self.background));
-            wrong_pixels = reference.chunks_exact(4).zip(test.chunks_exact(4)).filter(|(a, b)| a != b).count();
+            wrong_pixels =
+                reference.chunks_exact(4).zip(test.chunks_exact(4)).filter(|(a, b)| a != b).count();
             flip = flip_mean(&reference, &test, view.width as usize, view.height as usize);
         }
         let pixels = view.width as usize * view.height as usize;

@@ -1,4 +1,5 @@
-//! Flatland from above: the Observer's view. Wheel zooms to the cursor, dragging pans, the Eye can be grabbed.
+//! Flatland from above: the Observer's view. Wheel zooms to the cursor, dragging pans, the Eye can be
+//! grabbed.
 
 use eframe::egui::{self, Pos2, Sense, pos2};
 use glam::Vec2;
@@ -18,11 +19,17 @@ const AIM_PT: f32 = 54.0;
 /// Shows flatland.
 pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Observer view. {}", state.sentence())));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Observer view. {}", state.sentence()))
+    });
     cache.picture_focused |= response.has_focus();
     if std::mem::take(&mut cache.frame) {
         let mut camera = state.observer;
-        camera.frame_flat(&target_box(state, stage), &stage.scene.bounds(), rect.width() / rect.height().max(1.0));
+        camera.frame_flat(
+            &target_box(state, stage),
+            &stage.scene.bounds(),
+            rect.width() / rect.height().max(1.0),
+        );
         answers.push(Command::Observe(camera));
     }
     cache.aspect = rect.aspect_ratio();
@@ -73,9 +80,11 @@ fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
     let scene = &stage.scene;
     match (state.selection, &stage.recorded) {
         (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => {
-            scene.live().iter().filter(|&&p| scene.object_of(p) == o).fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)))
-        }
+        (Subject::Object(o), _) => scene
+            .live()
+            .iter()
+            .filter(|&&p| scene.object_of(p) == o)
+            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
         (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
         (Subject::Eye, _) => Aabb::of([stage.view.eye.position, stage.view.eye.target]),
         _ => scene.bounds().with(stage.view.eye.position),

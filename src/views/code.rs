@@ -20,14 +20,19 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         let end = stage.counts(stage.events().len());
         for verdict in Counts::VERDICTS.into_iter().filter(|&v| end.of(v) > 0 || v == Verdict::Outside) {
             let mut stops = state.breakpoints.contains(&Breakpoint::Verdict(verdict));
-            if ui.checkbox(&mut stops, verdict.name()).on_hover_text("A run (F5) stops at every such verdict").changed() {
+            if ui
+                .checkbox(&mut stops, verdict.name())
+                .on_hover_text("A run (F5) stops at every such verdict")
+                .changed()
+            {
                 answers.push(Command::BreakVerdict(verdict));
             }
         }
     });
     // A step scrolls to its line; in between the person may scroll away.
-    let is_new =
-        ui.data_mut(|d| d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)) != Some(state.step);
+    let is_new = ui.data_mut(|d| {
+        d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)
+    }) != Some(state.step);
     let width = ui.available_width() - ui.spacing().scroll.bar_width;
     ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
         let right = ui.cursor().left() + width;
@@ -59,13 +64,28 @@ fn fitting_size(ui: &egui::Ui, code: &[CodeLine], width: f32) -> f32 {
 }
 
 /// A line of pseudocode: its breakpoint, a mark at the current one, its text.
-fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bool, size: f32, answers: &mut Answers) {
+fn line_row(
+    state: &State,
+    ui: &mut egui::Ui,
+    i: u8,
+    line: &CodeLine,
+    is_lit: bool,
+    size: f32,
+    answers: &mut Answers,
+) {
     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
     ui.spacing_mut().item_spacing.x = 4.0;
     let stops = state.breakpoints.contains(&Breakpoint::Line(i));
-    let (icon, color) = if stops { (Icon::Dot, ui.visuals().error_fg_color) } else { (Icon::Ring, palette::panel(state).border) };
-    let response = icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label)));
+    let (icon, color) = if stops {
+        (Icon::Dot, ui.visuals().error_fg_color)
+    } else {
+        (Icon::Ring, palette::panel(state).border)
+    };
+    let response =
+        icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
+    response.widget_info(|| {
+        egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label))
+    });
     if response.clicked() {
         answers.push(Command::BreakLine(i));
     }
@@ -75,7 +95,9 @@ fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bo
     if is_lit {
         text = text.background_color(palette::panel(state).lit_line);
     }
-    let response = ui.selectable_label(false, text).on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
+    let response = ui
+        .selectable_label(false, text)
+        .on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
     if response.clicked()
         && let Some(step) = next_time(state, i)
     {
@@ -87,11 +109,22 @@ fn line_row(state: &State, ui: &mut egui::Ui, i: u8, line: &CodeLine, is_lit: bo
 fn values_beside(state: &State, ui: &mut egui::Ui, row: egui::Rect, right: f32, values: &str) -> egui::Rect {
     const GAP: f32 = 16.0;
     let text = RichText::new(values).color(palette::panel(state).accent);
-    let galley = egui::WidgetText::from(text.clone()).into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Body);
+    let galley = egui::WidgetText::from(text.clone()).into_galley(
+        ui,
+        Some(egui::TextWrapMode::Extend),
+        f32::INFINITY,
+        egui::TextStyle::Body,
+    );
     if row.right() + GAP + galley.size().x <= right {
-        let place = egui::Rect::from_min_max(egui::pos2(row.right() + GAP, row.top()), egui::pos2(right, row.bottom()));
+        let place = egui::Rect::from_min_max(
+            egui::pos2(row.right() + GAP, row.top()),
+            egui::pos2(right, row.bottom()),
+        );
         let left = egui::Layout::left_to_right(egui::Align::Center);
-        return ui.scope_builder(egui::UiBuilder::new().max_rect(place).layout(left), |ui| ui.label(text)).response.rect;
+        return ui
+            .scope_builder(egui::UiBuilder::new().max_rect(place).layout(left), |ui| ui.label(text))
+            .response
+            .rect;
     }
     let indent = 3.0 * GAP;
     let width = (right - row.left() - indent).max(60.0);
@@ -117,7 +150,15 @@ fn values(state: &State) -> String {
     let (Some(stage), Some(at)) = (state.staged(), state.current()) else { return String::new() };
     let events = stage.events();
     let first = at.saturating_sub(2);
-    let Some(i) = (first..=at).rev().find(|&i| !matches!(events[i], Event::Line(_) | Event::FrameBegan)) else { return String::new() };
+    let Some(i) = (first..=at).rev().find(|&i| !matches!(events[i], Event::Line(_) | Event::FrameBegan))
+    else {
+        return String::new();
+    };
     let fields = stage.fields(i).1;
-    fields.iter().take(4).map(|f| format!("{} {}", f.name.replace('_', " "), value(&f.value))).collect::<Vec<_>>().join(" · ")
+    fields
+        .iter()
+        .take(4)
+        .map(|f| format!("{} {}", f.name.replace('_', " "), value(&f.value)))
+        .collect::<Vec<_>>()
+        .join(" · ")
 }

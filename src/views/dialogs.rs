@@ -36,7 +36,9 @@ pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut
             Dialog::Tables => super::tables::show(state, ui, answers),
             Dialog::None => {}
         }
-        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About | Dialog::Tables) && ui.button("Close").clicked() {
+        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About | Dialog::Tables)
+            && ui.button("Close").clicked()
+        {
             answers.push(Command::Dialog(Dialog::None));
         }
     });
@@ -63,22 +65,31 @@ fn entered(ui: &egui::Ui, response: &egui::Response) -> bool {
 }
 
 fn palette(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
-    let (up, down) = ui.input_mut(|i| (i.consume_key(egui::Modifiers::NONE, Key::ArrowUp), i.consume_key(egui::Modifiers::NONE, Key::ArrowDown)));
+    let (up, down) = ui.input_mut(|i| {
+        (
+            i.consume_key(egui::Modifiers::NONE, Key::ArrowUp),
+            i.consume_key(egui::Modifiers::NONE, Key::ArrowDown),
+        )
+    });
     let response = field(ui, &mut cache.typed, "Command", "Type a command", is_new);
-    let mut found: Vec<_> = Action::ALL.iter().filter_map(|i| Some((fuzzy(&cache.typed, i.title)?, i))).collect();
+    let mut found: Vec<_> =
+        Action::ALL.iter().filter_map(|i| Some((fuzzy(&cache.typed, i.title)?, i))).collect();
     if !cache.typed.is_empty() {
         found.sort_by_key(|(score, i)| (std::cmp::Reverse(*score), i.action));
     }
     if response.changed() {
         cache.choice = 0;
     }
-    cache.choice = (cache.choice + usize::from(down)).saturating_sub(usize::from(up)).min(found.len().saturating_sub(1));
+    cache.choice =
+        (cache.choice + usize::from(down)).saturating_sub(usize::from(up)).min(found.len().saturating_sub(1));
     let mut chosen = None;
     ScrollArea::vertical().max_height(360.0).auto_shrink(false).show(ui, |ui| {
         ui.set_width(420.0);
         for (row, (_, info)) in found.iter().enumerate() {
             let keys = info.keys.first().copied().unwrap_or_default();
-            let button = egui::Button::selectable(row == cache.choice, info.title).shortcut_text(keys).min_size(egui::vec2(410.0, 0.0));
+            let button = egui::Button::selectable(row == cache.choice, info.title)
+                .shortcut_text(keys)
+                .min_size(egui::vec2(410.0, 0.0));
             let response = ui.add_enabled(state.can(info.action), button).on_hover_text(info.help);
             if row == cache.choice && (up || down) {
                 response.scroll_to_me(None);
@@ -107,7 +118,10 @@ fn keys(ui: &mut egui::Ui) {
                         ui.strong(menu.title());
                         Grid::new(menu.title()).num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
                             let bookmark = |a| (Action::Bookmark2..=Action::Bookmark10).contains(&a);
-                            for info in Action::ALL.iter().filter(|i| i.menu == *menu && !i.keys.is_empty() && !bookmark(i.action)) {
+                            for info in Action::ALL
+                                .iter()
+                                .filter(|i| i.menu == *menu && !i.keys.is_empty() && !bookmark(i.action))
+                            {
                                 ui.label(RichText::new(info.keys.join("  ")).monospace());
                                 ui.label(info.title).on_hover_text(info.help);
                                 ui.end_row();
@@ -119,8 +133,14 @@ fn keys(ui: &mut egui::Ui) {
                 ui.add_space(14.0);
             }
         });
-        ui.weak("In the Eye view of space: W A S D and Q E fly, Shift faster, Ctrl slower, dragging looks around.");
-        ui.weak("In the Observer view: drag to turn, Shift+drag or right drag to pan, wheel to zoom, Alt+drag to roll.");
+        ui.weak(
+            "In the Eye view of space: W A S D and Q E fly, Shift faster, Ctrl slower, dragging looks \
+                 around.",
+        );
+        ui.weak(
+            "In the Observer view: drag to turn, Shift+drag or right drag to pan, wheel to zoom, \
+                 Alt+drag to roll.",
+        );
     });
 }
 
@@ -130,7 +150,11 @@ fn go_to(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answ
     let response = field(ui, &mut cache.typed, "Step number", "", is_new);
     let typed = cache.typed.trim();
     let step = match typed.strip_suffix('%') {
-        Some(share) => share.trim().parse::<f64>().ok().map(|p| (p / 100.0 * state.len() as f64).round().max(0.0) as usize),
+        Some(share) => share
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .map(|p| (p / 100.0 * state.len() as f64).round().max(0.0) as usize),
         None => typed.parse().ok(),
     };
     let enter = entered(ui, &response);
@@ -149,10 +173,16 @@ fn open(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answer
     let enter = entered(ui, &response);
     ui.horizontal(|ui| {
         let typed = cache.typed.trim().to_owned();
-        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Open")).clicked() || enter) && !typed.is_empty() {
+        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Open")).clicked() || enter)
+            && !typed.is_empty()
+        {
             answers.push(Command::Open(typed));
         }
-        if ui.add_enabled(!cache.is_asking(), egui::Button::new("Browse…")).on_hover_text("The system's dialog, where there is one").clicked() {
+        if ui
+            .add_enabled(!cache.is_asking(), egui::Button::new("Browse…"))
+            .on_hover_text("The system's dialog, where there is one")
+            .clicked()
+        {
             cache.ask_open();
         }
         if ui.button("Close").clicked() {
@@ -167,7 +197,9 @@ fn save(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answer
     let enter = entered(ui, &response);
     ui.horizontal(|ui| {
         let typed = cache.typed.trim().to_owned();
-        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Save")).clicked() || enter) && !typed.is_empty() {
+        if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Save")).clicked() || enter)
+            && !typed.is_empty()
+        {
             answers.push(Command::SaveTo(typed));
         }
         if ui.button("Close").clicked() {
@@ -181,7 +213,12 @@ fn report(state: &State, ui: &mut egui::Ui) {
     let report = stage.report();
     ui.heading("Loading report");
     ui.label(format!("{} from {}", stage.scene_name(), stage.source()));
-    ui.label(format!("{} {}s in {} objects", grouped(stage.prim_count()), stage.prim_name(), grouped(stage.object_count())));
+    ui.label(format!(
+        "{} {}s in {} objects",
+        grouped(stage.prim_count()),
+        stage.prim_name(),
+        grouped(stage.object_count())
+    ));
     if report.dropped.is_empty() {
         ui.label("Nothing was dropped.");
     }

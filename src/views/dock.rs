@@ -46,8 +46,17 @@ impl Pane {
             Self::Pictures => "Pictures",
         }
     }
-    const ALL: [Pane; 9] =
-        [Self::Events, Self::Eye, Self::Observer, Self::Why, Self::Inspector, Self::Parameters, Self::Timeline, Self::Code, Self::Pictures];
+    const ALL: [Pane; 9] = [
+        Self::Events,
+        Self::Eye,
+        Self::Observer,
+        Self::Why,
+        Self::Inspector,
+        Self::Parameters,
+        Self::Timeline,
+        Self::Code,
+        Self::Pictures,
+    ];
 }
 
 /// The panels of a layout.
@@ -62,8 +71,10 @@ pub fn tree(layout: Layout) -> Tree<Pane> {
         }
         Layout::Figure => tiles.insert_pane(Pane::Observer),
         Layout::Pictures => {
-            let [observer, pictures, timeline, code] = [Pane::Observer, Pane::Pictures, Pane::Timeline, Pane::Code].map(|p| tiles.insert_pane(p));
-            let left = linear(&mut tiles, LinearDir::Vertical, &[(observer, 1.6), (code, 1.3), (timeline, 0.8)]);
+            let [observer, pictures, timeline, code] =
+                [Pane::Observer, Pane::Pictures, Pane::Timeline, Pane::Code].map(|p| tiles.insert_pane(p));
+            let left =
+                linear(&mut tiles, LinearDir::Vertical, &[(observer, 1.6), (code, 1.3), (timeline, 0.8)]);
             linear(&mut tiles, LinearDir::Horizontal, &[(left, 1.0), (pictures, 1.5)])
         }
     };
@@ -71,7 +82,8 @@ pub fn tree(layout: Layout) -> Tree<Pane> {
 }
 
 fn debug(tiles: &mut Tiles<Pane>) -> TileId {
-    let [events, eye, observer, why, inspector, parameters, timeline, code, own] = Pane::ALL.map(|p| tiles.insert_pane(p));
+    let [events, eye, observer, why, inspector, parameters, timeline, code, own] =
+        Pane::ALL.map(|p| tiles.insert_pane(p));
     let eye = tiles.insert_tab_tile(vec![eye, own]);
     let pictures = linear(tiles, LinearDir::Horizontal, &[(eye, 1.0), (observer, 1.25)]);
     let side = linear(tiles, LinearDir::Vertical, &[(why, 1.0), (inspector, 1.2), (parameters, 1.0)]);
@@ -88,11 +100,17 @@ fn linear(tiles: &mut Tiles<Pane>, dir: LinearDir, parts: &[(TileId, f32)]) -> T
 
 /// Whether a saved tree can be shown: every panel at most once, a root that is there, a picture among them.
 pub fn is_sound(tree: &Tree<Pane>) -> bool {
-    let mut panes: Vec<Pane> = tree.tiles.tiles().filter_map(|t| if let egui_tiles::Tile::Pane(p) = t { Some(*p) } else { None }).collect();
+    let mut panes: Vec<Pane> = tree
+        .tiles
+        .tiles()
+        .filter_map(|t| if let egui_tiles::Tile::Pane(p) = t { Some(*p) } else { None })
+        .collect();
     let count = panes.len();
     panes.sort_unstable();
     panes.dedup();
-    panes.len() == count && panes.contains(&Pane::Observer) && tree.root.is_some_and(|r| tree.tiles.get(r).is_some())
+    panes.len() == count
+        && panes.contains(&Pane::Observer)
+        && tree.root.is_some_and(|r| tree.tiles.get(r).is_some())
 }
 
 /// The panel that stands where `pane` does: swapped views stand in each other's place.
@@ -125,9 +143,13 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
         let (state, answers) = (self.state, &mut *self.answers);
         ui.push_id(pane as u8, |ui| match pane {
             Pane::Eye | Pane::Observer => match &state.stage {
-                Some(Any::Flat(stage)) if pane == Pane::Observer => canvas::show(state, stage, self.cache, ui, answers),
+                Some(Any::Flat(stage)) if pane == Pane::Observer => {
+                    canvas::show(state, stage, self.cache, ui, answers)
+                }
                 Some(Any::Flat(stage)) => strip::show(state, stage, self.cache, ui, answers),
-                Some(Any::Solid(stage)) => space::show(state, stage, pane == Pane::Eye, self.cache, self.gpu, ui, answers),
+                Some(Any::Solid(stage)) => {
+                    space::show(state, stage, pane == Pane::Eye, self.cache, self.gpu, ui, answers)
+                }
                 None => {}
             },
             _ => {
@@ -154,7 +176,13 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
     fn tab_bar_color(&self, visuals: &egui::Visuals) -> egui::Color32 {
         visuals.widgets.inactive.bg_fill
     }
-    fn tab_text_color(&self, visuals: &egui::Visuals, _: &Tiles<Pane>, _: TileId, state: &egui_tiles::TabState) -> egui::Color32 {
+    fn tab_text_color(
+        &self,
+        visuals: &egui::Visuals,
+        _: &Tiles<Pane>,
+        _: TileId,
+        state: &egui_tiles::TabState,
+    ) -> egui::Color32 {
         if state.active { visuals.text_color() } else { visuals.weak_text_color() }
     }
     fn gap_width(&self, _: &egui::Style) -> f32 {

@@ -1,4 +1,5 @@
-//! The event tree: every event, nested by the nodes that were entered; one line an event, only those in sight are made.
+//! The event tree: every event, nested by the nodes that were entered; one line an event, only those in sight
+//! are made.
 
 use eframe::egui::{self, Align, RichText, ScrollArea, Sense, TextEdit};
 
@@ -23,10 +24,17 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut A
     if let Some(error) = state.outline.error() {
         ui.colored_label(ui.visuals().error_fg_color, error.to_string());
     }
-    let shown = if rows.len() == stage.events().len() { String::new() } else { format!("{} of ", grouped(rows.len())) };
+    let shown = if rows.len() == stage.events().len() {
+        String::new()
+    } else {
+        format!("{} of ", grouped(rows.len()))
+    };
     ui.weak(format!("{shown}{} events", grouped(stage.events().len())));
     if stage.lost() > 0 {
-        ui.colored_label(ui.visuals().warn_fg_color, format!("Capped: {} later events were not kept.", grouped(stage.lost() as usize)));
+        ui.colored_label(
+            ui.visuals().warn_fg_color,
+            format!("Capped: {} later events were not kept.", grouped(stage.lost() as usize)),
+        );
     }
     let height = ui.spacing().interact_size.y;
     let spacing = ui.spacing().item_spacing.y;
@@ -55,9 +63,15 @@ fn search(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Ans
     let mut text = state.filter.clone();
     ui.horizontal(|ui| {
         let room = ui.available_width() - if text.is_empty() { 0.0 } else { 30.0 };
-        let edit = TextEdit::singleline(&mut text).hint_text("Filter: kind:node verdict:outside under:12").desired_width(room);
+        let edit = TextEdit::singleline(&mut text)
+            .hint_text(
+                "Filter: kind:node verdict:outside \
+            under:12",
+            )
+            .desired_width(room);
         let response = ui.add(edit).on_hover_text(
-            "Words that must hold, or must not after a “-”:\nkind:node  verdict:outside  node:5  prim:7  under:12  under:door  line:visible:3  depth>4",
+            "Words that must hold, or must not after a “-”:\nkind:node  verdict:outside  node:5  prim:7  \
+             under:12  under:door  line:visible:3  depth>4",
         );
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter events"));
         if std::mem::take(&mut cache.focus_filter) {

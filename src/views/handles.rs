@@ -33,7 +33,13 @@ pub fn under(at: Pos2, position: Option<Pos2>, target: Option<Pos2>) -> Option<H
 }
 
 /// Paints the handles; the one under the pointer is larger.
-pub fn paint(state: &State, painter: &egui::Painter, response: &Response, position: Option<Pos2>, target: Option<Pos2>) {
+pub fn paint(
+    state: &State,
+    painter: &egui::Painter,
+    response: &Response,
+    position: Option<Pos2>,
+    target: Option<Pos2>,
+) {
     if state.is_eye_locked {
         return;
     }

@@ -42,7 +42,8 @@ pub fn button(ui: &mut Ui, icon: Icon, enabled: bool) -> Response {
     let size = vec2(ui.spacing().interact_size.y + 8.0, ui.spacing().interact_size.y);
     let button = egui::Button::new("").min_size(size);
     let response = ui.add_enabled(enabled, button);
-    let color = if enabled { ui.style().interact(&response).fg_stroke.color } else { ui.visuals().weak_text_color() };
+    let color =
+        if enabled { ui.style().interact(&response).fg_stroke.color } else { ui.visuals().weak_text_color() };
     paint(ui.painter(), icon, response.rect.shrink2(vec2(7.0, 4.0)), color);
     response
 }
@@ -72,7 +73,9 @@ fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
     let half = |left: bool| if left { r.with_max_x(r.center().x) } else { r.with_min_x(r.center().x) };
     match icon {
         Icon::Play => triangle(r, true),
-        Icon::Pause => [r.left() + side * 0.25, r.right() - side * 0.25].into_iter().for_each(|x| bar(x, side * 0.28)),
+        Icon::Pause => {
+            [r.left() + side * 0.25, r.right() - side * 0.25].into_iter().for_each(|x| bar(x, side * 0.28))
+        }
         Icon::Forward | Icon::Last => {
             triangle(r.with_max_x(r.right() - side * 0.25), true);
             bar(r.right() - side * 0.08, if icon == Icon::Last { side * 0.32 } else { 1.5 });
@@ -91,8 +94,13 @@ fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
         }
         Icon::Theme => {
             painter.circle_stroke(r.center(), side * 0.5, Stroke::new(1.5, color));
-            let at = |k: i32| r.center() + egui::Vec2::angled((90.0 + 18.0 * k as f32).to_radians()) * side * 0.5;
-            painter.add(egui::Shape::convex_polygon((0..=10).map(at).collect::<Vec<Pos2>>(), color, Stroke::NONE));
+            let at =
+                |k: i32| r.center() + egui::Vec2::angled((90.0 + 18.0 * k as f32).to_radians()) * side * 0.5;
+            painter.add(egui::Shape::convex_polygon(
+                (0..=10).map(at).collect::<Vec<Pos2>>(),
+                color,
+                Stroke::NONE,
+            ));
         }
         Icon::Dot => drop_shape(painter.circle_filled(r.center(), side * 0.5, color)),
         Icon::Ring => drop_shape(painter.circle_stroke(r.center(), side * 0.28, Stroke::new(1.0, color))),

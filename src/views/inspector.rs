@@ -42,7 +42,11 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 ui.strong("Open nodes");
                 for node in stack {
                     let selected = state.selection == Subject::Node(node);
-                    if ui.selectable_label(selected, node.to_string()).on_hover_text(format!("Select node {node}")).clicked() {
+                    if ui
+                        .selectable_label(selected, node.to_string())
+                        .on_hover_text(format!("Select node {node}"))
+                        .clicked()
+                    {
                         answers.push(Command::Select(Subject::Node(node)));
                     }
                 }
@@ -52,7 +56,11 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         if state.selection != Subject::None {
             ui.add_space(6.0);
             ui.strong(capitalized(&subject_name(state, state.selection)));
-            rows(ui, "subject", stage.facts(state.selection).into_iter().map(|(name, text)| (name.to_owned(), text)));
+            rows(
+                ui,
+                "subject",
+                stage.facts(state.selection).into_iter().map(|(name, text)| (name.to_owned(), text)),
+            );
         }
     });
 }
@@ -70,14 +78,20 @@ fn bookmarks(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 answers.push(Command::GoTo(mark.step));
             }
             let mut note = mark.note.clone();
-            let edit = egui::TextEdit::singleline(&mut note).hint_text("note").desired_width(ui.available_width() - 28.0);
+            let edit = egui::TextEdit::singleline(&mut note)
+                .hint_text("note")
+                .desired_width(ui.available_width() - 28.0);
             let response = ui.add(edit);
-            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, format!("Note of bookmark {}", i + 1)));
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::TextInput, true, format!("Note of bookmark {}", i + 1))
+            });
             if note != mark.note {
                 answers.push(Command::Note(i, note));
             }
             let remove = ui.small_button("×").on_hover_text("Remove this bookmark");
-            remove.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove bookmark {}", i + 1)));
+            remove.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove bookmark {}", i + 1))
+            });
             if remove.clicked() {
                 answers.push(Command::Unmark(i));
             }

@@ -60,7 +60,9 @@ pub fn chord(text: &str) -> Option<(Modifiers, Key)> {
 }
 
 fn bindings() -> Vec<(Modifiers, Key, Action)> {
-    let each = |i: &'static crate::app::Info| i.keys.iter().filter_map(move |k| chord(k).map(|(m, key)| (m, key, i.action)));
+    let each = |i: &'static crate::app::Info| {
+        i.keys.iter().filter_map(move |k| chord(k).map(|(m, key)| (m, key, i.action)))
+    };
     let mut all: Vec<_> = Action::ALL.iter().flat_map(each).collect();
     let weight = |m: &Modifiers| usize::from(m.command || m.ctrl) + usize::from(m.shift) + usize::from(m.alt);
     all.sort_by_key(|(m, ..)| std::cmp::Reverse(weight(m)));
@@ -96,14 +98,21 @@ impl egui::Plugin for Hook {
             let Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
             let plain = !modifiers.command && !modifiers.ctrl && !modifiers.alt;
             let is_function = key.name().starts_with('F') && key.name().len() > 1;
-            if (typing || inbox.is_typing) && ((plain && !is_function) || edits_text(*modifiers, *key)) && *key != Key::Escape {
+            if (typing || inbox.is_typing)
+                && ((plain && !is_function) || edits_text(*modifiers, *key))
+                && *key != Key::Escape
+            {
                 return true;
             }
-            if *key == Key::Tab && !inbox.is_picture_focused || (inbox.is_flying && plain && FLY.contains(key)) {
+            if *key == Key::Tab && !inbox.is_picture_focused
+                || (inbox.is_flying && plain && FLY.contains(key))
+            {
                 return true;
             }
             // `?` needs Shift on most keyboards.
-            let fits = |m: &Modifiers, k: &Key| k == key && (modifiers.matches_exact(*m) || (*k == Key::Questionmark && plain));
+            let fits = |m: &Modifiers, k: &Key| {
+                k == key && (modifiers.matches_exact(*m) || (*k == Key::Questionmark && plain))
+            };
             let found = self.bindings.iter().find(|(m, k, a)| fits(m, k) && inbox.enabled.contains(a));
             let Some((.., action)) = found else { return true };
             inbox.asked.push(*action);
@@ -119,8 +128,19 @@ impl egui::Plugin for Hook {
 
 /// Chords that a text field needs for itself.
 fn edits_text(modifiers: Modifiers, key: Key) -> bool {
-    let arrows = [Key::ArrowLeft, Key::ArrowRight, Key::ArrowUp, Key::ArrowDown, Key::Home, Key::End, Key::Backspace, Key::Delete];
-    arrows.contains(&key) || ((modifiers.command || modifiers.ctrl) && [Key::A, Key::C, Key::V, Key::X, Key::Z, Key::Y].contains(&key))
+    let arrows = [
+        Key::ArrowLeft,
+        Key::ArrowRight,
+        Key::ArrowUp,
+        Key::ArrowDown,
+        Key::Home,
+        Key::End,
+        Key::Backspace,
+        Key::Delete,
+    ];
+    arrows.contains(&key)
+        || ((modifiers.command || modifiers.ctrl)
+            && [Key::A, Key::C, Key::V, Key::X, Key::Z, Key::Y].contains(&key))
 }
 
 #[cfg(test)]

@@ -54,8 +54,10 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             if role == Role::Occluder && !shown.contains(&role) {
                 continue;
             }
-            let verdicts: Vec<Verdict> =
-                crate::trace::Counts::VERDICTS.into_iter().filter(|&v| v != Verdict::Partial && role_of(Known::Decided(v)) == role).collect();
+            let verdicts: Vec<Verdict> = crate::trace::Counts::VERDICTS
+                .into_iter()
+                .filter(|&v| v != Verdict::Partial && role_of(Known::Decided(v)) == role)
+                .collect();
             let total: usize = verdicts.iter().map(|&v| end.of(v)).sum();
             // A state that never occurs here would only be noise.
             if !verdicts.is_empty() && total == 0 && !matches!(role, Role::Visible | Role::Outside) {

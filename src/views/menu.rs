@@ -11,19 +11,29 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     ui.horizontal_wrapped(|ui| {
         for menu in Menu::ALL {
             ui.menu_button(menu.title(), |ui| {
-                egui::ScrollArea::vertical().max_height(ui.ctx().content_rect().height() * 0.85).show(ui, |ui| {
-                    for info in Action::ALL.iter().filter(|i| i.menu == menu) {
-                        // Ten lines of bookmarks would only be in the way.
-                        if (Action::Bookmark1..=Action::Bookmark10).contains(&info.action) && !state.can(info.action) {
-                            continue;
+                egui::ScrollArea::vertical().max_height(ui.ctx().content_rect().height() * 0.85).show(
+                    ui,
+                    |ui| {
+                        for info in Action::ALL.iter().filter(|i| i.menu == menu) {
+                            // Ten lines of bookmarks would only be in the way.
+                            if (Action::Bookmark1..=Action::Bookmark10).contains(&info.action)
+                                && !state.can(info.action)
+                            {
+                                continue;
+                            }
+                            let button = egui::Button::new(info.title)
+                                .shortcut_text(*info.keys.first().unwrap_or(&""));
+                            if ui
+                                .add_enabled(state.can(info.action), button)
+                                .on_hover_text(info.help)
+                                .clicked()
+                            {
+                                answers.push(info.action.into());
+                                ui.close();
+                            }
                         }
-                        let button = egui::Button::new(info.title).shortcut_text(*info.keys.first().unwrap_or(&""));
-                        if ui.add_enabled(state.can(info.action), button).on_hover_text(info.help).clicked() {
-                            answers.push(info.action.into());
-                            ui.close();
-                        }
-                    }
-                });
+                    },
+                );
             });
         }
         ui.separator();
@@ -38,7 +48,12 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
             ui.separator();
             let report = stage.report();
-            let text = format!("{}: {} {}s", stage.scene_name(), super::events::grouped(stage.prim_count()), stage.prim_name());
+            let text = format!(
+                "{}: {} {}s",
+                stage.scene_name(),
+                super::events::grouped(stage.prim_count()),
+                stage.prim_name()
+            );
             let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
             let text = if has_news { format!("{text} (!)") } else { text };
             if ui.link(text).on_hover_text("Loading report").clicked() {
@@ -63,7 +78,8 @@ fn method(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let now = methods.iter().find(|m| m.key == state.method).map_or(state.method.as_str(), |m| m.name);
     let combo = egui::ComboBox::from_id_salt("method").selected_text(now).width(230.0).show_ui(ui, |ui| {
         for card in methods {
-            if ui.selectable_label(card.key == state.method, card.name).on_hover_text(card.summary).clicked() {
+            if ui.selectable_label(card.key == state.method, card.name).on_hover_text(card.summary).clicked()
+            {
                 answers.push(Command::Method(card.key.to_owned()));
             }
         }
@@ -72,12 +88,15 @@ fn method(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
 }
 
 fn surface(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
-    let combo = egui::ComboBox::from_id_salt("surface").selected_text(state.shown.surface.name()).width(90.0).show_ui(ui, |ui| {
-        for surface in Surface::ALL {
-            if ui.selectable_label(surface == state.shown.surface, surface.name()).clicked() {
-                answers.push(Command::Surface(surface));
+    let combo = egui::ComboBox::from_id_salt("surface")
+        .selected_text(state.shown.surface.name())
+        .width(90.0)
+        .show_ui(ui, |ui| {
+            for surface in Surface::ALL {
+                if ui.selectable_label(surface == state.shown.surface, surface.name()).clicked() {
+                    answers.push(Command::Surface(surface));
+                }
             }
-        }
-    });
+        });
     combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Surfaces"));
 }

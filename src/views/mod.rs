@@ -38,10 +38,17 @@ use crate::figure;
 pub type Answers = Vec<Command>;
 
 /// A button with a sign for an action.
-fn icon_button(state: &State, ui: &mut egui::Ui, action: Action, icon: icons::Icon, answers: &mut Answers) -> egui::Response {
+fn icon_button(
+    state: &State,
+    ui: &mut egui::Ui,
+    action: Action,
+    icon: icons::Icon,
+    answers: &mut Answers,
+) -> egui::Response {
     let info = action.info();
     let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
-    let button = icons::button(ui, icon, state.can(action)).on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
+    let button = icons::button(ui, icon, state.can(action))
+        .on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, state.can(action), info.title));
     if button.clicked() {
         answers.push(action.into());
@@ -50,7 +57,13 @@ fn icon_button(state: &State, ui: &mut egui::Ui, action: Action, icon: icons::Ic
 }
 
 /// A button for an action: its title (or `text`), its help and key on hover, gray when it cannot be done.
-fn action_button(state: &State, ui: &mut egui::Ui, action: Action, text: &str, answers: &mut Answers) -> egui::Response {
+fn action_button(
+    state: &State,
+    ui: &mut egui::Ui,
+    action: Action,
+    text: &str,
+    answers: &mut Answers,
+) -> egui::Response {
     let info = action.info();
     let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
     let button = ui.add_enabled(state.can(action), egui::Button::new(text));
@@ -62,12 +75,12 @@ fn action_button(state: &State, ui: &mut egui::Ui, action: Action, text: &str, a
     button
 }
 
-/// Least size of text in pictures, points of egui: that of the panels' small text. Figures have smaller type, but they
-/// are read from paper.
+/// Least size of text in pictures, points of egui: that of the panels' small text. Figures have smaller type,
+/// but they are read from paper.
 const LABEL: f32 = 12.0;
 
-/// Makes the labels of a picture on screen large enough to read, and keeps those of evidence inside it and off what
-/// lies below them.
+/// Makes the labels of a picture on screen large enough to read, and keeps those of evidence inside it and
+/// off what lies below them.
 fn readable_labels(paper: &mut Drawing) {
     for item in &mut paper.items {
         if let Mark::Text { size_pt, .. } = &mut item.mark {

@@ -38,7 +38,14 @@ fn wanted(state: &State) -> Vec<(Knob, KnobValue)> {
     }
 }
 
-fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: &KnobValue, answers: &mut Answers) {
+fn edit(
+    state: &State,
+    cache: &mut Cache,
+    ui: &mut egui::Ui,
+    knob: Knob,
+    value: &KnobValue,
+    answers: &mut Answers,
+) {
     let help = format!("{}\n{}\n--set {}={value}", knob.meaning, knob.source, knob.name);
     let title = knob.name.replace('-', " ");
     let set = |text: String, gesture| Command::Set(knob.name.to_owned(), text, gesture);
@@ -51,8 +58,11 @@ fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: 
         }
         KnobValue::Integer(v, range) => {
             let mut v = *v;
-            let label = ui.label(if knob.unit.is_empty() { title.clone() } else { format!("{title} ({})", knob.unit) }).on_hover_text(&help);
-            let response = ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
+            let label = ui
+                .label(if knob.unit.is_empty() { title.clone() } else { format!("{title} ({})", knob.unit) })
+                .on_hover_text(&help);
+            let response =
+                ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
                 cache.gesture += 1;
             }
@@ -63,7 +73,9 @@ fn edit(state: &State, cache: &mut Cache, ui: &mut egui::Ui, knob: Knob, value: 
         KnobValue::Choice(chosen, options) => {
             let mut chosen = *chosen;
             let label = ui.label(&title).on_hover_text(&help);
-            let combo = egui::ComboBox::from_id_salt(knob.name).show_index(ui, &mut chosen, options.len(), |i| options[i]);
+            let combo =
+                egui::ComboBox::from_id_salt(knob.name)
+                    .show_index(ui, &mut chosen, options.len(), |i| options[i]);
             if combo.labelled_by(label.id).on_hover_text(&help).changed() {
                 answers.push(set(options[chosen].to_owned(), 0));
             }
@@ -96,7 +108,9 @@ fn budget(
                 (Budget::Count(n), response)
             }
             Budget::Milliseconds(mut ms) => {
-                let response = ui.add(egui::Slider::new(&mut ms, 0.1..=1000.0).logarithmic(true).suffix(" ms").max_decimals(1));
+                let response = ui.add(
+                    egui::Slider::new(&mut ms, 0.1..=1000.0).logarithmic(true).suffix(" ms").max_decimals(1),
+                );
                 (Budget::Milliseconds(ms), response)
             }
         };
@@ -129,7 +143,13 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
     let Some(stage) = &state.stage else { return };
     ui.horizontal_wrapped(|ui| {
         ui.strong("Eye");
-        super::action_button(state, ui, Action::LockEye, if state.is_eye_locked { "Locked" } else { "Lock" }, answers);
+        super::action_button(
+            state,
+            ui,
+            Action::LockEye,
+            if state.is_eye_locked { "Locked" } else { "Lock" },
+            answers,
+        );
         super::action_button(state, ui, Action::EyeHome, "Back to path", answers);
         if matches!(stage, Any::Solid(_)) {
             super::action_button(state, ui, Action::EyeHere, "From here", answers);
@@ -150,7 +170,13 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
             };
             match &mut view {
                 Any::Flat(v) => {
-                    vector(ui, "position", speed, &mut [&mut v.eye.position.x, &mut v.eye.position.y], &mut drag);
+                    vector(
+                        ui,
+                        "position",
+                        speed,
+                        &mut [&mut v.eye.position.x, &mut v.eye.position.y],
+                        &mut drag,
+                    );
                     vector(ui, "target", speed, &mut [&mut v.eye.target.x, &mut v.eye.target.y], &mut drag);
                     lens(ui, &mut v.eye.fov, &mut v.eye.near, &mut v.eye.far, speed, &mut drag);
                 }
@@ -178,7 +204,11 @@ fn vector(ui: &mut egui::Ui, name: &str, speed: f64, axes: &mut [&mut f32], drag
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (axis, value) in axes.iter_mut().enumerate() {
-            drag(ui, &format!("Eye {name} {}", ["x", "y", "z"][axis]), egui::DragValue::new(*value).speed(speed).max_decimals(2));
+            drag(
+                ui,
+                &format!("Eye {name} {}", ["x", "y", "z"][axis]),
+                egui::DragValue::new(*value).speed(speed).max_decimals(2),
+            );
         }
     });
     ui.end_row();
@@ -187,7 +217,11 @@ fn vector(ui: &mut egui::Ui, name: &str, speed: f64, axes: &mut [&mut f32], drag
 fn lens(ui: &mut egui::Ui, fov: &mut f32, near: &mut f32, far: &mut f32, speed: f64, drag: &mut Drag<'_>) {
     ui.weak("angle");
     let mut degrees = fov.to_degrees();
-    drag(ui, "Eye angle", egui::DragValue::new(&mut degrees).range(1.0..=170.0).suffix("°").speed(0.3).max_decimals(1));
+    drag(
+        ui,
+        "Eye angle",
+        egui::DragValue::new(&mut degrees).range(1.0..=170.0).suffix("°").speed(0.3).max_decimals(1),
+    );
     // Only a real change may pass through degrees, which round.
     if degrees != fov.to_degrees() {
         *fov = degrees.to_radians();
@@ -197,7 +231,11 @@ fn lens(ui: &mut egui::Ui, fov: &mut f32, near: &mut f32, far: &mut f32, speed: 
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let (least, most) = (f64::from(*near) * 1.001, f64::from(*far) * 0.999);
-        drag(ui, "Eye near", egui::DragValue::new(near).range(1e-4..=most).speed(speed * 0.1).max_decimals(3));
+        drag(
+            ui,
+            "Eye near",
+            egui::DragValue::new(near).range(1e-4..=most).speed(speed * 0.1).max_decimals(3),
+        );
         drag(ui, "Eye far", egui::DragValue::new(far).range(least..=1e9).speed(speed).max_decimals(1));
     });
     ui.end_row();

@@ -24,7 +24,9 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui) {
     let names = stage.pictures();
     if names.is_empty() {
         ui.label("This method has no pictures of its own.");
-        ui.weak("Methods that keep an image, such as hierarchical-z with its pyramid of depths, show it here.");
+        ui.weak(
+            "Methods that keep an image, such as hierarchical-z with its pyramid of depths, show it here.",
+        );
         return;
     }
     let shown = &mut cache.picture;
@@ -45,7 +47,13 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui) {
         let scale = (ui.available_width() / drawing.size_pt.x.max(1.0)).clamp(0.3, 4.0);
         let size = egui::vec2(drawing.size_pt.x, drawing.size_pt.y) * scale;
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("{}. {}", drawing.title, state.sentence())));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(
+                egui::Role::Image,
+                true,
+                format!("{}. {}", drawing.title, state.sentence()),
+            )
+        });
         screen::paint(&ui.painter_at(rect), drawing, state.shown.theme, rect.min, scale);
         if let Some(at) = response.hover_pos() {
             let at = vec2(at.x - rect.min.x, at.y - rect.min.y) / scale;

@@ -20,9 +20,11 @@ pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
     let scene = &stage.scene;
     match (state.selection, &stage.recorded) {
         (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => {
-            scene.live().iter().filter(|&&p| scene.object_of(p) == o).fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)))
-        }
+        (Subject::Object(o), _) => scene
+            .live()
+            .iter()
+            .filter(|&&p| scene.object_of(p) == o)
+            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
         (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
         (Subject::Eye, _) => {
             let around = Vec3::splat(scene.bounds().diagonal() * 0.1);
@@ -60,7 +62,8 @@ pub fn observe(
         handles::paint(state, &ui.painter_at(rect), response, position, target);
     }
     let mut observer = state.observer;
-    let (scroll, pinch, shift, alt) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta(), i.modifiers.shift, i.modifiers.alt));
+    let (scroll, pinch, shift, alt) =
+        ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta(), i.modifiers.shift, i.modifiers.alt));
     if let Some(at) = response.hover_pos() {
         let factor = (-scroll * 0.004).exp() / pinch;
         if factor != 1.0 {
@@ -80,7 +83,9 @@ pub fn observe(
         let by = observer.rotation() * Vec3::new(delta.x * unit, -delta.y * unit, 0.0);
         match cache.held {
             Some(handle) => drag_eye(stage, handle, by, aim, cache.gesture, answers),
-            None if response.dragged_by(PointerButton::Secondary) || shift => observer.pan(delta, rect.height()),
+            None if response.dragged_by(PointerButton::Secondary) || shift => {
+                observer.pan(delta, rect.height())
+            }
             None if alt => observer.roll += delta.x * 0.01,
             None => observer.orbit(-delta.x * 0.008, delta.y * 0.008),
         }
@@ -100,7 +105,11 @@ pub fn observe(
             }
         } else {
             let grabbed = handles::under(at, position, None).is_some() && state.shown.eye;
-            answers.push(Command::Select(if grabbed { Subject::Eye } else { hit.map_or(Subject::None, |(p, _)| Subject::Prim(p)) }));
+            answers.push(Command::Select(if grabbed {
+                Subject::Eye
+            } else {
+                hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))
+            }));
         }
     }
     if observer != state.observer {
@@ -184,10 +193,19 @@ fn flight(ui: &egui::Ui, stage: &Stage<Solid>, cache: &mut Cache) -> Vec3 {
     let right = forward.cross(eye.up).normalize_or(Vec3::X);
     let up = eye.up.normalize_or(Vec3::Y);
     let held = |i: &egui::InputState| {
-        let axes = [(Key::W, forward), (Key::S, -forward), (Key::D, right), (Key::A, -right), (Key::E, up), (Key::Q, -up)];
+        let axes = [
+            (Key::W, forward),
+            (Key::S, -forward),
+            (Key::D, right),
+            (Key::A, -right),
+            (Key::E, up),
+            (Key::Q, -up),
+        ];
         axes.iter().filter(|(k, _)| i.key_down(*k)).fold(Vec3::ZERO, |sum, (_, v)| sum + *v)
     };
-    let (toward, seconds, shift, slow) = ui.input(|i| (held(i), i.stable_dt.min(0.1), i.modifiers.shift, i.modifiers.command || i.modifiers.ctrl));
+    let (toward, seconds, shift, slow) = ui.input(|i| {
+        (held(i), i.stable_dt.min(0.1), i.modifiers.shift, i.modifiers.command || i.modifiers.ctrl)
+    });
     if toward == Vec3::ZERO {
         cache.flew = false;
         return Vec3::ZERO;

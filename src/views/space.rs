@@ -35,7 +35,9 @@ pub fn show(
 ) {
     let (pane, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let name = if is_eye { "Eye view" } else { "Observer view" };
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("{name}. {}", state.sentence())));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Image, true, format!("{name}. {}", state.sentence()))
+    });
     cache.picture_focused |= response.has_focus();
     ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
     if !is_eye && std::mem::take(&mut cache.frame) {
@@ -43,20 +45,33 @@ pub fn show(
         camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds());
         answers.push(Command::Observe(camera));
     }
-    let rect = if is_eye { fitted(pane, stage.view.width as f32 / stage.view.height.max(1) as f32) } else { pane };
+    let rect =
+        if is_eye { fitted(pane, stage.view.width as f32 / stage.view.height.max(1) as f32) } else { pane };
     let rect = egui::emath::GuiRounding::round_to_pixels(rect, ui.ctx().pixels_per_point());
-    let view = if is_eye { stage.view } else { state.observer.view(rect.width() as u32, rect.height() as u32) };
+    let view =
+        if is_eye { stage.view } else { state.observer.view(rect.width() as u32, rect.height() as u32) };
     match gpu {
         Some(gpu) => picture(state, stage, is_eye, cache, gpu, ui, rect, &view),
         None => {
-            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, "No graphics device", egui::FontId::default(), palette::panel(state).faint);
+            ui.painter().text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                "No graphics device",
+                egui::FontId::default(),
+                palette::panel(state).faint,
+            );
         }
     }
     if !is_eye {
         cache.aspect = rect.aspect_ratio();
     }
     if is_eye {
-        ui.painter_at(pane).rect_stroke(rect, 0.0, egui::Stroke::new(1.0, palette::panel(state).border), egui::StrokeKind::Inside);
+        ui.painter_at(pane).rect_stroke(
+            rect,
+            0.0,
+            egui::Stroke::new(1.0, palette::panel(state).border),
+            egui::StrokeKind::Inside,
+        );
         reach::look_around(state, stage, cache, ui, &response, rect, answers);
     } else {
         labels(state, stage, cache, ui, rect, &view);
@@ -89,7 +104,12 @@ fn picture(
     upload(state, stage, cache, gpu);
     let ppp = ui.ctx().pixels_per_point();
     let size_px = [(rect.width() * ppp).round() as u32, (rect.height() * ppp).round() as u32];
-    let call = Call { id: ViewportId(u32::from(is_eye)), size_px, camera: view.eye.into(), style: style(state, is_eye, ppp) };
+    let call = Call {
+        id: ViewportId(u32::from(is_eye)),
+        size_px,
+        camera: view.eye.into(),
+        style: style(state, is_eye, ppp),
+    };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, call));
 }
 
@@ -112,7 +132,13 @@ fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderSt
         now.film = recorded.serial;
         layer.set_film(&gpu.device, &gpu.queue, &recorded.stamps, recorded.film.hierarchy(), &[]);
     }
-    let look = figure::Look { prims: false, nodes: false, selected: Subject::None, current: Subject::None, ..state.look() };
+    let look = figure::Look {
+        prims: false,
+        nodes: false,
+        selected: Subject::None,
+        current: Subject::None,
+        ..state.look()
+    };
     let key = (recorded.serial, state.step, look);
     if now.marks != Some(key) {
         now.marks = Some(key);
@@ -125,7 +151,8 @@ fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderSt
 /// What a viewport shows.
 pub fn style(state: &State, is_eye: bool, pixels_per_point: f32) -> SpaceStyle {
     let palette = Palette::of(state.shown.theme);
-    let base = if is_eye { SpaceStyle::eye(state.step, palette) } else { SpaceStyle::observer(state.step, palette) };
+    let base =
+        if is_eye { SpaceStyle::eye(state.step, palette) } else { SpaceStyle::observer(state.step, palette) };
     let mut style = SpaceStyle { pixels_per_point, ..base };
     if is_eye {
         // What is not decided yet is hinted at, so that the picture is never empty.
@@ -169,7 +196,12 @@ impl egui_wgpu::CallbackTrait for Call {
         }
         vec![]
     }
-    fn paint(&self, _: egui::PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, resources: &egui_wgpu::CallbackResources) {
+    fn paint(
+        &self,
+        _: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &egui_wgpu::CallbackResources,
+    ) {
         if let Some(layer) = resources.get::<SpaceLayer>() {
             layer.blit(self.id, pass);
         }
@@ -177,12 +209,24 @@ impl egui_wgpu::CallbackTrait for Call {
 }
 
 /// The labels of the evidence, over the picture.
-fn labels(state: &State, stage: &Stage<Solid>, cache: &Cache, ui: &egui::Ui, rect: egui::Rect, view: &View<Solid>) {
+fn labels(
+    state: &State,
+    stage: &Stage<Solid>,
+    cache: &Cache,
+    ui: &egui::Ui,
+    rect: egui::Rect,
+    view: &View<Solid>,
+) {
     let Some(marks) = &cache.marks else { return };
     if stage.recorded.is_none() || !state.shown.evidence {
         return;
     }
-    let texts = marks.items.iter().filter(|i| i.layer == Layer::Labels && matches!(i.mark, Mark::Text { .. })).cloned().collect();
+    let texts = marks
+        .items
+        .iter()
+        .filter(|i| i.layer == Layer::Labels && matches!(i.mark, Mark::Text { .. }))
+        .cloned()
+        .collect();
     let size = Vec2::new(rect.width(), rect.height());
     let mut paper = Drawing { size_pt: size, ..Drawing::default() };
     figure::project(&Drawing { items: texts, ..Drawing::default() }, view, Vec2::ZERO, size, &mut paper);

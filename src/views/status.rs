@@ -52,7 +52,8 @@ fn notices(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
 pub fn caption(state: &State, ui: &mut egui::Ui) {
     let size = egui::TextStyle::Heading.resolve(ui.style()).size;
     announced(ui, egui::Label::new(RichText::new(state.sentence()).size(size)).wrap());
-    let note = state.bookmarks.iter().find(|b| b.step == state.step).map(|b| b.note.as_str()).unwrap_or_default();
+    let note =
+        state.bookmarks.iter().find(|b| b.step == state.step).map(|b| b.note.as_str()).unwrap_or_default();
     if !note.is_empty() {
         ui.weak(note);
     }

@@ -18,7 +18,13 @@ const STRIP: f32 = 22.0;
 /// Shows what the Eye sees.
 pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Eye view: the one line of pixels that the Eye sees"));
+    response.widget_info(|| {
+        egui::WidgetInfo::labeled(
+            egui::Role::Image,
+            true,
+            "Eye view: the one line of pixels that the Eye sees",
+        )
+    });
     cache.picture_focused |= response.has_focus();
     let painter = ui.painter_at(rect);
     let colors = palette::panel(state);
@@ -36,7 +42,8 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
         let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(*prim, state.step));
         let style = palette::role(state, role_of(known));
         let x = rect.left() + i as f32 * per_column;
-        let column = |y: egui::Rangef| Rect::from_x_y_ranges(egui::Rangef::new(x, x + per_column.max(1.0)), y);
+        let column =
+            |y: egui::Rangef| Rect::from_x_y_ranges(egui::Rangef::new(x, x + per_column.max(1.0)), y);
         let half = walls.height() * 0.46 * (nearest / depth).sqrt();
         let band = egui::Rangef::new(walls.center().y - half, walls.center().y + half);
         let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
@@ -52,27 +59,45 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
             painter.vline(x, strip.y_range(), Stroke::new(1.0, colors.canvas));
         }
         if state.selection == Subject::Prim(*prim) {
-            painter.hline(egui::Rangef::new(x, x + per_column.max(1.0)), strip.bottom() + 3.0, Stroke::new(4.0, palette::role(state, Role::Current)));
+            painter.hline(
+                egui::Rangef::new(x, x + per_column.max(1.0)),
+                strip.bottom() + 3.0,
+                Stroke::new(4.0, palette::role(state, Role::Current)),
+            );
         }
     }
     painter.rect_stroke(strip, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
     let distinct: std::collections::BTreeSet<_> = image.iter().flatten().map(|(p, _)| *p).collect();
     let text = format!("{} pixels, {} segments seen", image.len(), distinct.len());
-    painter.text(pos2(rect.left() + 6.0, rect.top() + 4.0), Align2::LEFT_TOP, text, FontId::proportional(12.0), colors.faint);
+    painter.text(
+        pos2(rect.left() + 6.0, rect.top() + 4.0),
+        Align2::LEFT_TOP,
+        text,
+        FontId::proportional(12.0),
+        colors.faint,
+    );
     interact(stage, image, per_column, &response, answers);
     super::canvas::focus_ring(state, ui, &response);
 }
 
 /// The walls above, the strip of pixels below.
 fn layout(rect: Rect) -> (Rect, Rect) {
-    let strip = Rect::from_min_size(pos2(rect.left(), rect.bottom() - STRIP - 12.0), vec2(rect.width(), STRIP));
+    let strip =
+        Rect::from_min_size(pos2(rect.left(), rect.bottom() - STRIP - 12.0), vec2(rect.width(), STRIP));
     (rect.with_max_y(strip.top() - 8.0).with_min_y(rect.top() + 20.0), strip)
 }
 
 type Column = Option<(crate::geometry::PrimId, f32)>;
 
-fn interact(stage: &Stage<Flat>, image: &[Column], per_column: f32, response: &egui::Response, answers: &mut Answers) {
-    let under = |x: f32| image.get(((x - response.rect.left()) / per_column.max(1e-6)) as usize).copied().flatten();
+fn interact(
+    stage: &Stage<Flat>,
+    image: &[Column],
+    per_column: f32,
+    response: &egui::Response,
+    answers: &mut Answers,
+) {
+    let under =
+        |x: f32| image.get(((x - response.rect.left()) / per_column.max(1e-6)) as usize).copied().flatten();
     if response.clicked() {
         response.request_focus();
         if let Some(at) = response.interact_pointer_pos() {
@@ -88,6 +113,8 @@ fn interact(stage: &Stage<Flat>, image: &[Column], per_column: f32, response: &e
         answers.push(Command::Eye(Any::Flat(view), super::window::LOOK_GESTURE));
     }
     if let Some((prim, depth)) = response.hover_pos().and_then(|at| under(at.x)) {
-        response.clone().on_hover_text_at_pointer(format!("segment {prim}, {} units away", crate::app::short(depth)));
+        response
+            .clone()
+            .on_hover_text_at_pointer(format!("segment {prim}, {} units away", crate::app::short(depth)));
     }
 }

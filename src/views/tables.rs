@@ -12,7 +12,9 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let width = (size.x * 0.8).min(860.0);
     ui.set_width(width);
     ui.heading("Tables of the paper");
-    let on = state.staged().map_or("on a generated building and city".to_owned(), |s| format!("on {}", s.scene_name()));
+    let on = state
+        .staged()
+        .map_or("on a generated building and city".to_owned(), |s| format!("on {}", s.scene_name()));
     ui.label(format!("Coorg and Teller 1997, measured {on}, beside the paper's own figures."));
     let busy = state.busy();
     let shown = state.measured.as_ref().map(|m| m.report.name);
@@ -42,14 +44,21 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         let paper = measured.chart.size_pt;
         let scale = (width - 24.0) / paper.x;
         let (rect, response) = ui.allocate_exact_size(egui::vec2(paper.x, paper.y) * scale, Sense::hover());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Chart: {}", measured.report.title)));
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Chart: {}", measured.report.title))
+        });
         let painter = ui.painter_at(rect);
         screen::paint_paper(&painter, paper, state.shown.theme, rect.min, scale);
         screen::paint(&painter, &measured.chart, state.shown.theme, rect.min, scale);
     });
     ui.horizontal(|ui| {
         ui.label("Write as");
-        for (format, what) in [("csv", "The table, with every digit"), ("svg", "The chart"), ("pdf", "The chart"), ("png", "The chart")] {
+        for (format, what) in [
+            ("csv", "The table, with every digit"),
+            ("svg", "The chart"),
+            ("pdf", "The chart"),
+            ("png", "The chart"),
+        ] {
             if ui.button(format.to_uppercase()).on_hover_text(what).clicked() {
                 answers.push(Command::Tables(Tables::Export(format)));
             }

@@ -48,7 +48,8 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.add_space(4.0);
         let label = ui.label("Step");
         let mut step = state.step;
-        let response = ui.add(egui::DragValue::new(&mut step).range(0..=state.len()).speed(0.2)).labelled_by(label.id);
+        let response =
+            ui.add(egui::DragValue::new(&mut step).range(0..=state.len()).speed(0.2)).labelled_by(label.id);
         if response.changed() {
             answers.push(Command::GoTo(step));
         }
@@ -56,7 +57,12 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.add_space(4.0);
         let mut speed = state.speed;
         // One widget, so that the name and the number wrap together.
-        let drag = egui::DragValue::new(&mut speed).range(0.25..=1e6).speed(state.speed * 0.02).prefix("Speed ").suffix("/s").max_decimals(1);
+        let drag = egui::DragValue::new(&mut speed)
+            .range(0.25..=1e6)
+            .speed(state.speed * 0.02)
+            .prefix("Speed ")
+            .suffix("/s")
+            .max_decimals(1);
         if ui.add(drag).on_hover_text("Events a second (− and +)").changed() {
             answers.push(Command::Speed(speed));
         }
@@ -75,13 +81,16 @@ fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut An
     ui.horizontal(|ui| {
         ui.label("View");
         if names.len() > 1 {
-            let combo = egui::ComboBox::from_id_salt("path").selected_text(&names[path].0).width(90.0).show_ui(ui, |ui| {
-                for (i, (name, count)) in names.iter().enumerate() {
-                    if ui.selectable_label(i == path, format!("{name} ({count})")).clicked() {
-                        answers.push(Command::Frame(i, 0));
+            let combo = egui::ComboBox::from_id_salt("path")
+                .selected_text(&names[path].0)
+                .width(90.0)
+                .show_ui(ui, |ui| {
+                    for (i, (name, count)) in names.iter().enumerate() {
+                        if ui.selectable_label(i == path, format!("{name} ({count})")).clicked() {
+                            answers.push(Command::Frame(i, 0));
+                        }
                     }
-                }
-            });
+                });
             combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "View path"));
         }
         super::action_button(state, ui, Action::PreviousFrame, "[", answers);
@@ -135,15 +144,31 @@ fn scrubber(state: &State, stage: &dyn Staged, cache: &mut Cache, ui: &mut egui:
     let height = rect.height() / Lane::ALL.len() as f32;
     let colors = palette::panel(state);
     for (row, lane) in Lane::ALL.into_iter().enumerate() {
-        let lane_rect = Rect::from_min_size(pos2(rect.left(), rect.top() + row as f32 * height), vec2(rect.width(), height));
+        let lane_rect = Rect::from_min_size(
+            pos2(rect.left(), rect.top() + row as f32 * height),
+            vec2(rect.width(), height),
+        );
         let font = FontId::proportional((height * 0.7).clamp(8.0, 13.0));
-        painter.text(pos2(rect.left(), lane_rect.center().y), Align2::LEFT_CENTER, lane.name(), font, colors.faint);
+        painter.text(
+            pos2(rect.left(), lane_rect.center().y),
+            Align2::LEFT_CENTER,
+            lane.name(),
+            font,
+            colors.faint,
+        );
         painter.hline(rect.x_range(), lane_rect.bottom(), Stroke::new(1.0, colors.border));
         let deepest = lanes[lane as usize].iter().map(|c| c.depth).max().unwrap_or(0).max(1);
         for (column, cell) in lanes[lane as usize].iter().enumerate().filter(|(_, c)| c.count > 0) {
             let x = bar.left() + column as f32;
             let width = per_step.clamp(1.0, 6.0);
-            paint_cell(state, &painter, lane, cell, deepest, Rect::from_min_size(pos2(x, lane_rect.top() + 2.0), vec2(width, height - 4.0)));
+            paint_cell(
+                state,
+                &painter,
+                lane,
+                cell,
+                deepest,
+                Rect::from_min_size(pos2(x, lane_rect.top() + 2.0), vec2(width, height - 4.0)),
+            );
         }
     }
     marks(state, events, &painter, bar, &x_of);
@@ -175,7 +200,11 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
             painter.rect_filled(part, 0.0, palette::role(state, role_of(Known::Decided(verdict))));
         }
         _ => {
-            painter.rect_filled(rect.shrink2(vec2(0.0, rect.height() * 0.3)), 0.0, palette::role(state, crate::drawing::Role::Evidence));
+            painter.rect_filled(
+                rect.shrink2(vec2(0.0, rect.height() * 0.3)),
+                0.0,
+                palette::role(state, crate::drawing::Role::Evidence),
+            );
         }
     }
 }
@@ -186,7 +215,13 @@ fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: Rect, x_
     for (i, bookmark) in state.bookmarks.iter().enumerate() {
         let x = x_of(bookmark.step);
         painter.vline(x, bar.y_range(), Stroke::new(1.0, colors.text));
-        painter.text(pos2(x + 2.0, bar.top()), Align2::LEFT_TOP, (i + 1).to_string(), FontId::proportional(10.0), colors.text);
+        painter.text(
+            pos2(x + 2.0, bar.top()),
+            Align2::LEFT_TOP,
+            (i + 1).to_string(),
+            FontId::proportional(10.0),
+            colors.text,
+        );
     }
     let dot = |i: usize| {
         painter.circle_filled(pos2(x_of(i + 1), bar.bottom() - 3.0), 2.5, colors.text);
@@ -195,7 +230,8 @@ fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: Rect, x_
         let stops = (0..events.len()).filter(|&i| state.stops_at(i)).take(500);
         stops.for_each(dot);
     } else {
-        let wanted = |e: &Event| verdict_of(*e).is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
+        let wanted =
+            |e: &Event| verdict_of(*e).is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
         let stops = events.iter().enumerate().filter(|(_, e)| wanted(e)).take(500);
         stops.for_each(|(i, _)| dot(i));
     }

@@ -48,13 +48,26 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut A
 
 fn card(ui: &mut egui::Ui, example: &Example, answers: &mut Answers) {
     let (rect, _) = ui.allocate_exact_size(CARD, egui::Sense::hover());
-    ui.painter().rect_stroke(rect, 4.0, ui.visuals().widgets.noninteractive.bg_stroke, egui::StrokeKind::Inside);
-    let inside = egui::UiBuilder::new().max_rect(rect.shrink(8.0)).layout(egui::Layout::top_down(egui::Align::Min));
-    // A child of its own leaves the place of the next card to what was allocated above, however little it fills.
+    ui.painter().rect_stroke(
+        rect,
+        4.0,
+        ui.visuals().widgets.noninteractive.bg_stroke,
+        egui::StrokeKind::Inside,
+    );
+    let inside =
+        egui::UiBuilder::new().max_rect(rect.shrink(8.0)).layout(egui::Layout::top_down(egui::Align::Min));
+    // A child of its own leaves the place of the next card to what was allocated above, however little it
+    // fills.
     let ui = &mut ui.new_child(inside);
     ui.spacing_mut().item_spacing.y = 4.0;
     let open = ui.button(RichText::new(&example.title).strong()).on_hover_text(&example.source);
-    open.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Open {} ({})", example.title, example.source)));
+    open.widget_info(|| {
+        egui::WidgetInfo::labeled(
+            egui::Role::Button,
+            true,
+            format!("Open {} ({})", example.title, example.source),
+        )
+    });
     if open.clicked() {
         answers.push(Command::Open(example.source.clone()));
     }

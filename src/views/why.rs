@@ -25,9 +25,14 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     ScrollArea::vertical().auto_shrink(false).id_salt("why").show(ui, |ui| {
         if state.selection == Subject::None {
             ui.label("Nothing is selected.");
-            ui.weak("Click a node or a primitive in a picture or in the event tree: here stands why it is drawn or not.");
+            ui.weak(
+                "Click a node or a primitive in a picture or in the event tree: here stands why it is \
+                     drawn or not.",
+            );
             let current = state.current_subject();
-            if current != Subject::None && ui.button(format!("Select {}", subject_name(state, current))).clicked() {
+            if current != Subject::None
+                && ui.button(format!("Select {}", subject_name(state, current))).clicked()
+            {
                 answers.push(Command::Select(current));
             }
             return;

@@ -9,7 +9,9 @@ use super::dock::{self, Dock, Pane};
 use super::handles::Handle;
 use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
-use crate::app::{Action, Any, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS};
+use crate::app::{
+    Action, Any, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS,
+};
 use crate::drawing::Drawing;
 use crate::figure::Look;
 use crate::geometry::{Flat, PrimId, View};
@@ -79,7 +81,9 @@ impl Cache {
         let (send, receive) = channel();
         self.asked = Some(receive);
         std::thread::spawn(move || {
-            let dialog = rfd::FileDialog::new().set_title("Open a scene").add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
+            let dialog = rfd::FileDialog::new()
+                .set_title("Open a scene")
+                .add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
             let _ = send.send(dialog.pick_file().map(|p| p.to_string_lossy().into_owned()));
         });
     }
@@ -128,12 +132,25 @@ impl App {
         let kept = |key: &str| cc.storage.filter(|_| !start.fresh).and_then(|s| s.get_string(key));
         let last = kept(SESSION).and_then(|text| Session::parse(&text, "the last session").ok());
         state.start(&start, last);
-        let layout = kept(LAYOUT).filter(|_| !start.reset_layout).and_then(|text| serde_json::from_str::<(String, Tree<Pane>)>(&text).ok());
+        let layout = kept(LAYOUT)
+            .filter(|_| !start.reset_layout)
+            .and_then(|text| serde_json::from_str::<(String, Tree<Pane>)>(&text).ok());
         let layout = layout.filter(|(name, tree)| *name == state.shown.layout.name() && dock::is_sound(tree));
         let tree = layout.map_or_else(|| dock::tree(state.shown.layout), |(_, tree)| tree);
         let frame = true;
         let cache = Cache { frame, ..Cache::default() };
-        Self { state, cache, tree, keys, start, dressed: None, title: String::new(), is_fullscreen: false, quiet_frames: 0, is_shot: false }
+        Self {
+            state,
+            cache,
+            tree,
+            keys,
+            start,
+            dressed: None,
+            title: String::new(),
+            is_fullscreen: false,
+            quiet_frames: 0,
+            is_shot: false,
+        }
     }
 
     fn dress(&mut self, ctx: &egui::Context) {
@@ -179,8 +196,10 @@ impl App {
     }
 
     fn outside_world(&mut self, ctx: &egui::Context) -> Answers {
-        let mut answers: Answers = std::mem::take(&mut self.keys.inbox().asked).into_iter().map(Command::from).collect();
-        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_string_lossy().into_owned()));
+        let mut answers: Answers =
+            std::mem::take(&mut self.keys.inbox().asked).into_iter().map(Command::from).collect();
+        let dropped =
+            ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_string_lossy().into_owned()));
         answers.extend(dropped.map(Command::Open));
         match self.cache.asked() {
             Some(Some(path)) => answers.push(Command::Open(path)),
@@ -221,7 +240,8 @@ impl App {
         gpu.filter(|_| large).and_then(super::space::pixels)
     }
 
-    /// Writes the picture that the start asked for, once everything has been quiet for some frames, and quits.
+    /// Writes the picture that the start asked for, once everything has been quiet for some frames, and
+    /// quits.
     fn shoot(&mut self, ctx: &egui::Context) {
         let Some(shot) = self.start.shot.clone().filter(|_| !self.is_shot) else { return };
         self.quiet_frames = if self.state.busy().is_none() { self.quiet_frames + 1 } else { 0 };
@@ -233,7 +253,11 @@ impl App {
         let quit = ctx.clone();
         ctx.request_screenshot(move |image: std::sync::Arc<egui::ColorImage>| {
             let rgba: Vec<u8> = image.pixels.iter().flat_map(|c| c.to_srgba_unmultiplied()).collect();
-            let pixels = crate::drawing::Pixels { width: image.size[0] as u32, height: image.size[1] as u32, rgba: rgba.into() };
+            let pixels = crate::drawing::Pixels {
+                width: image.size[0] as u32,
+                height: image.size[1] as u32,
+                rgba: rgba.into(),
+            };
             if let Err(error) = crate::app::write_file(&shot.path, &crate::render::png_pixels(&pixels)) {
                 eprintln!("error: {error}");
             }
@@ -262,7 +286,8 @@ impl eframe::App for App {
             ctx.request_repaint();
         }
         self.tell_keys(&ctx);
-        let title = self.state.staged().map_or("cullscope".to_owned(), |s| format!("{} – cullscope", s.scene_name()));
+        let title =
+            self.state.staged().map_or("cullscope".to_owned(), |s| format!("{} – cullscope", s.scene_name()));
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;

@@ -34,9 +34,16 @@ fn files_that_cannot_be_scenes_are_refused() {
     let known = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
     assert_eq!(refused(&home), format!("IT: is a folder; {known}"));
     assert_eq!(refused(&home.join("photo.jpeg")), format!("IT: this kind of file cannot be read; {known}"));
-    assert_eq!(refused(&home.join("nothing")), format!("IT: no such file, and no kind of scene either; {known}"));
+    assert_eq!(
+        refused(&home.join("nothing")),
+        format!("IT: no such file, and no kind of scene either; {known}")
+    );
     assert_eq!(refused(&home.join("folder.obj")), "IT: is a folder, not a file");
-    assert!(refused(&home.join("nothing.obj")).starts_with("IT: No such file"), "{}", refused(&home.join("nothing.obj")));
+    assert!(
+        refused(&home.join("nothing.obj")).starts_with("IT: No such file"),
+        "{}",
+        refused(&home.join("nothing.obj"))
+    );
 }
 
 #[cfg(unix)]
@@ -106,8 +113,16 @@ fn broken_material_files_leave_gray_and_a_note() {
     let cases: [(&[u8], [f32; 3], &str); 6] = [
         (b"newmtl red\nKd nan 0 0\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not three numbers; it is gray"),
         (b"newmtl red\nKd 1 0\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not three numbers; it is gray"),
-        (b"newmtl red\nKd spectral file.rfl\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not three numbers; it is gray"),
-        (b"newmtl red\nKd 1 0 0\nnewmtl red\nKd 0 1 0\n", [1.0, 0.0, 0.0], "b.mtl:3: material `red` is defined twice; the first counts"),
+        (
+            b"newmtl red\nKd spectral file.rfl\n",
+            [0.7; 3],
+            "b.mtl:2: `Kd` of `red` is not three numbers; it is gray",
+        ),
+        (
+            b"newmtl red\nKd 1 0 0\nnewmtl red\nKd 0 1 0\n",
+            [1.0, 0.0, 0.0],
+            "b.mtl:3: material `red` is defined twice; the first counts",
+        ),
         (b"Kd 1 0 0\n", [0.7; 3], "material `red` is in no material file; it is gray"),
         (b"\xff\xfen\0", [0.7; 3], "b.mtl: is UTF-16 text; save it as UTF-8"),
     ];
@@ -125,14 +140,17 @@ fn buffers_are_read_only_from_the_folder_of_the_model() {
     fs::create_dir_all(&home).expect("made");
     fs::write(outer.join("secret.bin"), super::gltf::buffer()).expect("written");
     fs::write(home.join("good one.bin"), super::gltf::buffer()).expect("written");
-    let inline = format!("data:application/octet-stream;base64,{}", super::gltf::base64(&super::gltf::buffer()));
+    let inline =
+        format!("data:application/octet-stream;base64,{}", super::gltf::base64(&super::gltf::buffer()));
     let with = |uri: &str| {
         fs::write(home.join("m.gltf"), super::gltf::valid().replace(&inline, uri)).expect("written");
         open(&home.join("m.gltf")).map(|_| ())
     };
     assert_eq!(with("good%20one.bin"), Ok(()));
     assert_eq!(with("nothing.bin"), Err("IT: buffer file nothing.bin: there is no such file".into()));
-    for uri in ["../secret.bin", "%2e%2e/secret.bin", "/dev/zero", "file:///dev/zero", "https://example.org/a.bin"] {
+    for uri in
+        ["../secret.bin", "%2e%2e/secret.bin", "/dev/zero", "file:///dev/zero", "https://example.org/a.bin"]
+    {
         let said = with(uri).expect_err("refused");
         assert!(said.starts_with(&format!("IT: buffer file {uri}: ")), "{said}");
     }
@@ -142,12 +160,18 @@ fn buffers_are_read_only_from_the_folder_of_the_model() {
 fn views_beside_a_model_become_its_paths_or_a_note() {
     let home = folder("views");
     fs::write(home.join("m.obj"), TRIANGLE).expect("written");
-    fs::write(home.join("m.views.json"), "{\"views\":[{\"eye\":[0,0,5],\"target\":[0,0,0]}]}").expect("written");
-    fs::write(home.join("m.walk.views.json"), "{\"views\":[{\"eye\":[0,0,5],\"target\":[0,0,5]}]}").expect("written");
+    fs::write(home.join("m.views.json"), "{\"views\":[{\"eye\":[0,0,5],\"target\":[0,0,0]}]}")
+        .expect("written");
+    fs::write(home.join("m.walk.views.json"), "{\"views\":[{\"eye\":[0,0,5],\"target\":[0,0,5]}]}")
+        .expect("written");
     let Ok(AnyScene::Solid(scene)) = open(&home.join("m.obj")) else { panic!("it should load") };
     assert_eq!(scene.paths().iter().map(|p| p.name.as_str()).collect::<Vec<_>>(), ["views"]);
     let note = scene.report().notes.last().cloned().unwrap_or_default();
-    assert!(note.starts_with("view path left out: ") && note.contains("m.walk.views.json:1: view 0: the target is at the eye"), "{note}");
+    assert!(
+        note.starts_with("view path left out: ")
+            && note.contains("m.walk.views.json:1: view 0: the target is at the eye"),
+        "{note}"
+    );
 }
 
 #[test]
@@ -155,16 +179,28 @@ fn generators_say_what_they_take() {
     let cases = [
         (
             "generate:castle",
-            "generate:castle: there is no generator `castle`; there are: building, city, machine-room, box-and-objects, thin-slabs, seminar-room, cars",
+            "generate:castle: there is no generator `castle`; there are: building, city, machine-room, \
+             box-and-objects, thin-slabs, seminar-room, cars",
         ),
         (
             "generate:",
-            "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, thin-slabs, seminar-room, cars",
+            "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, \
+             thin-slabs, seminar-room, cars",
         ),
-        ("generate:building?storeys=3", "generate:building?storeys=3: `building` has no parameter `storeys`; it has: polygons, seed, rooms"),
+        (
+            "generate:building?storeys=3",
+            "generate:building?storeys=3: `building` has no parameter `storeys`; it has: polygons, seed, \
+             rooms",
+        ),
         ("generate:building?seed", "generate:building?seed: `seed` should read key=value"),
-        ("generate:building?polygons=10", "generate:building?polygons=10: `polygons` must be a whole number from 1000 to 8000000, not `10`"),
-        ("generate:building?seed=-1", "generate:building?seed=-1: `seed` must be a whole number from 0 to 4294967295, not `-1`"),
+        (
+            "generate:building?polygons=10",
+            "generate:building?polygons=10: `polygons` must be a whole number from 1000 to 8000000, not `10`",
+        ),
+        (
+            "generate:building?seed=-1",
+            "generate:building?seed=-1: `seed` must be a whole number from 0 to 4294967295, not `-1`",
+        ),
     ];
     for (call, want) in cases {
         let said = load(call, &LoadOptions::default(), &Quiet).map(|_| ()).map_err(|e| e.to_string());

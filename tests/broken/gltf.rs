@@ -77,14 +77,18 @@ fn strips_fans_and_mirrors_keep_their_winding() {
     for (mode, indices, count) in [(5, [0u16, 1, 3, 2, 0, 0], 4), (6, [0, 1, 2, 3, 0, 0], 4)] {
         let mut bytes = buffer();
         bytes[48..].copy_from_slice(&indices.iter().flat_map(|i| i.to_le_bytes()).collect::<Vec<_>>());
-        let text = changed("\"indices\":1", &format!("\"mode\":{mode},\"indices\":1")).replace("\"count\":6", &format!("\"count\":{count}"));
+        let text = changed("\"indices\":1", &format!("\"mode\":{mode},\"indices\":1"))
+            .replace("\"count\":6", &format!("\"count\":{count}"));
         let text = text.replace(&base64(&buffer()), &base64(&bytes));
         let scene = solid("m.gltf", text.as_bytes());
         assert_eq!(scene.live().len(), 2);
         assert!(scene.live().iter().all(|p| scene.normal(*p).get(2) > 0.0), "mode {mode}");
         let mirrored = text.replace("\"translation\":[10,0,0]", "\"scale\":[-1,1,1]");
         let scene = solid("m.gltf", mirrored.as_bytes());
-        assert!(scene.live().iter().all(|p| scene.normal(*p).get(2) > 0.0), "a mirrored front is still a front");
+        assert!(
+            scene.live().iter().all(|p| scene.normal(*p).get(2) > 0.0),
+            "a mirrored front is still a front"
+        );
     }
 }
 
@@ -92,48 +96,78 @@ fn strips_fans_and_mirrors_keep_their_winding() {
 fn broken_files_are_refused() {
     let many: String = "1,".repeat(2000);
     let cases = [
-        (changed("\"version\":\"2.0\"", "\"version\":\"1.0\""), "m.gltf: glTF version 1.0 is not supported, only 2"),
+        (
+            changed("\"version\":\"2.0\"", "\"version\":\"1.0\""),
+            "m.gltf: glTF version 1.0 is not supported, only 2",
+        ),
         (
             changed(
                 "\"scene\":0",
-                "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0",
+                "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\
+                 \"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"scene\":0",
             ),
             "m.gltf: it requires the extension KHR_draco_mesh_compression, which is not supported",
         ),
         (changed("\"children\":[1]", "\"children\":[0]"), "m.gltf: node 0 is in the tree twice"),
         (changed("\"children\":[1]", "\"children\":[1,1]"), "m.gltf: node 1 is in the tree twice"),
-        (changed("\"indices\":1", "\"indices\":1,\"mode\":1"), "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes)"),
-        (changed("\"nodes\":[0]", "\"nodes\":[]"), "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes)"),
-        (changed("\"byteLength\":60", "\"byteLength\":61"), "m.gltf: buffer 0 should have 61 bytes, but there are only 60"),
-        (changed("\"count\":6", "\"count\":7"), "m.gltf: mesh 0, primitive 0: accessor 1: 7 items of 2 bytes do not fit into buffer view 1"),
+        (
+            changed("\"indices\":1", "\"indices\":1,\"mode\":1"),
+            "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes)",
+        ),
+        (
+            changed("\"nodes\":[0]", "\"nodes\":[]"),
+            "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes)",
+        ),
+        (
+            changed("\"byteLength\":60", "\"byteLength\":61"),
+            "m.gltf: buffer 0 should have 61 bytes, but there are only 60",
+        ),
+        (
+            changed("\"count\":6", "\"count\":7"),
+            "m.gltf: mesh 0, primitive 0: accessor 1: 7 items of 2 bytes do not fit into buffer view 1",
+        ),
         (
             changed("\"count\":4,", "\"count\":18446744073709551615,"),
             "m.gltf: mesh 0, primitive 0: its instances come to over 33554432 points or corners",
         ),
         (
-            changed("\"bufferView\":0,\"componentType\":5126,\"count\":4,", "\"componentType\":5126,\"count\":20000000,"),
+            changed(
+                "\"bufferView\":0,\"componentType\":5126,\"count\":4,",
+                "\"componentType\":5126,\"count\":20000000,",
+            ),
             "m.gltf: accessors[0].bufferView: Missing data (1 faults)",
         ),
         (
             changed(
                 "\"bufferView\":0,\"componentType\":5126,\"count\":4,",
-                "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5123},\"values\":{\"bufferView\":0}},\"componentType\":5126,\"count\":20000000,",
+                "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5123},\
+                 \"values\":{\"bufferView\":0}},\"componentType\":5126,\"count\":20000000,",
             ),
             "m.gltf: mesh 0, primitive 0: accessor 0: 20000000 items and no data",
         ),
-        (changed("\"byteOffset\":48,", "\"byteOffset\":49,"), "m.gltf: mesh 0, primitive 0: accessor 1: buffer view 1 lies outside of buffer 0"),
         (
-            changed("\"type\":\"VEC3\"", "\"type\":\"VEC2\"").replace("\"min\":[0,0,0],\"max\":[1,1,0]", "\"min\":[0,0],\"max\":[1,1]"),
+            changed("\"byteOffset\":48,", "\"byteOffset\":49,"),
+            "m.gltf: mesh 0, primitive 0: accessor 1: buffer view 1 lies outside of buffer 0",
+        ),
+        (
+            changed("\"type\":\"VEC3\"", "\"type\":\"VEC2\"")
+                .replace("\"min\":[0,0,0],\"max\":[1,1,0]", "\"min\":[0,0],\"max\":[1,1]"),
             "m.gltf: mesh 0, primitive 0: accessor 0: needs 3 numbers an item",
         ),
         (
             changed("\"componentType\":5123", "\"componentType\":5126"),
             "m.gltf: mesh 0, primitive 0: accessor 1: indices must be plain unsigned numbers",
         ),
-        (changed("base64,", "base64,!!!"), "m.gltf: buffer 0: its base64 is broken: Invalid symbol 33, offset 0."),
+        (
+            changed("base64,", "base64,!!!"),
+            "m.gltf: buffer 0: its base64 is broken: Invalid symbol 33, offset 0.",
+        ),
         (changed(";base64,", ","), "m.gltf: buffer 0: only base64 data URIs are read"),
         (changed("data:application/octet-stream;base64,", "../"), "m.gltf: buffer file"),
-        (changed("\"POSITION\":0", "\"POSITION\":7"), "m.gltf: a mesh has its positions in accessor 7, but there are only 2"),
+        (
+            changed("\"POSITION\":0", "\"POSITION\":7"),
+            "m.gltf: a mesh has its positions in accessor 7, but there are only 2",
+        ),
         (changed("\"mesh\":0", "\"mesh\":5"), "m.gltf: nodes[1].mesh: Index out of bounds (1 faults)"),
         (
             changed("\"buffer\":0,\"byteOffset\":48", "\"buffer\":3,\"byteOffset\":48"),
@@ -164,7 +198,10 @@ fn broken_containers_are_refused() {
         (with(8, [12, 0, 0, 0]), "the GLB has no JSON chunk"),
         (with(8, [0xff; 4]), "the GLB says it has 4294967295 bytes, but the file has "),
         (good[..good.len() - 1].to_vec(), "the GLB says it has "),
-        (with(12, [0xff; 4]), "the GLB chunk at byte 12 says it has 4294967295 bytes, but the file ends before"),
+        (
+            with(12, [0xff; 4]),
+            "the GLB chunk at byte 12 says it has 4294967295 bytes, but the file ends before",
+        ),
         (with(16, *b"ABCD"), "the GLB has no JSON chunk"),
     ];
     for (bytes, want) in cases {
@@ -173,7 +210,10 @@ fn broken_containers_are_refused() {
     }
     let bin = good.len() - 64;
     assert_eq!(&good[bin..bin + 4], b"BIN\0");
-    assert_eq!(error("m.glb", &with(bin, *b"ABC\0")), "m.glb: buffer 0 is the binary chunk, but there is none");
+    assert_eq!(
+        error("m.glb", &with(bin, *b"ABC\0")),
+        "m.glb: buffer 0 is the binary chunk, but there is none"
+    );
 }
 
 #[test]
@@ -204,16 +244,21 @@ fn sparse_values_are_bounds_checked() {
             .replace("\"byteLength\":60", "\"byteLength\":76")
             .replace(
                 "\"byteLength\":12}]",
-                "\"byteLength\":12},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":4},{\"buffer\":0,\"byteOffset\":64,\"byteLength\":12}]",
+                "\"byteLength\":12},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":4},{\"buffer\":0,\
+                 \"byteOffset\":64,\"byteLength\":12}]",
             )
             .replace(
                 "\"max\":[1,1,0]}",
-                "\"max\":[1,2,0],\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"componentType\":5121},\"values\":{\"bufferView\":3}}}",
+                "\"max\":[1,2,0],\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\
+                 \"componentType\":5121},\"values\":{\"bufferView\":3}}}",
             );
         if ok {
             assert_eq!(solid("m.gltf", text.as_bytes()).bounds().max.to_array(), [11.0, 2.0, 0.0]);
         } else {
-            assert_eq!(error("m.gltf", text.as_bytes()), "m.gltf: mesh 0, primitive 0: accessor 0: sparse index 4 is past its 4 items");
+            assert_eq!(
+                error("m.gltf", text.as_bytes()),
+                "m.gltf: mesh 0, primitive 0: accessor 0: sparse index 4 is past its 4 items"
+            );
         }
     }
 }
@@ -224,17 +269,26 @@ pub fn animated(path: &str) -> String {
     bytes.extend([0.0f32, 1.0].iter().flat_map(|v| v.to_le_bytes()));
     bytes.extend([0.0f32, 0.0, 0.0, 24.0, 0.0, 0.0].iter().flat_map(|v| v.to_le_bytes()));
     valid()
-            .replace(&base64(&buffer()), &base64(&bytes))
-            .replace("\"byteLength\":60", "\"byteLength\":92")
-            .replace("\"byteLength\":12}]", "\"byteLength\":12},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":8},{\"buffer\":0,\"byteOffset\":68,\"byteLength\":24}]")
-            .replace(
-                "\"type\":\"SCALAR\"}]",
-                "\"type\":\"SCALAR\"},{\"bufferView\":2,\"componentType\":5126,\"count\":2,\"type\":\"SCALAR\",\"min\":[0],\"max\":[1]},{\"bufferView\":3,\"componentType\":5126,\"count\":2,\"type\":\"VEC3\"}]",
-            )
-            .replace(
-                "\"scene\":0",
-                &format!("\"animations\":[{{\"channels\":[{{\"sampler\":0,\"target\":{{\"node\":1,\"path\":\"{path}\"}}}}],\"samplers\":[{{\"input\":2,\"output\":3}}]}}],\"scene\":0"),
-            )
+        .replace(&base64(&buffer()), &base64(&bytes))
+        .replace("\"byteLength\":60", "\"byteLength\":92")
+        .replace(
+            "\"byteLength\":12}]",
+            "\"byteLength\":12},{\"buffer\":0,\"byteOffset\":60,\
+             \"byteLength\":8},{\"buffer\":0,\"byteOffset\":68,\"byteLength\":24}]",
+        )
+        .replace(
+            "\"type\":\"SCALAR\"}]",
+            "\"type\":\"SCALAR\"},{\"bufferView\":2,\"componentType\":5126,\"count\":2,\
+                 \"type\":\"SCALAR\",\"min\":[0],\"max\":[1]},{\"bufferView\":3,\"componentType\":5126,\
+                  \"count\":2,\"type\":\"VEC3\"}]",
+        )
+        .replace(
+            "\"scene\":0",
+            &format!(
+                "\"animations\":[{{\"channels\":[{{\"sampler\":0,\"target\":{{\"node\":1,\
+                 \"path\":\"{path}\"}}}}],\"samplers\":[{{\"input\":2,\"output\":3}}]}}],\"scene\":0"
+            ),
+        )
 }
 
 #[test]
@@ -246,7 +300,10 @@ fn a_rigid_animation_becomes_a_motion() {
     for bad in [animated("sideways"), animated("scale").replace("\"node\":1", "\"node\":77")] {
         let still = solid("m.gltf", bad.as_bytes());
         assert_eq!(still.frame_count(), 1);
-        assert_eq!(still.report().notes, ["animation left out: it names a sampler, node or property that is not there"]);
+        assert_eq!(
+            still.report().notes,
+            ["animation left out: it names a sampler, node or property that is not there"]
+        );
     }
     let grown = solid("m.gltf", animated("scale").as_bytes());
     assert_eq!(grown.frame_count(), 1);

@@ -11,7 +11,8 @@ const GOOD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
 
 #[test]
 fn files_without_a_face_are_refused_with_a_guess_at_what_they_are() {
-    let stl = "solid cube\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid\n";
+    let stl = "solid cube\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 \
+               0\nendloop\nendfacet\nendsolid\n";
     let cases: [(&[u8], &str); 12] = [
         (b"", "the file is empty"),
         (b" \n\n\t", "the file is empty"),
@@ -34,15 +35,55 @@ fn files_without_a_face_are_refused_with_a_guess_at_what_they_are() {
 #[test]
 fn bad_faces_are_dropped_keep_their_ids_and_are_told_with_their_line() {
     let cases = [
-        ("f 0 1 2", 1, vec![(OutOfRange, 1)], "m.obj:6: corner `0` names a point before the first one, so the face is dropped"),
-        ("f 1 2 9", 1, vec![(OutOfRange, 1)], "m.obj:6: corner 9 is past the last of 4 points, so the face is dropped"),
-        ("f 1 2 3 4 9", 3, vec![(OutOfRange, 3)], "m.obj:6: corner 9 is past the last of 4 points, so the face is dropped"),
-        ("f 1 2 4294967296", 1, vec![(OutOfRange, 1)], "m.obj:6: corner 4294967296 is past the last of 4 points, so the face is dropped"),
-        ("f 1 2 99999999999999999999", 1, vec![(Malformed, 1)], "m.obj:6: corner `99999999999999999999` is not a number, so the face is dropped"),
-        ("f -1 -2 -5", 1, vec![(OutOfRange, 1)], "m.obj:6: corner `-5` names a point before the first one, so the face is dropped"),
+        (
+            "f 0 1 2",
+            1,
+            vec![(OutOfRange, 1)],
+            "m.obj:6: corner `0` names a point before the first one, so the face is dropped",
+        ),
+        (
+            "f 1 2 9",
+            1,
+            vec![(OutOfRange, 1)],
+            "m.obj:6: corner 9 is past the last of 4 points, so the face is dropped",
+        ),
+        (
+            "f 1 2 3 4 9",
+            3,
+            vec![(OutOfRange, 3)],
+            "m.obj:6: corner 9 is past the last of 4 points, so the face is dropped",
+        ),
+        (
+            "f 1 2 4294967296",
+            1,
+            vec![(OutOfRange, 1)],
+            "m.obj:6: corner 4294967296 is past the last of 4 points, so the face is dropped",
+        ),
+        (
+            "f 1 2 99999999999999999999",
+            1,
+            vec![(Malformed, 1)],
+            "m.obj:6: corner `99999999999999999999` is not a number, so the face is dropped",
+        ),
+        (
+            "f -1 -2 -5",
+            1,
+            vec![(OutOfRange, 1)],
+            "m.obj:6: corner `-5` names a point before the first one, so the face is dropped",
+        ),
         ("f 1 2 x", 1, vec![(Malformed, 1)], "m.obj:6: corner `x` is not a number, so the face is dropped"),
-        ("f 1/1 /2 3", 1, vec![(Malformed, 1)], "m.obj:6: corner `/2` is not a number, so the face is dropped"),
-        ("f 1 2 2.5", 1, vec![(Malformed, 1)], "m.obj:6: corner `2.5` is not a number, so the face is dropped"),
+        (
+            "f 1/1 /2 3",
+            1,
+            vec![(Malformed, 1)],
+            "m.obj:6: corner `/2` is not a number, so the face is dropped",
+        ),
+        (
+            "f 1 2 2.5",
+            1,
+            vec![(Malformed, 1)],
+            "m.obj:6: corner `2.5` is not a number, so the face is dropped",
+        ),
         ("f 1 2", 0, vec![], "m.obj:6: a face needs three corners, not 2, so it was left out"),
         ("f", 0, vec![], "m.obj:6: a face needs three corners, not 0, so it was left out"),
         ("f 1 1 2", 1, vec![(Degenerate, 1)], ""),
@@ -71,7 +112,8 @@ fn bad_points_drop_their_faces_and_shift_nothing() {
         ("v", Malformed, "`v` needs three numbers, so faces at this point are dropped"),
     ];
     for (line, why, note) in cases {
-        let scene = solid("m.obj", format!("v 0 0 0\nv 1 0 0\n{line}\nv 0 1 0\nf 1 2 3\nf 1 2 4\n").as_bytes());
+        let scene =
+            solid("m.obj", format!("v 0 0 0\nv 1 0 0\n{line}\nv 0 1 0\nf 1 2 3\nf 1 2 4\n").as_bytes());
         assert_eq!(counts(&scene), (2, 1, vec![(why, 1)]), "{line}");
         assert_eq!(scene.report().notes, [format!("m.obj:3: {note}")], "{line}");
         let points: Vec<_> = scene.prim_points(PrimId(1)).map(|p| p.to_array()).collect();
@@ -112,7 +154,9 @@ fn odd_text_is_read_as_meant() {
 fn bytes_that_are_not_text_cost_only_their_letters() {
     let scene = solid("m.obj", b"# \xff\nv 0 0 0\nv 1 0 0\nv 1 1 0\no caf\xe9\nusemtl r\xf6t\nf 1 2 3\n");
     assert_eq!(scene.objects()[0].name, "caf\u{fffd}");
-    assert!(scene.report().notes.contains(&"m.obj:5: not UTF-8 from here on in 2 lines; names are shown as far as they can be".to_owned()));
+    assert!(scene.report().notes.contains(
+        &"m.obj:5: not UTF-8 from here on in 2 lines; names are shown as far as they can be".to_owned()
+    ));
 }
 
 #[test]
@@ -140,8 +184,8 @@ fn a_flood_of_complaints_is_cut_off_and_counted() {
 
 #[test]
 fn objects_and_groups_are_put_together_again() {
-    let text =
-        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no a\ng left\nusemtl x\nf 1 2 3\nusemtl y\nf 1 3 4\no b\nusemtl x\nf 1 2 4\no a\nf 2 3 4\ng\nf 1 2 3\n";
+    let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no a\ng left\nusemtl x\nf 1 2 3\nusemtl y\nf 1 3 4\no \
+                b\nusemtl x\nf 1 2 4\no a\nf 2 3 4\ng\nf 1 2 3\n";
     let scene = solid("m.obj", text.as_bytes());
     let objects: Vec<_> = scene.objects().iter().map(|o| (o.name.as_str(), o.group.as_str())).collect();
     assert_eq!(objects, [("a", "left"), ("b", "left"), ("a", "")]);
@@ -159,7 +203,12 @@ fn polygons_are_cut_by_their_shape() {
     assert_eq!(scene.faces().len(), 1);
     assert_eq!(scene.faces()[0].prims, [PrimId(1), PrimId(2)]);
     let area = |p: u32| scene.normal(PrimId(p)).length() * 0.5;
-    assert!((area(1) + area(2) - 1.0).abs() < 1e-6 && (area(3) + area(4) - 0.35).abs() < 1e-6, "{} {}", area(3), area(4));
+    assert!(
+        (area(1) + area(2) - 1.0).abs() < 1e-6 && (area(3) + area(4) - 0.35).abs() < 1e-6,
+        "{} {}",
+        area(3),
+        area(4)
+    );
     let bowtie = solid("m.obj", format!("{GOOD}f 1 3 2 4\n").as_bytes());
     assert_eq!(bowtie.prim_count(), 3, "a border that crosses itself takes its ids all the same");
 }
@@ -195,16 +244,24 @@ fn a_polygon_too_long_to_be_cut_is_left_out_and_told() {
     (4..n + 4).for_each(|k| text += &format!(" {k}"));
     let scene = solid("star.obj", text.as_bytes());
     assert_eq!(counts(&scene), (n as usize - 1, 1, vec![(Malformed, n as usize - 2)]));
-    assert_eq!(scene.report().notes, ["a concave polygon of 140000 corners is too long to be cut, so it was left out"]);
+    assert_eq!(
+        scene.report().notes,
+        ["a concave polygon of 140000 corners is too long to be cut, so it was left out"]
+    );
 }
 
 #[test]
 fn far_off_models_keep_their_detail() {
-    let text = b"v 500000.001 4649776.001 0\nv 500000.002 4649776.001 0\nv 500000.002 4649776.003 0\nf 1 2 3\n";
+    let text =
+        b"v 500000.001 4649776.001 0\nv 500000.002 4649776.001 0\nv 500000.002 4649776.003 0\nf 1 2 3\n";
     let scene = solid("m.obj", text);
     let size = scene.bounds().size();
     assert!((size.x - 0.001).abs() < 1e-8 && (size.y - 0.002).abs() < 1e-8, "{size:?}");
-    assert!((scene.origin().x - 500_000.0).abs() < 0.01 && scene.report().notes[0].starts_with("recentered"), "{:?}", scene.report());
+    assert!(
+        (scene.origin().x - 500_000.0).abs() < 0.01 && scene.report().notes[0].starts_with("recentered"),
+        "{:?}",
+        scene.report()
+    );
     let stay = LoadOptions { recenter: Recenter::Never, ..LoadOptions::default() };
     let refused = load_bytes(text, "m.obj", &stay, &Quiet).map_err(|e| e.to_string());
     assert!(matches!(&refused, Err(e) if e.ends_with("no triangle that can be drawn")), "{refused:?}");

@@ -51,8 +51,10 @@ impl<S: Space> Method<S> for Centroid {
     const CARD: Card = Card {
         key: "centroid",
         name: "Centroid ordering with a budget",
-        summary: "Sorts the polygons in view by the distance of their centroids and draws the nearest ones until the budget is spent.",
-        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set Estimation. IEEE TVCG 6(2), 2000, Section 4.5.",
+        summary: "Sorts the polygons in view by the distance of their centroids and draws the nearest ones \
+                  until the budget is spent.",
+        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set \
+                Estimation. IEEE TVCG 6(2), 2000, Section 4.5.",
         doi: "10.1109/2945.856993",
         conservative: false,
         code: CODE,
@@ -96,7 +98,14 @@ impl<S: Space> Method<S> for Centroid {
     }
     fn dense(_: &Scene<S>, _: &View<S>) {}
     fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain((): &(), scene: &Scene<S>, _: &Whole<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        (): &(),
+        scene: &Scene<S>,
+        _: &Whole<S>,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         if let Some(note) = note {
             note.draw(scene, view, to);
         }
@@ -104,7 +113,12 @@ impl<S: Space> Method<S> for Centroid {
 }
 
 /// The primitives in view with the squared distance of their centroids from the eye, world units².
-fn in_view<S: Space, O: Observer<Evidence<S>>>(scene: &Scene<S>, view: &View<S>, params: &Params, watch: &mut O) -> Vec<(f32, PrimId)> {
+fn in_view<S: Space, O: Observer<Evidence<S>>>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    params: &Params,
+    watch: &mut O,
+) -> Vec<(f32, PrimId)> {
     let (frustum, eye) = (view.frustum(), view.eye.position);
     let mut queue = Vec::with_capacity(scene.live().len());
     for &prim in scene.live() {
@@ -113,7 +127,9 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(scene: &Scene<S>, view: &View<S>,
         let planes = geometry::Frustum::<S::Vector>::ALL;
         let test = frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
-            watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test)));
+            watch.note(move || {
+                Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test))
+            });
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else if params.backface_culling && prim_faces_away(scene, eye, prim) {
             watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));

@@ -31,21 +31,44 @@ pub struct Distance<S: Space> {
 impl<S: Space> Distance<S> {
     /// The operands of the ordering for a primitive at `rank`, of which `budget` are drawn.
     pub fn of(scene: &Scene<S>, prim: PrimId, squared: f32, rank: usize, budget: usize) -> Self {
-        Self { prim, centroid: middle(scene, prim), distance: squared.sqrt(), rank: rank as u32, budget: budget as u32 }
+        Self {
+            prim,
+            centroid: middle(scene, prim),
+            distance: squared.sqrt(),
+            rank: rank as u32,
+            budget: budget as u32,
+        }
     }
     fn sentence(&self) -> String {
         let (prim, rank, budget) = (self.prim, self.rank + 1, self.budget);
-        let head = format!("The centroid of {} {prim} is {} units from the eye, number {rank} in the order", S::PRIM, short(self.distance));
+        let head = format!(
+            "The centroid of {} {prim} is {} units from the eye, number {rank} in the order",
+            S::PRIM,
+            short(self.distance)
+        );
         if self.rank < self.budget {
-            format!("{head}: it is drawn, {} of the budget of {budget} are left.", self.budget - self.rank - 1)
+            format!(
+                "{head}: it is drawn, {} of the budget of {budget} are left.",
+                self.budget - self.rank - 1
+            )
         } else {
             format!("{head}: the budget of {budget} is spent, it is left out.")
         }
     }
     fn draw(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
         outline(scene, self.prim, to);
-        to.line(Layer::Evidence, Role::Evidence, Subject::Prim(self.prim), [view.eye.position, self.centroid]);
-        to.push(Layer::Evidence, Role::Evidence, Subject::Prim(self.prim), Mark::Dot { at: self.centroid, radius_pt: 2.5 });
+        to.line(
+            Layer::Evidence,
+            Role::Evidence,
+            Subject::Prim(self.prim),
+            [view.eye.position, self.centroid],
+        );
+        to.push(
+            Layer::Evidence,
+            Role::Evidence,
+            Subject::Prim(self.prim),
+            Mark::Dot { at: self.centroid, radius_pt: 2.5 },
+        );
         label(to, (view.eye.position + self.centroid) * 0.5, format!("{} units", short(self.distance)));
     }
 }
@@ -84,7 +107,12 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.fields(),
             Self::Facing(n) => n.fields(),
             Self::Distance(n) => {
-                vec![integer("prim", n.prim.0), number("distance_units", n.distance.into()), integer("rank", n.rank), integer("budget", n.budget)]
+                vec![
+                    integer("prim", n.prim.0),
+                    number("distance_units", n.distance.into()),
+                    integer("rank", n.rank),
+                    integer("budget", n.budget),
+                ]
             }
         }
     }

@@ -57,8 +57,11 @@ impl<S: Space> Method<S> for Frustum {
     const CARD: Card = Card {
         key: "frustum",
         name: "View-frustum culling over a kD-tree",
-        summary: "Walks a kD-tree from the root and drops every node that lies outside a plane of the view frustum.",
-        paper: "Clark. Hierarchical Geometric Models for Visible Surface Algorithms. CACM 19(10), 1976; kD-tree as in Coorg and Teller, Real-Time Occlusion Culling for Models with Large Occluders, I3D 1997, Section 4.",
+        summary: "Walks a kD-tree from the root and drops every node that lies outside a plane of the view \
+                  frustum.",
+        paper: "Clark. Hierarchical Geometric Models for Visible Surface Algorithms. CACM 19(10), 1976; \
+                kD-tree as in Coorg and Teller, Real-Time Occlusion Culling for Models with Large Occluders, \
+                I3D 1997, Section 4.",
         doi: "10.1145/360349.360354",
         conservative: true,
         code: CODE,
@@ -76,7 +79,9 @@ impl<S: Space> Method<S> for Frustum {
     }
     fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
         progress.report(0.0, "building the kD-tree");
-        KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), params.tree_height, || progress.cancelled())
+        KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), params.tree_height, || {
+            progress.cancelled()
+        })
     }
     fn cull<O: Observer<Evidence<S>>>(
         index: &Self::Index,
@@ -89,12 +94,20 @@ impl<S: Space> Method<S> for Frustum {
     ) {
         watch.event(Event::FrameBegan);
         let frustum = view.frustum();
-        let mut walk = Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
+        let mut walk =
+            Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
         walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
     }
     fn dense(_: &Scene<S>, _: &View<S>) {}
     fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain((): &(), scene: &Scene<S>, _: &Self::Index, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        (): &(),
+        scene: &Scene<S>,
+        _: &Self::Index,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         if let Some(note) = note {
             note.draw(scene, view, to);
         }
@@ -120,7 +133,9 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         self.watch.event(Event::Line(1));
         let test = self.frustum.test(&node.bounds, planes);
         let frustum = &self.frustum;
-        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+        self.watch.note(move || {
+            Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
+        });
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
                 self.watch.event(Event::Line(2));
@@ -157,7 +172,8 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             } else {
                 self.out.prims.push(prim);
             }
-            self.watch.event(Event::DecidedPrim(prim, if away { Verdict::Outside } else { Verdict::Visible }));
+            self.watch
+                .event(Event::DecidedPrim(prim, if away { Verdict::Outside } else { Verdict::Visible }));
         }
     }
 }

@@ -19,8 +19,17 @@ fn inside<S: Space>(scene: &Scene<S>, k: u32) -> View<S> {
     view
 }
 
-fn cull<S: Methods>(scene: &Arc<Scene<S>>, method: &str, pairs: &[(&str, &str)], view: &View<S>) -> Vec<PrimId> {
-    let mut run = S::method(method).expect("a method").ready(scene, &settings(pairs), &Quiet).expect("settings").expect("not cancelled");
+fn cull<S: Methods>(
+    scene: &Arc<Scene<S>>,
+    method: &str,
+    pairs: &[(&str, &str)],
+    view: &View<S>,
+) -> Vec<PrimId> {
+    let mut run = S::method(method)
+        .expect("a method")
+        .ready(scene, &settings(pairs), &Quiet)
+        .expect("settings")
+        .expect("not cancelled");
     run.cull(view).prims
 }
 
@@ -46,7 +55,11 @@ fn frustum_keeps_what_is_in_view<S: Methods>() {
         assert_eq!(drawn.len(), once, "each primitive at most once");
         for &p in scene.live() {
             if has_a_corner_in_view(&scene, &view, p) {
-                assert!(drawn.binary_search(&p).is_ok(), "{} {p} has a corner in view and was culled", S::PRIM);
+                assert!(
+                    drawn.binary_search(&p).is_ok(),
+                    "{} {p} has a corner in view and was culled",
+                    S::PRIM
+                );
             }
         }
         kept += drawn.len();
@@ -65,7 +78,10 @@ fn frustum_culling_keeps_what_is_in_view_and_culls_the_rest() {
 fn a_taller_tree_culls_no_less() {
     let scene = samples::soup::<Solid>(3, 2000);
     let view = inside(&scene, 3);
-    let drawn: Vec<usize> = ["1", "4", "8", "12"].iter().map(|h| cull(&scene, "frustum", &[("tree-height", h)], &view).len()).collect();
+    let drawn: Vec<usize> = ["1", "4", "8", "12"]
+        .iter()
+        .map(|h| cull(&scene, "frustum", &[("tree-height", h)], &view).len())
+        .collect();
     assert_eq!(drawn[0], 2000, "a tree of one level is one node");
     assert!(drawn.windows(2).all(|w| w[1] <= w[0]), "{drawn:?}");
 }
@@ -77,7 +93,8 @@ fn back_faces_are_left_out<S: Methods>() {
         let budget: &[(&str, &str)] = if method == "centroid" { &[("budget", "100%")] } else { &[] };
         let two_sided = cull(&scene, method, budget, &view);
         let one_sided = cull(&scene, method, &[budget, &[("backface-culling", "true")]].concat(), &view);
-        let faces = |p: &PrimId| !faces_away::<S>(view.eye.position, &scene.prim_points(*p).collect::<Vec<_>>());
+        let faces =
+            |p: &PrimId| !faces_away::<S>(view.eye.position, &scene.prim_points(*p).collect::<Vec<_>>());
         assert_eq!(one_sided, two_sided.into_iter().filter(faces).collect::<Vec<_>>(), "{method}");
         assert!(!one_sided.is_empty());
     }
@@ -98,7 +115,10 @@ fn the_centroid_order_is_that_of_a_plain_sort_cut_at_the_budget() {
         f64::from(c.distance(view.eye.position))
     };
     let all = cull(&scene, "centroid", &[("budget", "100%")], &view);
-    assert!(all.len() > 15 && all.windows(2).all(|w| distance(w[0]) <= distance(w[1]) + 1e-5), "nearest first");
+    assert!(
+        all.len() > 15 && all.windows(2).all(|w| distance(w[0]) <= distance(w[1]) + 1e-5),
+        "nearest first"
+    );
     assert_eq!(cull(&scene, "centroid", &[("budget", "7")], &view), all[..7]);
     assert_eq!(cull(&scene, "centroid", &[("budget", "5%")], &view), all[..15], "5 % of the scene's 300");
     assert!(cull(&scene, "centroid", &[("budget", "0")], &view).is_empty());
@@ -108,13 +128,20 @@ fn the_centroid_order_is_that_of_a_plain_sort_cut_at_the_budget() {
 fn counts_agree_with_the_film() {
     let scene = samples::soup::<Flat>(7, 300);
     let view = inside(&scene, 3);
-    let mut run = Flat::method("frustum").expect("a method").ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+    let mut run = Flat::method("frustum")
+        .expect("a method")
+        .ready(&scene, &Settings::default(), &Quiet)
+        .expect("ok")
+        .expect("ok");
     let (list, tally) = run.count(&view);
     let recording = run.record(&view, usize::MAX);
     assert_eq!(list, recording.list);
     let count = |f: fn(&Event) -> bool| recording.film.events().iter().filter(|e| f(e)).count() as u64;
     assert_eq!(tally.nodes_entered, count(|e| matches!(e, Event::Entered(_))));
-    assert_eq!(tally.nodes_decided, count(|e| matches!(e, Event::DecidedNode(_, v) if *v != Verdict::Partial)));
+    assert_eq!(
+        tally.nodes_decided,
+        count(|e| matches!(e, Event::DecidedNode(_, v) if *v != Verdict::Partial))
+    );
     let (boxes, planes) = (tally.named()["boxes_tested"], tally.named()["planes_tested"]);
     assert_eq!(boxes, tally.nodes_entered);
     assert!(planes >= tally.nodes_entered && planes <= 4 * tally.nodes_entered);
@@ -126,7 +153,8 @@ fn every_event_has_a_sentence_and_fields() {
     let view = inside(&scene, 4);
     for entry in Solid::methods() {
         let backfaces = settings(&[("backface-culling", "true")]);
-        let film = entry.ready(&scene, &backfaces, &Quiet).expect("ok").expect("ok").record(&view, usize::MAX).film;
+        let film =
+            entry.ready(&scene, &backfaces, &Quiet).expect("ok").expect("ok").record(&view, usize::MAX).film;
         for at in 0..film.events().len() {
             let (sentence, (kind, fields)) = (film.sentence(at), film.fields(at));
             assert!(sentence.len() > 10 && !sentence.contains("NaN"), "{sentence}");
@@ -140,10 +168,16 @@ fn every_event_has_a_sentence_and_fields() {
 fn a_wrong_setting_says_what_is_right() {
     let entry = Flat::method("frustum").expect("a method");
     let error = |k: &str, v: &str| entry.knobs(&settings(&[(k, v)])).expect_err("refused").to_string();
-    assert_eq!(error("height", "3"), "`frustum` has no parameter `height`; it has tree-height, backface-culling");
+    assert_eq!(
+        error("height", "3"),
+        "`frustum` has no parameter `height`; it has tree-height, backface-culling"
+    );
     assert_eq!(error("tree-height", "0"), "`tree-height=0`: expected a whole number from 1 to 24");
     assert_eq!(error("backface-culling", "yes"), "`backface-culling=yes`: expected true or false");
-    let budget = Flat::method("centroid").expect("a method").knobs(&settings(&[("budget", "120%")])).expect_err("refused");
+    let budget = Flat::method("centroid")
+        .expect("a method")
+        .knobs(&settings(&[("budget", "120%")]))
+        .expect_err("refused");
     assert!(budget.to_string().starts_with("`budget=120%`: expected a number of primitives"));
     assert_eq!(Settings::default().parse("height"), Err(SettingError::NotAPair("height".into())));
 }

@@ -40,7 +40,8 @@ impl<S: Space> Method<S> for ZBuffer {
         key: "z-buffer",
         name: "Plain z-buffer",
         summary: "Draws every polygon and lets the depth buffer decide, pixel by pixel; culls nothing.",
-        paper: "Catmull. A Subdivision Algorithm for Computer Display of Curved Surfaces. PhD thesis, University of Utah, 1974.",
+        paper: "Catmull. A Subdivision Algorithm for Computer Display of Curved Surfaces. PhD thesis, \
+                University of Utah, 1974.",
         doi: "",
         conservative: true,
         code: CODE,
@@ -76,7 +77,14 @@ impl<S: Space> Method<S> for ZBuffer {
     }
     fn dense(_: &Scene<S>, _: &View<S>) {}
     fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain((): &(), scene: &Scene<S>, _: &Whole<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        (): &(),
+        scene: &Scene<S>,
+        _: &Whole<S>,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         if let Some(note) = note {
             note.draw(scene, view, to);
         }

@@ -51,8 +51,8 @@ impl<S: Drawable> Buffer<S> {
         self.sight = Some(Sight { view: *view, projection: view.projection(), frustum: view.frustum() });
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }
-    /// Draws primitives but for those that lie behind their pyramid cells, which are returned in the order of `prims`. The
-    /// pyramid grows stale where something was drawn.
+    /// Draws primitives but for those that lie behind their pyramid cells, which are returned in the order of
+    /// `prims`. The pyramid grows stale where something was drawn.
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) -> &[PrimId] {
         self.hidden.clear();
         if let Some(Sight { view, .. }) = &self.sight {
@@ -65,11 +65,16 @@ impl<S: Drawable> Buffer<S> {
     pub fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
         if let Some(Sight { view, .. }) = &self.sight {
             S::draw(&mut self.target, scene, view, prims, options);
-            self.pyramid.touch(options.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height }));
+            self.pyramid.touch(options.window.unwrap_or(PixelRect {
+                x0: 0,
+                x1: view.width,
+                y0: 0,
+                y1: view.height,
+            }));
         }
     }
-    /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid holds for it. The same
-    /// before and after it was drawn: only refreshing changes what the pyramid holds.
+    /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid
+    /// holds for it. The same before and after it was drawn: only refreshing changes what the pyramid holds.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
         let extent = S::extent(scene, &self.sight.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))

@@ -1,12 +1,15 @@
 //! What differs between flatland and space: the faces of a box, and what of the image one covers.
 
-use crate::geometry::{Aabb, BoxImage, Flat, Footprint, MARGIN_PX, PixelRect, Projection, Solid, Space, Vector, View, project_box};
+use crate::geometry::{
+    Aabb, BoxImage, Flat, Footprint, MARGIN_PX, PixelRect, Projection, Solid, Space, Vector, View,
+    project_box,
+};
 use crate::raster::Drawable;
 
 /// Faces of boxes and their images.
 pub trait Faces: Drawable {
-    /// The faces of a box that face the eye, at most one an axis: corner numbers in order around the face (two ends of a
-    /// side in flatland), `[0; 4]` beyond the count.
+    /// The faces of a box that face the eye, at most one an axis: corner numbers in order around the face
+    /// (two ends of a side in flatland), `[0; 4]` beyond the count.
     fn front(bounds: &Aabb<Self::Vector>, eye: Self::Vector) -> ([[u8; 4]; 3], usize) {
         let (mut faces, mut count) = ([[0; 4]; 3], 0);
         for axis in 0..Self::Vector::AXES {
@@ -32,8 +35,8 @@ pub struct FaceImage {
     sides: Sides,
 }
 
-/// Four sides as lines `x·a + y·b + c`, negative outside, and [`MARGIN_PX`] in the same measure, which is the pixel times the side's
-/// length. All zero where there is none: it bounds nothing.
+/// Four sides as lines `x·a + y·b + c`, negative outside, and [`MARGIN_PX`] in the same measure, which is the
+/// pixel times the side's length. All zero where there is none: it bounds nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sides {
     a: [f64; 4],
@@ -107,11 +110,16 @@ impl Faces for Flat {
         [first, first | 1 << (1 - axis), 0, 0]
     }
     fn image(face: [u8; 4], image: &BoxImage, width: u32, _: u32) -> FaceImage {
-        FaceImage::rectangle(rect(&[image.corners_px[face[0] as usize], image.corners_px[face[1] as usize]], width, 1))
+        FaceImage::rectangle(rect(
+            &[image.corners_px[face[0] as usize], image.corners_px[face[1] as usize]],
+            width,
+            1,
+        ))
     }
 }
 
-/// A face whose image is smaller than this, in pixels squared, is taken as its rectangle: its sides have no direction.
+/// A face whose image is smaller than this, in pixels squared, is taken as its rectangle: its sides have no
+/// direction.
 const LEAST_AREA: f64 = 1e-6;
 
 impl Faces for Solid {
@@ -146,21 +154,28 @@ impl Faces for Solid {
 }
 
 /// Where a box falls in the image.
-pub fn footprint<S: Faces>(view: &View<S>, projection: &Projection<S::Vector>, bounds: &Aabb<S::Vector>) -> Footprint {
+pub fn footprint<S: Faces>(
+    view: &View<S>,
+    projection: &Projection<S::Vector>,
+    bounds: &Aabb<S::Vector>,
+) -> Footprint {
     project_box(projection, bounds, view.eye.near, view.eye.far, view.width, view.height)
 }
 
 /// The sphere about a box is taken larger by this part, for rounding.
 const SPHERE_SLACK: f64 = 1e-5;
 
-/// The screen rectangle and the nearest depth of the sphere about a box (Georges 1995, Section 5.3). Where the sphere reaches the
-/// near plane, so may the box.
+/// The screen rectangle and the nearest depth of the sphere about a box (Georges 1995, Section 5.3). Where
+/// the sphere reaches the near plane, so may the box.
 pub fn project_sphere<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Footprint {
     let projection = view.projection();
     let image_axes = S::Vector::AXES - 1;
-    let dot = |row: S::Vector, v: S::Vector| (0..S::Vector::AXES).map(|a| f64::from(row.get(a)) * f64::from(v.get(a))).sum::<f64>();
+    let dot = |row: S::Vector, v: S::Vector| {
+        (0..S::Vector::AXES).map(|a| f64::from(row.get(a)) * f64::from(v.get(a))).sum::<f64>()
+    };
     let center = bounds.center() - projection.eye;
-    let radius = f64::from(bounds.diagonal()) * 0.5 * (1.0 + SPHERE_SLACK) + f64::from(center.length()) * SPHERE_SLACK;
+    let radius =
+        f64::from(bounds.diagonal()) * 0.5 * (1.0 + SPHERE_SLACK) + f64::from(center.length()) * SPHERE_SLACK;
     let w = dot(projection.rows[image_axes], center);
     if w + radius < f64::from(view.eye.near) || w - radius > f64::from(view.eye.far) {
         return Footprint::Outside;
@@ -173,7 +188,8 @@ pub fn project_sphere<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Foo
         let row = projection.rows[a];
         let scale = dot(row, row).sqrt();
         let across = dot(row, center) / scale;
-        // The two lines through the eye that touch the sphere, in the plane of the axis and the line of sight.
+        // The two lines through the eye that touch the sphere, in the plane of the axis and the line of
+        // sight.
         let (middle, half) = (across.atan2(w), (radius / across.hypot(w)).min(1.0).asin());
         let place = |angle: f64| angle.tan() * scale * if a == 0 { 1.0 } else { -1.0 };
         let ends = [place(middle - half), place(middle + half)].map(|v| (v * 0.5 + 0.5) * f64::from(pixels));

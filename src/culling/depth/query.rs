@@ -1,22 +1,24 @@
 //! Is a box hidden by what is drawn so far? (Georges 1995, Section 3.2.)
 //!
-//! First the at most four cells that cover the box's screen rectangle, and where one does not decide, those of the next
-//! two levels in it: what lies behind all of them is hidden, which decides for most of what is. Then, for each face of the
-//! box that faces the eye: the finest cell of the z-pyramid that covers the face's screen rectangle holds the farthest
-//! depth there. If the box's nearest point lies behind it, the face is hidden; else the four cells below are asked that
-//! the face touches, down to the pixels that it covers.
+//! First the at most four cells that cover the box's screen rectangle, and where one does not decide, those
+//! of the next two levels in it: what lies behind all of them is hidden, which decides for most of what is.
+//! Then, for each face of the box that faces the eye: the finest cell of the z-pyramid that covers the face's
+//! screen rectangle holds the farthest depth there. If the box's nearest point lies behind it, the face is
+//! hidden; else the four cells below are asked that the face touches, down to the pixels that it covers.
 //!
-//! Departures: the depth that is compared is that of the box's nearest corner for every face (the paper takes each
-//! face's own nearest vertex). Mostly it is the same corner; where it is not, a triangle that the rasterizer snapped to
-//! its grid may come nearer than the face it shows through, but never nearer than the whole box. And a cell that the
-//! face covers wholly and that is not farther ends the descent: some pixel of it shows the face.
+//! Departures: the depth that is compared is that of the box's nearest corner for every face (the paper takes
+//! each face's own nearest vertex). Mostly it is the same corner; where it is not, a triangle that the
+//! rasterizer snapped to its grid may come nearer than the face it shows through, but never nearer than the
+//! whole box. And a cell that the face covers wholly and that is not farther ends the descent: some pixel of
+//! it shows the face.
 //!
-//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the image of the box,
-//! hence in its screen rectangle and so near to the image of one of its front faces; its fragments are no nearer than the
-//! box's nearest vertex; and depths that are equal count as visible, since ids then decide. A box out of view is told by
-//! the bound that also keeps its contents from being drawn ([`crate::geometry::Frustum::excludes`]).
-//! Cost: a box out of view takes one test of six planes at a time; one in view eight corners in SIMD and four cells where they
-//! decide; at worst the pixels along the outlines of its faces.
+//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the
+//! image of the box, hence in its screen rectangle and so near to the image of one of its front faces; its
+//! fragments are no nearer than the box's nearest vertex; and depths that are equal count as visible, since
+//! ids then decide. A box out of view is told by the bound that also keeps its contents from being drawn
+//! ([`crate::geometry::Frustum::excludes`]). Cost: a box out of view takes one test of six planes at a time;
+//! one in view eight corners in SIMD and four cells where they decide; at worst the pixels along the outlines
+//! of its faces.
 
 use super::{Buffer, FaceImage, Faces, footprint};
 use crate::culling::evidence::short;
@@ -32,8 +34,8 @@ pub struct Answer {
     pub nearest: f32,
     /// Cells that were read.
     pub reads: u32,
-    /// The cell that decided and the depth it holds: of the hidden ones the one with the least margin, or the one that
-    /// shows the box. `None` where no cell was read: the box covers no pixel.
+    /// The cell that decided and the depth it holds: of the hidden ones the one with the least margin, or the
+    /// one that shows the box. `None` where no cell was read: the box covers no pixel.
     pub decisive: Option<(PyramidCell, f32)>,
 }
 
@@ -101,7 +103,8 @@ impl Read {
     }
 }
 
-/// Who hears what a query reads, in order. It cannot answer, so a query that is heard and one that is not are the same.
+/// Who hears what a query reads, in order. It cannot answer, so a query that is heard and one that is not are
+/// the same.
 pub trait Listener {
     /// The tile of a cell was out of date and is being brought up to date.
     fn refreshes(&mut self, cell: PyramidCell);
@@ -152,10 +155,14 @@ impl<S: Faces> Held<S> for &Buffer<S> {
     fn refresh(&mut self, _: PyramidCell) {}
 }
 
-/// Whether a box is hidden by what is drawn for the buffer's view, by its front faces; `None` if it lies outside the view. A box
-/// that reaches the near plane is not hidden.
+/// Whether a box is hidden by what is drawn for the buffer's view, by its front faces; `None` if it lies
+/// outside the view. A box that reaches the near plane is not hidden.
 #[inline]
-pub fn hides<S: Faces>(buffer: impl Held<S>, bounds: &Aabb<S::Vector>, listener: impl Listener) -> Option<Answer> {
+pub fn hides<S: Faces>(
+    buffer: impl Held<S>,
+    bounds: &Aabb<S::Vector>,
+    listener: impl Listener,
+) -> Option<Answer> {
     let sight = buffer.buffer().sight()?;
     if sight.frustum.excludes(bounds) {
         return None;
@@ -163,8 +170,12 @@ pub fn hides<S: Faces>(buffer: impl Held<S>, bounds: &Aabb<S::Vector>, listener:
     let view = sight.view;
     match footprint(&view, &sight.projection, bounds) {
         Footprint::Outside => None,
-        Footprint::CrossesNear => Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None }),
-        Footprint::Seen(image) => Some(Query::new(buffer, image.nearest, listener).faces(bounds, &image, &view)),
+        Footprint::CrossesNear => {
+            Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
+        }
+        Footprint::Seen(image) => {
+            Some(Query::new(buffer, image.nearest, listener).faces(bounds, &image, &view))
+        }
     }
 }
 
@@ -189,7 +200,13 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         self.faces_in(bounds, image, view, PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height })
     }
     /// The same within a window of the image.
-    pub fn faces_in(mut self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>, window: PixelRect) -> Answer {
+    pub fn faces_in(
+        mut self,
+        bounds: &Aabb<S::Vector>,
+        image: &BoxImage,
+        view: &View<S>,
+        window: PixelRect,
+    ) -> Answer {
         if self.behind_whole(image.pixels.intersection(window)) {
             return self.answer;
         }
@@ -213,7 +230,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         self.answer.is_hidden
     }
 
-    /// Whether a rectangle that holds the box's image lies behind the at most four cells that cover it, or those a little below.
+    /// Whether a rectangle that holds the box's image lies behind the at most four cells that cover it, or
+    /// those a little below.
     fn behind_whole(&mut self, pixels: PixelRect) -> bool {
         if pixels.is_empty() {
             return true;
@@ -230,7 +248,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         }
         true
     }
-    /// Whether it lies behind what of it a cell holds, or behind all of the cells in it that are at most so many levels finer.
+    /// Whether it lies behind what of it a cell holds, or behind all of the cells in it that are at most so
+    /// many levels finer.
     fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
@@ -244,7 +263,9 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
             return false;
         }
         let level = cell.level - 1;
-        let along = |at: u16, first: u32, past: u32| (2 * at).max((first >> level) as u16)..=(2 * at + 1).min(((past - 1) >> level) as u16);
+        let along = |at: u16, first: u32, past: u32| {
+            (2 * at).max((first >> level) as u16)..=(2 * at + 1).min(((past - 1) >> level) as u16)
+        };
         for y in along(cell.y, pixels.y0, pixels.y1) {
             for x in along(cell.x, pixels.x0, pixels.x1) {
                 if !self.behind_part(pixels, PyramidCell { level, x, y }, finer - 1) {
@@ -302,7 +323,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     /// Whether the face lies behind all that is drawn in the cells below one.
     fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
         for k in 0..4 {
-            let child = PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
+            let child =
+                PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
             if face.touches(self.pixels(child)) && !self.behind(number, face, child) {
                 return false;
             }
@@ -316,9 +338,9 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     }
 }
 
-/// Levels by which the cells over a whole box are refined before its faces are asked for: one look at four cells takes in up to 16
-/// times the box's rectangle, one at the cells two levels below hardly more than it.
+/// Levels by which the cells over a whole box are refined before its faces are asked for: one look at four
+/// cells takes in up to 16 times the box's rectangle, one at the cells two levels below hardly more than it.
 const FINER: u8 = 2;
-/// The highest level whose cells know when they are stale: below it a cell that is not farther shows a pixel; above it
-/// it may only be out of date.
+/// The highest level whose cells know when they are stale: below it a cell that is not farther shows a pixel;
+/// above it it may only be out of date.
 const TILE_LEVEL: u8 = 4;

@@ -1,5 +1,5 @@
-//! The parts of the method by themselves: an image that is drawn, and boxes and rectangles that are asked for. For figures,
-//! benchmarks and tests, which all look at the very functions that the method runs.
+//! The parts of the method by themselves: an image that is drawn, and boxes and rectangles that are asked
+//! for. For figures, benchmarks and tests, which all look at the very functions that the method runs.
 
 use std::sync::Arc;
 
@@ -29,20 +29,33 @@ impl<S: Faces> Obscurer<S> {
     ///
     /// # Errors
     /// A setting that does not fit the method.
-    pub fn new(scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Option<Self>, SettingError> {
+    pub fn new(
+        scene: &Arc<Scene<S>>,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self>, SettingError> {
         let params = params::<S, HierarchicalZ>(settings)?;
         let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
         Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default() }))
     }
-    /// Whether only depths are drawn from now on: boxes can be asked for, and the image has no items. Half the memory to clear and
-    /// to fill.
+    /// Whether only depths are drawn from now on: boxes can be asked for, and the image has no items. Half
+    /// the memory to clear and to fill.
     pub fn draw_depths_only(&mut self, depths_only: bool) {
         self.memory.depths_only = depths_only;
     }
-    /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns what was drawn.
+    /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns
+    /// what was drawn.
     pub fn render(&mut self, view: &View<S>) -> DrawList {
         let mut list = DrawList::default();
-        HierarchicalZ::cull(&self.index, &self.scene, view, &self.params, &mut self.memory, &mut list, &mut Unobserved);
+        HierarchicalZ::cull(
+            &self.index,
+            &self.scene,
+            view,
+            &self.params,
+            &mut self.memory,
+            &mut list,
+            &mut Unobserved,
+        );
         list
     }
     /// Forgets earlier frames.
@@ -67,9 +80,14 @@ impl<S: Faces> Obscurer<S> {
     }
 }
 
-/// The levels of the pyramid over all of a scene's image, and if a face is given, as a rectangle of pixels and its nearest
-/// depth (world units), the cells that are read for it. Also whether it is hidden.
-pub fn pyramid_picture<S: Faces>(scene: &Scene<S>, view: &View<S>, face: Option<(PixelRect, f32)>, scale: DepthScale) -> (Drawing, bool) {
+/// The levels of the pyramid over all of a scene's image, and if a face is given, as a rectangle of pixels
+/// and its nearest depth (world units), the cells that are read for it. Also whether it is hidden.
+pub fn pyramid_picture<S: Faces>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    face: Option<(PixelRect, f32)>,
+    scale: DepthScale,
+) -> (Drawing, bool) {
     let mut buffer = Buffer::default();
     buffer.begin(view);
     buffer.draw(scene, scene.live(), &Options::default());
@@ -77,12 +95,14 @@ pub fn pyramid_picture<S: Faces>(scene: &Scene<S>, view: &View<S>, face: Option<
     let mut recorder: Recorder<Evidence<S>> = Recorder::new(usize::MAX);
     let mut is_hidden = false;
     if let Some((pixels, depth)) = face {
-        is_hidden = Query::new(&mut buffer, 1.0 / depth, Asked::new(NodeId(0), 0, &mut recorder)).face(0, &FaceImage::rectangle(pixels));
+        is_hidden = Query::new(&mut buffer, 1.0 / depth, Asked::new(NodeId(0), 0, &mut recorder))
+            .face(0, &FaceImage::rectangle(pixels));
     }
     (picture::picture(&buffer, view, &recorder.notes, 0, scale), is_hidden)
 }
 
-/// The depths of Figure 1 of Georges 1995, each a square of one pixel that deep, and the straight view of them.
+/// The depths of Figure 1 of Georges 1995, each a square of one pixel that deep, and the straight view of
+/// them.
 ///
 /// # Errors
 /// None; the scene is valid.
@@ -94,11 +114,21 @@ pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
             let (x, y) = (column as f32 - 2.0, 2.0 - row as f32);
             let first = points.len() as u32;
             // The image is 4 wide at depth 2.
-            points.extend([(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)].map(|(x, y)| Vec3::new(x, y, -2.0) * (depth as f32 / 2.0)));
+            points.extend(
+                [(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)]
+                    .map(|(x, y)| Vec3::new(x, y, -2.0) * (depth as f32 / 2.0)),
+            );
             prims.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
         }
     }
     let scene = Scene::new(Parts::simple("Figure 1 of Georges 1995", points, prims))?;
-    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 20.0 };
+    let eye = Eye {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov: std::f32::consts::FRAC_PI_2,
+        near: 0.5,
+        far: 20.0,
+    };
     Ok((scene, View { eye, width: 4, height: 4 }))
 }

@@ -82,7 +82,11 @@ impl<S: Faces, O: Observer<Evidence<S>>> Listener for Asked<'_, S, O> {
     #[inline]
     fn reads(&mut self, read: Read) {
         let node = self.node;
-        self.watch.event(Event::Line(if read.face.is_none() && self.line == line::BEHIND { line::WHOLE } else { self.line }));
+        self.watch.event(Event::Line(if read.face.is_none() && self.line == line::BEHIND {
+            line::WHOLE
+        } else {
+            self.line
+        }));
         self.watch.note(move || Evidence::Read(node, read));
     }
 }
@@ -103,8 +107,8 @@ pub struct Answered<S: Faces> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rasterized {
     pub prim: PrimId,
-    /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None` if it covers no
-    /// pixel or had to be clipped: then it is drawn without a test.
+    /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None`
+    /// if it covers no pixel or had to be clipped: then it is drawn without a test.
     pub operands: Option<(Extent, f32)>,
     pub is_hidden: bool,
     pub backface_culling: bool,
@@ -125,7 +129,8 @@ impl<S: Faces> Evidence<S> {
             Self::RefreshedUnder(pixels, most) => _ = buffer.refresh_under(pixels, most as usize),
             Self::RefreshedAll => buffer.refresh_all(),
             Self::Rasterized(n) if !n.is_hidden => {
-                let options = Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
+                let options =
+                    Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
                 match n.window {
                     Some(_) => buffer.draw_all(scene, &[n.prim], &options),
                     None => _ = buffer.draw(scene, &[n.prim], &options),
@@ -156,7 +161,8 @@ impl<S: Faces> Evidence<S> {
     }
 }
 
-/// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing asked for begins.
+/// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
+/// asked for begins.
 fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, to: &mut Drawing<S::Vector>) {
     let projection = view.projection();
     let image_axes = S::Vector::AXES - 1;
@@ -202,15 +208,20 @@ impl<S: Faces> Answered<S> {
         let reads = self.answer.reads;
         let cells = if reads == 1 { "one cell was".into() } else { format!("{reads} cells were") };
         match (self.answer.decisive, self.answer.is_hidden) {
-            (None, _) => format!("The image of node {node} falls between the pixels' centers: nothing of it can show."),
+            (None, _) => {
+                format!("The image of node {node} falls between the pixels' centers: nothing of it can show.")
+            }
             (Some((cell, held)), true) => format!(
-                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in its place. {cells} read; the closest is {}, where the farthest thing drawn is at {}, nearer by {}.",
+                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in \
+                 its place. {cells} read; the closest is {}, where the farthest thing drawn is at {}, nearer \
+                 by {}.",
                 place(cell),
                 short(units(held)),
                 short(units(self.answer.nearest) - units(held))
             ),
             (Some((cell, held)), false) => format!(
-                "Node {node} may be seen: it comes as near as {near}, and {} shows nothing nearer than {}, which is {} beyond. {cells} read.",
+                "Node {node} may be seen: it comes as near as {near}, and {} shows nothing nearer than {}, \
+                 which is {} beyond. {cells} read.",
                 place(cell),
                 short(units(held)),
                 short(units(held) - units(self.answer.nearest))
@@ -231,7 +242,8 @@ impl<S: Faces> Answered<S> {
         if let Some((cell, held)) = self.answer.decisive {
             fields.extend(cell_fields(cell));
             fields.push(number("held_depth_units", units(held).into()));
-            fields.push(number("margin_units", f64::from(units(self.answer.nearest)) - f64::from(units(held))));
+            fields
+                .push(number("margin_units", f64::from(units(self.answer.nearest)) - f64::from(units(held))));
         }
         fields
     }
@@ -262,7 +274,9 @@ impl<S: Faces> Tallied for Evidence<S> {
             Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
             Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
             Self::Answered(_) => tally.add("queries", 1),
-            Self::Rasterized(n) => tally.add(if n.is_hidden { "primitives_behind" } else { "primitives_drawn" }, 1),
+            Self::Rasterized(n) => {
+                tally.add(if n.is_hidden { "primitives_behind" } else { "primitives_drawn" }, 1)
+            }
             Self::SharedUnseen(..) => tally.add("shared_primitives_unseen", 1),
             Self::Facing(_) => Facing::tally(tally),
             Self::Checked(n) => tally.add("checks", n.is_due.into()),
@@ -313,12 +327,18 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::RefreshedAll => vec![],
             Self::Answered(n) => n.fields(),
             Self::Rasterized(n) => {
-                let mut fields = vec![integer("prim", n.prim.0), Field { name: "hidden", value: Value::Switch(n.is_hidden) }];
+                let mut fields = vec![
+                    integer("prim", n.prim.0),
+                    Field { name: "hidden", value: Value::Switch(n.is_hidden) },
+                ];
                 if let Some((extent, held)) = n.operands {
                     fields.push(pixels_field(extent.pixels));
                     fields.push(number("nearest_depth_units", units(extent.nearest).into()));
                     fields.push(number("held_depth_units", units(held).into()));
-                    fields.push(number("margin_units", f64::from(units(extent.nearest)) - f64::from(units(held))));
+                    fields.push(number(
+                        "margin_units",
+                        f64::from(units(extent.nearest)) - f64::from(units(held)),
+                    ));
                 }
                 fields
             }
@@ -338,24 +358,40 @@ impl<S: Faces> Note<S> for Evidence<S> {
     }
     fn sentence(&self, _: &Scene<S>) -> String {
         match self {
-            Self::Listed(n, true) => format!("Node {n} was visible in the last frame, so it is drawn at once, without a test."),
-            Self::Listed(n, false) => format!("Node {n} is on the visible list: it was drawn at the start of the frame, without a test."),
-            Self::Unlisted(n) => format!("Node {n} cannot be seen in the finished image; it leaves the visible list with all below it."),
+            Self::Listed(n, true) => {
+                format!("Node {n} was visible in the last frame, so it is drawn at once, without a test.")
+            }
+            Self::Listed(n, false) => format!(
+                "Node {n} is on the visible list: it was drawn at the start of the frame, without a test."
+            ),
+            Self::Unlisted(n) => format!(
+                "Node {n} cannot be seen in the finished image; it leaves the visible list with all below it."
+            ),
             Self::Tested(n) => n.sentence(),
             Self::Read(node, n) => {
                 let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
                 format!("{what} of node {node} against {}: {}.", place(n.cell), n.comparison())
             }
             Self::Refreshed(cell) => {
-                format!("Something was drawn under {} since it was read: its tile is brought up to date, with all values above.", place(*cell))
+                format!(
+                    "Something was drawn under {} since it was read: its tile is brought up to date, with \
+                     all values above.",
+                    place(*cell)
+                )
             }
             Self::RefreshedUnder(_, most) => {
-                format!("The pyramid is brought up to date where the next cube falls, if no more than {most} tiles are stale there.")
+                format!(
+                    "The pyramid is brought up to date where the next cube falls, if no more than {most} \
+                     tiles are stale there."
+                )
             }
             Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
             Self::Answered(n) => n.sentence(),
             Self::Rasterized(n) => n.sentence::<S>(),
-            Self::SharedUnseen(prim, node) => format!("The {} {prim} lies in several cubes below node {node}; none of them can be seen.", S::PRIM),
+            Self::SharedUnseen(prim, node) => format!(
+                "The {} {prim} lies in several cubes below node {node}; none of them can be seen.",
+                S::PRIM
+            ),
             Self::Facing(n) => n.sentence::<S>(),
             Self::Checked(n) => n.sentence(),
             Self::Worked(n) => n.sentence(),
@@ -368,19 +404,22 @@ impl Rasterized {
         let (kind, prim) = (S::PRIM, self.prim);
         match self.operands {
             None => format!(
-                "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by the near plane or the image's wide border."
+                "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by the \
+                 near plane or the image's wide border."
             ),
             Some((extent, held)) => {
                 let (near, held) = (units(extent.nearest), units(held));
                 if self.is_hidden {
                     format!(
-                        "The {kind} {prim} is left out: its nearest point, at depth {}, lies behind all that is drawn in its cells, which is no farther than {}.",
+                        "The {kind} {prim} is left out: its nearest point, at depth {}, lies behind all that \
+                         is drawn in its cells, which is no farther than {}.",
                         short(near),
                         short(held)
                     )
                 } else {
                     format!(
-                        "The {kind} {prim} is drawn: it comes as near as {}, and its cells show nothing nearer than {} somewhere.",
+                        "The {kind} {prim} is drawn: it comes as near as {}, and its cells show nothing \
+                         nearer than {} somewhere.",
                         short(near),
                         short(held)
                     )
@@ -436,14 +475,24 @@ impl Worked {
     fn sentence(&self) -> String {
         let (who, node, count, region) = (self.unit.name(), self.node, self.count, self.region);
         let what = match self.job {
-            Job::DrawVisible => format!("transforms and sends out node {node}, which is on its visible list: {count} primitives"),
-            Job::DrawFound => format!("transforms and sends out node {node}, which a renderer saw: {count} primitives"),
-            Job::Ask if count > 1 => format!("asks for the box of node {node}, for {count} of its structures at once"),
+            Job::DrawVisible => format!(
+                "transforms and sends out node {node}, which is on its visible list: {count} primitives"
+            ),
+            Job::DrawFound => {
+                format!("transforms and sends out node {node}, which a renderer saw: {count} primitives")
+            }
+            Job::Ask if count > 1 => {
+                format!("asks for the box of node {node}, for {count} of its structures at once")
+            }
             Job::Ask => format!("asks for the box of node {node}"),
             Job::Wait => "waits for answers".into(),
             Job::Rasterize => format!("rasterizes {count} primitives of node {node} in region {region}"),
-            Job::Answer if count == 0 => format!("answers for the box of node {node} in region {region}: all enables off, nothing of it shows"),
-            Job::Answer => format!("answers for the box of node {node} in region {region}: some pixel of it shows"),
+            Job::Answer if count == 0 => format!(
+                "answers for the box of node {node} in region {region}: all enables off, nothing of it shows"
+            ),
+            Job::Answer => {
+                format!("answers for the box of node {node} in region {region}: some pixel of it shows")
+            }
         };
         format!("Ticks {} to {}: {who} {what}.", self.from, self.to)
     }
@@ -451,7 +500,10 @@ impl Worked {
 
 impl Check {
     fn sentence(&self) -> String {
-        let of = format!("{} of {} cubes are new on the visible list, {} frames since it was checked", self.added, self.listed, self.frames);
+        let of = format!(
+            "{} of {} cubes are new on the visible list, {} frames since it was checked",
+            self.added, self.listed, self.frames
+        );
         if self.is_due {
             format!("{of}: every cube on it is asked against the finished image.")
         } else {

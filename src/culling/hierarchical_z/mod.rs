@@ -1,15 +1,16 @@
 //! `hierarchical-z`: cubes of an octree that a z-pyramid hides are not drawn.
 //!
-//! Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993, <https://doi.org/10.1145/166117.166147>, as
-//! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, describes it (Section 3), and Georges'
-//! parallel form (Sections 4 and 5, [`simulation`]). The cubes that were visible in the last frame are drawn first, which
-//! almost completes the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`crate::culling::depth`]); in the end
-//! those that cannot be seen leave the list of visible ones.
+//! Greene, Kass and Miller, "Hierarchical Z-Buffer Visibility", SIGGRAPH 1993,
+//! <https://doi.org/10.1145/166117.166147>, as Georges, "Obscuration Culling on Parallel Graphics
+//! Architectures", UNC TR95-017, 1995, describes it (Section 3), and Georges' parallel form (Sections 4 and
+//! 5, [`simulation`]). The cubes that were visible in the last frame are drawn first, which almost completes
+//! the z-buffer; the others are drawn if the z-pyramid does not hide their boxes ([`crate::culling::depth`]);
+//! in the end those that cannot be seen leave the list of visible ones.
 //!
-//! Departures: the test asks for the bounds of what a cube holds, not for the cube; the pyramid is brought up to date where it
-//! is read, not where it is drawn (see [`crate::raster::Pyramid`]); the list is kept as marks on the tree, so cubes are drawn
-//! front to back; a cube on the list whose ancestor left it leaves with it.
-//! Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
+//! Departures: the test asks for the bounds of what a cube holds, not for the cube; the pyramid is brought up
+//! to date where it is read, not where it is drawn (see [`crate::raster::Pyramid`]); the list is kept as
+//! marks on the tree, so cubes are drawn front to back; a cube on the list whose ancestor left it leaves with
+//! it. Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
 
 pub mod anatomy;
 mod explain;
@@ -24,12 +25,17 @@ use rayon::prelude::*;
 
 use self::explain::{Answered, Asked, Check, Evidence, Rasterized};
 use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
-use crate::culling::depth::{Answer, Buffer, FaceImage, Faces, Held, Listener, Nobody, Query, footprint, project_sphere};
+use crate::culling::depth::{
+    Answer, Buffer, FaceImage, Faces, Held, Listener, Nobody, Query, footprint, project_sphere,
+};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::knobs::backface_knob;
 use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
-use crate::geometry::{Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View, nearest_depth};
+use crate::geometry::{
+    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector,
+    View, nearest_depth,
+};
 use crate::index::{Octree, OctreeNode, Redistribution, Shape};
 use crate::raster::{DepthScale, Options, PyramidCell};
 use crate::scene::{Progress, Scene};
@@ -74,10 +80,11 @@ impl Default for Params {
     }
 }
 
-/// Ways through a frame: the paper's, where each cube is drawn as soon as it passes; and that of today's engines, where all
-/// cubes are asked against the pyramid of what was visible before.
+/// Ways through a frame: the paper's, where each cube is drawn as soon as it passes; and that of today's
+/// engines, where all cubes are asked against the pyramid of what was visible before.
 const FORMS: &[&str] = &["incremental", "two-pass"];
-/// Volumes and how they are asked for: each front face as projected (the paper), its screen rectangle, a sphere (Section 5.3).
+/// Volumes and how they are asked for: each front face as projected (the paper), its screen rectangle, a
+/// sphere (Section 5.3).
 const QUERIES: &[&str] = &["faces", "rectangles", "sphere"];
 
 const CODE: &[CodeLine] = &[
@@ -100,7 +107,10 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Draw:4", text: "    rasterize p; the pyramid follows" },
     CodeLine { label: "Obscured:1", text: "Obscured(cube C)" },
     CodeLine { label: "Obscured:2", text: "  if C crosses the near plane: return false" },
-    CodeLine { label: "Obscured:3", text: "  if C is behind the few cells over its screen rectangle: return true" },
+    CodeLine {
+        label: "Obscured:3",
+        text: "  if C is behind the few cells over its screen rectangle: return true",
+    },
     CodeLine { label: "Obscured:4", text: "  for each face F of C toward the eye" },
     CodeLine { label: "Obscured:5", text: "    q := finest cell that covers F on the screen" },
     CodeLine { label: "Obscured:6", text: "    if not Behind(F, q): return false" },
@@ -150,7 +160,14 @@ pub struct Memory<S: Faces> {
 
 impl<S: Faces> Default for Memory<S> {
     fn default() -> Self {
-        Self { listed: Vec::new(), frames: 0, farthest: 0.0, lists: Lists::default(), depths_only: false, scratch: Scratch::default() }
+        Self {
+            listed: Vec::new(),
+            frames: 0,
+            farthest: 0.0,
+            lists: Lists::default(),
+            depths_only: false,
+            scratch: Scratch::default(),
+        }
     }
 }
 
@@ -178,7 +195,8 @@ impl<S: Faces> Clone for Scratch<S> {
 
 /// Fewer primitives are drawn on one thread: handing them out would take longer.
 const PARALLEL_PRIMS: usize = 2048;
-/// The share of new cubes on the list from which on it is checked early (Georges 1995, Section 4.2: "a large number").
+/// The share of new cubes on the list from which on it is checked early (Georges 1995, Section 4.2: "a large
+/// number").
 const MANY_ADDED: u32 = 4;
 /// The change of the farthest depth, as a factor, from which on the list is checked early ("a rapid shift").
 const RAPID_SHIFT: f32 = 1.5;
@@ -192,8 +210,10 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     const CARD: Card = Card {
         key: "hierarchical-z",
         name: "Hierarchical z-buffer: obscuration culling with octree and z-pyramid",
-        summary: "Draws the cubes that were visible before, then those of an octree whose boxes a pyramid of farthest depths does not hide.",
-        paper: "Georges. Obscuration Culling on Parallel Graphics Architectures. UNC TR95-017, 1995; after Greene, Kass and Miller. Hierarchical Z-Buffer Visibility. SIGGRAPH 1993.",
+        summary: "Draws the cubes that were visible before, then those of an octree whose boxes a pyramid of \
+                  farthest depths does not hide.",
+        paper: "Georges. Obscuration Culling on Parallel Graphics Architectures. UNC TR95-017, 1995; after \
+                Greene, Kass and Miller. Hierarchical Z-Buffer Visibility. SIGGRAPH 1993.",
         doi: "10.1145/166117.166147",
         conservative: true,
         code: CODE,
@@ -201,18 +221,28 @@ impl<S: Faces> Method<S> for HierarchicalZ {
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         let source = "Georges 1995, Section 3.3";
-        knobs.switch(Knob::new("coherence", "", "what was visible in the last frame is drawn first, without a test", source), &mut params.coherence);
+        knobs.switch(
+            Knob::new(
+                "coherence",
+                "",
+                "what was visible in the last frame is drawn first, without a test",
+                source,
+            ),
+            &mut params.coherence,
+        );
         let form = Knob::new(
             "form",
             "",
-            "incremental: a cube is drawn as soon as it passes its test, as in the paper; two-pass: all cubes are tested against what was visible before, as engines do today",
+            "incremental: a cube is drawn as soon as it passes its test, as in the paper; two-pass: all \
+             cubes are tested against what was visible before, as engines do today",
             source,
         );
         knobs.choice(form, FORMS, &mut params.form);
         let query = Knob::new(
             "query",
             "",
-            "how a cube is asked for: by its front faces as projected, by their screen rectangles, or by the sphere around it",
+            "how a cube is asked for: by its front faces as projected, by their screen rectangles, or by the \
+             sphere around it",
             "Georges 1995, Sections 3.2 and 5.3",
         );
         knobs.choice(query, QUERIES, &mut params.query);
@@ -226,26 +256,43 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         let check = Knob::new(
             "check-interval",
             "frames",
-            "how often the visible list is checked against the finished image; 0: every frame, in the parallel form every 30",
+            "how often the visible list is checked against the finished image; 0: every frame, in the \
+             parallel form every 30",
             "Georges 1995, Sections 4.2 and 5.1",
         );
         knobs.integer(check, 0..=1000, &mut params.check_interval);
         let source = "Georges 1995, Section 3.1";
-        knobs.integer(Knob::new("tree-levels", "levels", "levels of the octree at most", source), 1..=Shape::MOST_LEVELS, &mut params.tree_levels);
         knobs.integer(
-            Knob::new("leaf-primitives", "", "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments", source),
+            Knob::new("tree-levels", "levels", "levels of the octree at most", source),
+            1..=Shape::MOST_LEVELS,
+            &mut params.tree_levels,
+        );
+        knobs.integer(
+            Knob::new(
+                "leaf-primitives",
+                "",
+                "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments",
+                source,
+            ),
             0..=100_000,
             &mut params.leaf_primitives,
         );
         let crossing = Knob::new(
             "redistribution",
             "",
-            "where a primitive goes that crosses a cube's dividing planes: hybrid (stays, or if small to all children it overlaps), parent (stays), grown (to one child, whose bounds grow), split (parts to all children)",
+            "where a primitive goes that crosses a cube's dividing planes: hybrid (stays, or if small to all \
+             children it overlaps), parent (stays), grown (to one child, whose bounds grow), split (parts to \
+             all children)",
             source,
         );
         knobs.choice(crossing, &Redistribution::WORDS, &mut params.redistribution);
         knobs.integer(
-            Knob::new("small-percent", "%", "a primitive is small if it is no longer than this part of its cube", source),
+            Knob::new(
+                "small-percent",
+                "%",
+                "a primitive is small if it is no longer than this part of its cube",
+                source,
+            ),
             0..=100,
             &mut params.small_percent,
         );
@@ -260,7 +307,9 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             redistribution: Redistribution::ALL[params.redistribution],
             small: params.small_percent as f32 / 100.0,
         };
-        Octree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), &shape, &|| progress.cancelled())
+        Octree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), &shape, &|| {
+            progress.cancelled()
+        })
     }
     fn cull<O: Observer<Evidence<S>>>(
         index: &Self::Index,
@@ -322,7 +371,13 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     }
     const KEYFRAME_NOTES: usize = 1 << 14;
     const PICTURES: &'static [&'static str] = picture::PICTURES;
-    fn picture(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], which: usize, scale: DepthScale) -> Drawing {
+    fn picture(
+        buffer: &Buffer<S>,
+        view: &View<S>,
+        notes: &[Evidence<S>],
+        which: usize,
+        scale: DepthScale,
+    ) -> Drawing {
         picture::picture(buffer, view, notes, which, scale)
     }
     fn probe(buffer: &Buffer<S>, view: &View<S>, which: usize, at: glam::Vec2) -> Option<String> {
@@ -336,16 +391,23 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     fn apply(buffer: &mut Buffer<S>, scene: &Scene<S>, note: &Evidence<S>) {
         note.apply(buffer, scene);
     }
-    fn explain(_: &Buffer<S>, scene: &Scene<S>, _: &Self::Index, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        _: &Buffer<S>,
+        scene: &Scene<S>,
+        _: &Self::Index,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         if let Some(note) = note {
             note.draw(scene, view, to);
         }
     }
 }
 
-/// Primitives of a cube that is not divided. In space a test costs about as much as drawing a dozen triangles, and most cubes
-/// that are asked for again and again are visible: 128 was the best of 16 to 128 on generated rooms and cities. Flatland scenes
-/// are small and are there to be looked at.
+/// Primitives of a cube that is not divided. In space a test costs about as much as drawing a dozen
+/// triangles, and most cubes that are asked for again and again are visible: 128 was the best of 16 to 128 on
+/// generated rooms and cities. Flatland scenes are small and are there to be looked at.
 fn leaf_prims<S: Space>() -> u32 {
     if S::CORNERS == 2 { 8 } else { 128 }
 }
@@ -354,44 +416,76 @@ fn leaf_prims<S: Space>() -> u32 {
 fn machine_knobs(machine: &mut Machine, knobs: &mut dyn Knobs) {
     let four = "Georges 1995, Section 4.1";
     let five = "Georges 1995, Section 5.1";
-    let processors =
-        Knob::new("processors", "", "graphics processors of a simulated parallel machine; 1: the sequential form, without simulation", five);
+    let processors = Knob::new(
+        "processors",
+        "",
+        "graphics processors of a simulated parallel machine; 1: the sequential form, without simulation",
+        five,
+    );
     knobs.integer(processors, 1..=256, &mut machine.processors);
     knobs.integer(
-        Knob::new("renderers", "", "renderers of the simulated machine, which share the screen's regions of 128 × 128 pixels", five),
+        Knob::new(
+            "renderers",
+            "",
+            "renderers of the simulated machine, which share the screen's regions of 128 × 128 pixels",
+            five,
+        ),
         1..=256,
         &mut machine.renderers,
     );
     let distribution = Knob::new(
         "distribution",
         "",
-        "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts of the scene (structure), or a part of every structure (primitive)",
+        "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts of \
+         the scene (structure), or a part of every structure (primitive)",
         four,
     );
     knobs.choice(distribution, DISTRIBUTIONS, &mut machine.distribution);
     let allocation = Knob::new(
         "allocation",
         "",
-        "static: every region has its renderer all the time; dynamic: the busiest regions first, the others when a renderer is free",
+        "static: every region has its renderer all the time; dynamic: the busiest regions first, the others \
+         when a renderer is free",
         five,
     );
     knobs.choice(allocation, ALLOCATIONS, &mut machine.allocation);
     let source = "Georges 1995, Section 5.3";
-    knobs.switch(Knob::new("overlap-queries", "", "a simulated processor goes on while it waits for answers", source), &mut machine.overlap);
     knobs.switch(
-        Knob::new("farthest-shortcut", "", "a simulated processor first compares a box with the farthest depth of each region", source),
+        Knob::new("overlap-queries", "", "a simulated processor goes on while it waits for answers", source),
+        &mut machine.overlap,
+    );
+    knobs.switch(
+        Knob::new(
+            "farthest-shortcut",
+            "",
+            "a simulated processor first compares a box with the farthest depth of each region",
+            source,
+        ),
         &mut machine.farthest_first,
     );
     let source = "Georges 1995, Section 4.2";
-    knobs.integer(Knob::new("transform-cost", "ticks", "simulated time to transform a primitive", source), 1..=10_000, &mut machine.transform);
+    knobs.integer(
+        Knob::new("transform-cost", "ticks", "simulated time to transform a primitive", source),
+        1..=10_000,
+        &mut machine.transform,
+    );
     knobs.integer(
         Knob::new("rasterize-cost", "ticks", "simulated time to rasterize a primitive in a region", source),
         1..=10_000,
         &mut machine.rasterize,
     );
-    knobs.integer(Knob::new("answer-cost", "ticks", "simulated time in which a renderer answers for a box", source), 1..=10_000, &mut machine.answer);
     knobs.integer(
-        Knob::new("message-cost", "ticks", "simulated time of a message between a processor and a renderer", source),
+        Knob::new("answer-cost", "ticks", "simulated time in which a renderer answers for a box", source),
+        1..=10_000,
+        &mut machine.answer,
+    );
+    knobs.integer(
+        Knob::new(
+            "message-cost",
+            "ticks",
+            "simulated time of a message between a processor and a renderer",
+            source,
+        ),
         0..=10_000,
         &mut machine.message,
     );
@@ -459,9 +553,9 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
         if self.is_two_pass() { self.waiting.push(id) } else { self.draw(id) }
     }
 
-    /// Two-pass form on several threads: asks for all cubes that will be asked for, level by level. The pyramid does not
-    /// change meanwhile, so the answers are those that asking one by one would give. Not done while somebody listens, who is to
-    /// hear of every cell.
+    /// Two-pass form on several threads: asks for all cubes that will be asked for, level by level. The
+    /// pyramid does not change meanwhile, so the answers are those that asking one by one would give. Not
+    /// done while somebody listens, who is to hear of every cell.
     fn ask_ahead(&mut self) {
         self.asked.clear();
         self.asked.resize(self.index.nodes().len(), None);
@@ -472,7 +566,9 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             let node = &index.nodes()[id.at()];
             match question(node, view, projection, params) {
                 Question::Decided { crosses_near } => !crosses_near,
-                Question::Open(image, nearest) => ask(Query::new(buffer, nearest, Nobody), params, &node.bounds, &image, view).is_hidden,
+                Question::Open(image, nearest) => {
+                    ask(Query::new(buffer, nearest, Nobody), params, &node.bounds, &image, view).is_hidden
+                }
             }
         };
         let ask = |&(id, planes): &(NodeId, u8)| match frustum.test(&index.nodes()[id.at()].bounds, planes) {
@@ -521,7 +617,9 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
         self.watch.event(Event::Line(line::OUTSIDE));
         let test = self.frustum.test(&node.bounds, planes);
         let frustum = &self.frustum;
-        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+        self.watch.note(move || {
+            Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
+        });
         let cutting = match test {
             FrustumTest::Outside(_) => return self.leave(id, Verdict::Outside),
             FrustumTest::Partial(cutting) => cutting,
@@ -625,9 +723,16 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
             self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
             self.watch.note(move || {
                 let operands = buffer.operands(scene, prim, options);
-                Evidence::Rasterized(Rasterized { prim, operands, is_hidden, backface_culling: options.backface_culling, window: None })
+                Evidence::Rasterized(Rasterized {
+                    prim,
+                    operands,
+                    is_hidden,
+                    backface_culling: options.backface_culling,
+                    window: None,
+                })
             });
-            self.watch.event(Event::DecidedPrim(prim, if is_hidden { Verdict::Hidden } else { Verdict::Visible }));
+            self.watch
+                .event(Event::DecidedPrim(prim, if is_hidden { Verdict::Hidden } else { Verdict::Visible }));
             if !is_hidden {
                 self.out.prims.push(prim);
             }
@@ -645,9 +750,18 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
                 self.answered(node, &bounds, crosses_near)
             }
             Question::Open(image, nearest) => {
-                let query = Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
+                let query =
+                    Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
                 let answer = ask(query, self.params, &bounds, &image, self.view);
-                self.watch.note(move || Evidence::Answered(Answered { node, bounds, pixels: image.pixels, answer, crosses_near: false }));
+                self.watch.note(move || {
+                    Evidence::Answered(Answered {
+                        node,
+                        bounds,
+                        pixels: image.pixels,
+                        answer,
+                        crosses_near: false,
+                    })
+                });
                 answer.is_hidden
             }
         }
@@ -656,7 +770,9 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
     fn answered(&mut self, node: NodeId, bounds: &Aabb<S::Vector>, crosses_near: bool) -> bool {
         let (bounds, nearest) = (*bounds, 1.0 / self.view.eye.near);
         let answer = Answer { is_hidden: !crosses_near, nearest, reads: 0, decisive: None };
-        self.watch.note(move || Evidence::Answered(Answered { node, bounds, pixels: PixelRect::default(), answer, crosses_near }));
+        self.watch.note(move || {
+            Evidence::Answered(Answered { node, bounds, pixels: PixelRect::default(), answer, crosses_near })
+        });
         answer.is_hidden
     }
 
@@ -670,14 +786,15 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
         }
     }
 
-    /// Whether the list is to be checked in this frame (Georges 1995, Section 4.2): at fixed intervals, or early where many cubes
-    /// were added or the farthest depth shifted.
+    /// Whether the list is to be checked in this frame (Georges 1995, Section 4.2): at fixed intervals, or
+    /// early where many cubes were added or the farthest depth shifted.
     fn check_due(&mut self, before: f32, frames: u32) -> Check {
         let interval = self.params.check_interval.max(1);
         let farthest = if interval == 1 { before } else { self.farthest() };
         let (added, listed) = (self.added, self.listed.iter().filter(|l| **l).count() as u32);
         let shift = if before > 0.0 { (farthest / before).max(before / farthest) } else { 1.0 };
-        let is_due = self.params.coherence && (frames >= interval || added * MANY_ADDED > listed || shift > RAPID_SHIFT);
+        let is_due = self.params.coherence
+            && (frames >= interval || added * MANY_ADDED > listed || shift > RAPID_SHIFT);
         let check = Check { frames, interval, added, listed, farthest: [farthest, before], is_due };
         self.watch.event(Event::Line(line::CHECK));
         self.watch.note(move || Evidence::Checked(check));
@@ -721,11 +838,24 @@ enum Question {
 }
 
 /// What is asked of the pyramid for a cube, if anything.
-fn question<S: Faces>(node: &OctreeNode<S::Vector>, view: &View<S>, projection: &Projection<S::Vector>, params: &Params) -> Question {
+fn question<S: Faces>(
+    node: &OctreeNode<S::Vector>,
+    view: &View<S>,
+    projection: &Projection<S::Vector>,
+    params: &Params,
+) -> Question {
     let is_sphere = QUERIES[params.query] == "sphere";
-    match if is_sphere { project_sphere(view, &node.whole) } else { footprint(view, projection, &node.bounds) } {
-        Footprint::Seen(image) if is_sphere || node.whole == node.bounds => Question::Open(image, image.nearest),
-        Footprint::Seen(image) => Question::Open(image, nearest_depth(projection, &node.whole, view.eye.near)),
+    match if is_sphere {
+        project_sphere(view, &node.whole)
+    } else {
+        footprint(view, projection, &node.bounds)
+    } {
+        Footprint::Seen(image) if is_sphere || node.whole == node.bounds => {
+            Question::Open(image, image.nearest)
+        }
+        Footprint::Seen(image) => {
+            Question::Open(image, nearest_depth(projection, &node.whole, view.eye.near))
+        }
         // Beside the view, but not by enough for the frustum's test.
         Footprint::Outside => Question::Decided { crosses_near: false },
         Footprint::CrossesNear => Question::Decided { crosses_near: true },
@@ -748,7 +878,11 @@ fn ask<S: Faces, B: Held<S>, L: Listener>(
 }
 
 /// The children of a cube, those on the eye's side first.
-fn front_to_back<S: Space>(index: &Octree<S::Vector>, node: &OctreeNode<S::Vector>, view: &View<S>) -> impl Iterator<Item = NodeId> {
+fn front_to_back<S: Space>(
+    index: &Octree<S::Vector>,
+    node: &OctreeNode<S::Vector>,
+    view: &View<S>,
+) -> impl Iterator<Item = NodeId> {
     let center = node.cube.center();
     let eye: u8 = (0..S::Vector::AXES).map(|a| u8::from(view.eye.position.get(a) > center.get(a)) << a).sum();
     // A child is nearer the fewer dividing planes lie between it and the eye.

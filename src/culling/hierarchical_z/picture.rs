@@ -1,4 +1,5 @@
-//! Pictures of what is not in the world: the levels of the pyramid beside each other and stacked, the lists, the timeline.
+//! Pictures of what is not in the world: the levels of the pyramid beside each other and stacked, the lists,
+//! the timeline.
 //!
 //! Each is drawn from the large state and the notes up to a step, so what is lit is what the run read.
 
@@ -24,7 +25,13 @@ const VALUE_ROOM_PT: f32 = 15.0;
 const MOST_COLUMNS: u32 = 1024;
 
 /// Draws picture `which`.
-pub fn picture<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], which: usize, scale: DepthScale) -> Drawing {
+pub fn picture<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    notes: &[Evidence<S>],
+    which: usize,
+    scale: DepthScale,
+) -> Drawing {
     match which {
         0 => levels(buffer, view, notes, scale),
         1 => stacked(buffer, view, notes, scale),
@@ -83,10 +90,14 @@ impl Frame {
 fn frames<S: Faces>(buffer: &Buffer<S>, view: &View<S>) -> (Vec<Frame>, f32) {
     let (root, top) = (buffer.pyramid().root(), 12.0);
     if S::CORNERS == 2 {
-        let frame = |level: u32| Frame::new(level, vec2(0.0, top + level as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view);
+        let frame = |level: u32| {
+            Frame::new(level, vec2(0.0, top + level as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
+        };
         return ((0..=root).map(frame).collect(), (root + 1) as f32 * STRIP_PITCH_PT);
     }
-    let shown: Vec<u32> = (0..=root).filter(|&l| buffer.pyramid().size(l).0.max(buffer.pyramid().size(l).1) <= MOST_COLUMNS).collect();
+    let shown: Vec<u32> = (0..=root)
+        .filter(|&l| buffer.pyramid().size(l).0.max(buffer.pyramid().size(l).1) <= MOST_COLUMNS)
+        .collect();
     let in_row = shown.len().clamp(1, 4);
     let gap = vec2(8.0, 16.0);
     let width = (WIDTH_PT - gap.x * (in_row - 1) as f32) / in_row as f32;
@@ -101,14 +112,31 @@ const STRIP_PT: f32 = 13.0;
 const STRIP_PITCH_PT: f32 = 26.0;
 
 /// Some cells of a level as an image, one cell a pixel.
-fn image<S: Faces>(buffer: &Buffer<S>, view: &View<S>, level: u32, [x0, x1, y0, y1]: [u32; 4], scale: DepthScale) -> Pixels {
-    let cells = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PyramidCell { level: level as u8, x: x as u16, y: y as u16 }));
+fn image<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    level: u32,
+    [x0, x1, y0, y1]: [u32; 4],
+    scale: DepthScale,
+) -> Pixels {
+    let cells = (y0..y1)
+        .flat_map(|y| (x0..x1).map(move |x| PyramidCell { level: level as u8, x: x as u16, y: y as u16 }));
     let depths: Vec<f32> = cells.map(|c| buffer.farthest(c)).collect();
-    Pixels { width: x1 - x0, height: y1 - y0, rgba: shade_depth(&depths, &buffer.target().depth, 1.0 / view.eye.far, scale).into() }
+    Pixels {
+        width: x1 - x0,
+        height: y1 - y0,
+        rgba: shade_depth(&depths, &buffer.target().depth, 1.0 / view.eye.far, scale).into(),
+    }
 }
 
 /// The frame with the level's name and its image, and values where there is room.
-fn draw_level<S: Faces>(buffer: &Buffer<S>, view: &View<S>, frame: &Frame, scale: DepthScale, to: &mut Drawing) {
+fn draw_level<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    frame: &Frame,
+    scale: DepthScale,
+    to: &mut Drawing,
+) {
     let (columns, rows) = buffer.pyramid().size(frame.level);
     let title = match frame.level {
         // Short: with its size it would reach the next level's name.
@@ -117,11 +145,18 @@ fn draw_level<S: Faces>(buffer: &Buffer<S>, view: &View<S>, frame: &Frame, scale
     };
     to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
     // Whole cells first, then those that the image's edge cuts.
-    let split = |cells: u32, pixels: u32| if pixels >> frame.level == cells { vec![[0, cells]] } else { vec![[0, cells - 1], [cells - 1, cells]] };
+    let split = |cells: u32, pixels: u32| {
+        if pixels >> frame.level == cells {
+            vec![[0, cells]]
+        } else {
+            vec![[0, cells - 1], [cells - 1, cells]]
+        }
+    };
     for [y0, y1] in split(rows, view.height) {
         for [x0, x1] in split(columns, view.width).into_iter().filter(|_| y1 > y0) {
             if x1 > x0 {
-                let cell = |x: u32, y: u32| PyramidCell { level: frame.level as u8, x: x as u16, y: y as u16 };
+                let cell =
+                    |x: u32, y: u32| PyramidCell { level: frame.level as u8, x: x as u16, y: y as u16 };
                 let corners = [frame.rect(cell(x0, y0))[0], frame.rect(cell(x1 - 1, y1 - 1))[1]];
                 let pixels = image(buffer, view, frame.level, [x0, x1, y0, y1], scale);
                 to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
@@ -129,11 +164,17 @@ fn draw_level<S: Faces>(buffer: &Buffer<S>, view: &View<S>, frame: &Frame, scale
         }
     }
     stale(buffer, frame, to);
-    to.outline(Layer::Scene, Role::Faint, Subject::None, [frame.at, vec2(frame.end.x, frame.at.y), frame.end, vec2(frame.at.x, frame.end.y)]);
+    to.outline(
+        Layer::Scene,
+        Role::Faint,
+        Subject::None,
+        [frame.at, vec2(frame.end.x, frame.at.y), frame.end, vec2(frame.at.x, frame.end.y)],
+    );
     for y in 0..rows as u16 {
         for x in 0..columns as u16 {
             let cell = PyramidCell { level: frame.level as u8, x, y };
-            let text = if is_stale(buffer, cell) { "stale".into() } else { value(buffer.farthest(cell), view) };
+            let text =
+                if is_stale(buffer, cell) { "stale".into() } else { value(buffer.farthest(cell), view) };
             let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
             if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
                 return;
@@ -155,17 +196,28 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
     let level = frame.level.max(if frame.level == 0 { 0 } else { 4.min(buffer.pyramid().root()) });
     let (columns, rows) = buffer.pyramid().size(level);
     let tile = Frame { level, cell: frame.cell * (1u32 << (level - frame.level)) as f32, ..*frame };
-    let tile = if frame.end.y - frame.at.y <= STRIP_PT { Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile } } else { tile };
+    let tile = if frame.end.y - frame.at.y <= STRIP_PT {
+        Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile }
+    } else {
+        tile
+    };
     // Runs along a row; those of rows below each other that are alike are one rectangle.
     let mut open: Vec<([u32; 2], u32)> = Vec::new();
     let mut close = |[x0, x1]: [u32; 2], y0: u32, y1: u32| {
         let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: x as u16, y: y as u16 };
         let ([a, _], [_, b]) = (tile.rect(cell(x0, y0)), tile.rect(cell(x1 - 1, y1 - 1)));
-        to.push(Layer::Nodes, Role::Approximated, Subject::None, Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]));
+        to.push(
+            Layer::Nodes,
+            Role::Approximated,
+            Subject::None,
+            Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]),
+        );
     };
     for y in 0..=rows {
         let mut runs: Vec<[u32; 2]> = Vec::new();
-        for x in (0..columns).filter(|&x| y < rows && is_stale(buffer, PyramidCell { level: level as u8, x: x as u16, y: y as u16 })) {
+        for x in (0..columns).filter(|&x| {
+            y < rows && is_stale(buffer, PyramidCell { level: level as u8, x: x as u16, y: y as u16 })
+        }) {
             match runs.last_mut().filter(|run| run[1] == x) {
                 Some(run) => run[1] += 1,
                 None => runs.push([x, x + 1]),
@@ -217,14 +269,20 @@ fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
         to.outline(Layer::Emphasis, role_of(read), Subject::None, corners);
         if number + 1 == reads.len() {
-            to.outline(Layer::Emphasis, Role::Current, Subject::None, corners.map(|c| c + (c - (a + b) * 0.5).signum() * 1.5));
+            to.outline(
+                Layer::Emphasis,
+                Role::Current,
+                Subject::None,
+                corners.map(|c| c + (c - (a + b) * 0.5).signum() * 1.5),
+            );
         }
         // A cell may be read for several faces; the first time writes all its numbers.
         let same = |r: &&(usize, &Read)| r.1.cell == read.cell;
         let all: Vec<(usize, &Read)> = reads.iter().enumerate().collect();
         let numbers: Vec<String> = all.iter().filter(same).map(|(n, _)| (n + 1).to_string()).collect();
         let text = format!("{}.", numbers.join(", "));
-        let room = b.x - a.x - metrics::width_pt(&text, Font::Regular, LABEL_PT) > 2.0 && b.y - a.y > 2.0 * LABEL_PT;
+        let room =
+            b.x - a.x - metrics::width_pt(&text, Font::Regular, LABEL_PT) > 2.0 && b.y - a.y > 2.0 * LABEL_PT;
         if room && numbers[0] == (number + 1).to_string() {
             let half = vec2(metrics::width_pt(&text, Font::Regular, LABEL_PT) * 0.5, LABEL_PT * 0.55);
             plate(to, a + half + 2.0, &text);
@@ -248,7 +306,14 @@ fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
         );
     }
     if reads.is_empty() {
-        to.text(Layer::Labels, Role::Faint, vec2(0.0, top + 11.0), 8.5, Anchor::Start, "No cell is being read at this step.");
+        to.text(
+            Layer::Labels,
+            Role::Faint,
+            vec2(0.0, top + 11.0),
+            8.5,
+            Anchor::Start,
+            "No cell is being read at this step.",
+        );
     }
     top + 11.0 * (reads.len() - first).max(1) as f32 + 5.0
 }
@@ -262,7 +327,8 @@ fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], s
     light(&reads, &frames, &mut to);
     let mut bottom = comparisons(&reads, 4.0 + height, &mut to);
     if to.items.iter().any(|i| i.role == Role::Approximated) {
-        let text = "Cross-hatched: drawn into since it was last read, so it holds too far a depth; it is brought up to date when it is read.";
+        let text = "Cross-hatched: drawn into since it was last read, so it holds too far a depth; it is \
+                    brought up to date when it is read.";
         to.text(Layer::Labels, Role::Faint, vec2(0.0, bottom + 8.0), 8.0, Anchor::Start, text);
         bottom += 12.0;
     }
@@ -270,7 +336,12 @@ fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], s
 }
 
 /// The levels above each other, seen askew, the image at the bottom.
-fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], scale: DepthScale) -> Drawing {
+fn stacked<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    notes: &[Evidence<S>],
+    scale: DepthScale,
+) -> Drawing {
     let root = buffer.pyramid().root();
     let shown: Vec<u32> = (0..=root).filter(|&l| buffer.pyramid().size(l).0 <= MOST_COLUMNS).collect();
     let (base, lean, rise) = (WIDTH_PT * 0.62, WIDTH_PT * 0.2, 46.0);
@@ -278,7 +349,9 @@ fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], 
     let top = 14.0 + rise * shown.len().saturating_sub(1) as f32;
     let mut to = Drawing::default();
     // The image's unit square on level k of the stack: right along the base, down toward the person.
-    let at = |k: usize, p: Vec2| vec2(lean * (1.0 - p.y) + base * p.x, top - rise * k as f32 - depth * (1.0 - p.y) + depth);
+    let at = |k: usize, p: Vec2| {
+        vec2(lean * (1.0 - p.y) + base * p.x, top - rise * k as f32 - depth * (1.0 - p.y) + depth)
+    };
     let quad = |k: usize, a: Vec2, b: Vec2| [a, vec2(b.x, a.y), b, vec2(a.x, b.y)].map(|p| at(k, p));
     let reads = reads(notes);
     for (k, &level) in shown.iter().enumerate() {
@@ -291,7 +364,8 @@ fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], 
         for line in 0..thin {
             let row = ((line * view.height / thin) >> level).min(rows - 1) as usize;
             let (y0, y1) = (line as f32 / thin as f32, (line + 1) as f32 / thin as f32);
-            let rgba: Vec<u8> = pixels.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
+            let rgba: Vec<u8> =
+                pixels.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
             let (a, b) = (at(k, vec2(0.0, y0)), at(k, vec2(1.0, y1)));
             to.push(
                 Layer::Scene,
@@ -304,13 +378,21 @@ fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, notes: &[Evidence<S>], 
             );
         }
         to.outline(Layer::Scene, Role::Faint, Subject::None, corners);
-        let side = vec2((1u32 << level) as f32 / view.width as f32, (1u32 << level) as f32 / view.height as f32);
+        let side =
+            vec2((1u32 << level) as f32 / view.width as f32, (1u32 << level) as f32 / view.height as f32);
         for read in reads.iter().filter(|r| u32::from(r.cell.level) == level) {
             let a = side * vec2(read.cell.x.into(), read.cell.y.into());
             to.outline(Layer::Emphasis, role_of(read), Subject::None, quad(k, a, (a + side).min(Vec2::ONE)));
         }
         let name = vec2(lean + base + 6.0, at(k, vec2(1.0, 0.0)).y + 4.0);
-        to.text(Layer::Labels, Role::Ink, name, LABEL_PT, Anchor::Start, format!("level {level}, {columns} × {rows}"));
+        to.text(
+            Layer::Labels,
+            Role::Ink,
+            name,
+            LABEL_PT,
+            Anchor::Start,
+            format!("level {level}, {columns} × {rows}"),
+        );
     }
     let bottom = comparisons(&reads, top + depth + 2.0, &mut to);
     finished(to, bottom, "The z-pyramid over the image")
@@ -324,12 +406,16 @@ fn list<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
     for note in notes {
         match note {
             Evidence::Listed(node, true) => drawn.push((*node, "from the list")),
-            Evidence::Answered(a) if a.answer.is_hidden => asked.push((a.node, format!("hidden, {} cells read", a.answer.reads))),
+            Evidence::Answered(a) if a.answer.is_hidden => {
+                asked.push((a.node, format!("hidden, {} cells read", a.answer.reads)))
+            }
             Evidence::Answered(a) => {
                 drawn.push((a.node, "passed its test"));
                 asked.push((a.node, format!("seen, {} cells read", a.answer.reads)));
             }
-            Evidence::Worked(Worked { job: Job::DrawVisible, node, .. }) => drawn.push((*node, "from a list")),
+            Evidence::Worked(Worked { job: Job::DrawVisible, node, .. }) => {
+                drawn.push((*node, "from a list"))
+            }
             Evidence::Unlisted(node) => left.push((*node, String::from("off the list"))),
             _ => {}
         }
@@ -340,7 +426,13 @@ fn list<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
             Layer::Labels,
             Role::Ink,
             Subject::None,
-            Mark::Text { at: vec2(x, 10.0), text: title, size_pt: 9.0, anchor: Anchor::Start, font: Font::Bold },
+            Mark::Text {
+                at: vec2(x, 10.0),
+                text: title,
+                size_pt: 9.0,
+                anchor: Anchor::Start,
+                font: Font::Bold,
+            },
         );
         let first = rows.len().saturating_sub(ROWS);
         for (line, row) in rows.into_iter().skip(first).enumerate() {
@@ -348,15 +440,28 @@ fn list<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
         }
     };
     let numbered = |(i, (node, what)): (usize, &(NodeId, &str))| format!("{}. node {node}: {what}", i + 1);
-    column(0.0, format!("Drawn, in this order: {}", drawn.len()), drawn.iter().enumerate().map(numbered).collect());
-    column(170.0, format!("Asked for: {}", asked.len()), asked.iter().map(|(n, what)| format!("node {n}: {what}")).collect());
-    column(340.0, format!("Left the list: {}", left.len()), left.iter().map(|(n, what)| format!("node {n}: {what}")).collect());
+    column(
+        0.0,
+        format!("Drawn, in this order: {}", drawn.len()),
+        drawn.iter().enumerate().map(numbered).collect(),
+    );
+    column(
+        170.0,
+        format!("Asked for: {}", asked.len()),
+        asked.iter().map(|(n, what)| format!("node {n}: {what}")).collect(),
+    );
+    column(
+        340.0,
+        format!("Left the list: {}", left.len()),
+        left.iter().map(|(n, what)| format!("node {n}: {what}")).collect(),
+    );
     finished(to, 24.0 + 11.0 * ROWS as f32, "The visible list")
 }
 
 /// Who did what when: a row a unit, time to the right.
 fn timeline<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
-    let work: Vec<Worked> = notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some(*w) } else { None }).collect();
+    let work: Vec<Worked> =
+        notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some(*w) } else { None }).collect();
     let mut to = Drawing::default();
     let Some(end) = work.iter().map(|w| w.to).max() else {
         let text = "The simulated machine has one processor: set processors to 2 or more to see it at work.";
@@ -384,15 +489,32 @@ fn timeline<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
             };
             busy += if w.job == Job::Wait { 0 } else { w.to - w.from };
             let (a, b) = (vec2(x(w.from), y), vec2(x(w.to).max(x(w.from) + 0.3), y + row - 4.0));
-            to.push(Layer::Areas, role, Subject::Node(w.node), Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]));
+            to.push(
+                Layer::Areas,
+                role,
+                Subject::Node(w.node),
+                Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]),
+            );
         }
         let share = format!("{} %", (100.0 * busy as f32 / end.max(1) as f32).round());
         to.text(Layer::Labels, Role::Faint, vec2(WIDTH_PT, y + 9.0), 8.0, Anchor::End, share);
     }
     let bottom = top + row * units.len() as f32;
-    to.line(Layer::Evidence, Role::Ink, Subject::None, [vec2(left, bottom + 1.0), vec2(x(end), bottom + 1.0)]);
+    to.line(
+        Layer::Evidence,
+        Role::Ink,
+        Subject::None,
+        [vec2(left, bottom + 1.0), vec2(x(end), bottom + 1.0)],
+    );
     for tick in [0, end / 2, end] {
-        to.text(Layer::Labels, Role::Ink, vec2(x(tick), bottom + 11.0), 7.5, Anchor::Middle, format!("{tick} ticks"));
+        to.text(
+            Layer::Labels,
+            Role::Ink,
+            vec2(x(tick), bottom + 11.0),
+            7.5,
+            Anchor::Middle,
+            format!("{tick} ticks"),
+        );
     }
     to.text(Layer::Labels, Role::Faint, vec2(WIDTH_PT, 10.0), 8.0, Anchor::End, "busy");
     let legend = [
@@ -408,7 +530,12 @@ fn timeline<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
         if at.x + width > WIDTH_PT {
             at = vec2(0.0, at.y + 12.0);
         }
-        to.push(Layer::Legend, role, Subject::None, Mark::Area(vec![at, at + vec2(10.0, 0.0), at + vec2(10.0, 8.0), at + vec2(0.0, 8.0)]));
+        to.push(
+            Layer::Legend,
+            role,
+            Subject::None,
+            Mark::Area(vec![at, at + vec2(10.0, 0.0), at + vec2(10.0, 8.0), at + vec2(0.0, 8.0)]),
+        );
         to.text(Layer::Legend, Role::Ink, at + vec2(13.0, 7.0), 8.0, Anchor::Start, text);
         at.x += width;
     }
@@ -424,6 +551,7 @@ fn finished(mut to: Drawing, bottom: f32, title: &str) -> Drawing {
 /// The value of the cell under a point of the first picture, in words.
 pub fn probe<S: Faces>(buffer: &Buffer<S>, view: &View<S>, which: usize, at: Vec2) -> Option<String> {
     let cell = frames(buffer, view).0.iter().filter(|_| which == 0).find_map(|f| f.cell_under(at))?;
-    let stale = if is_stale(buffer, cell) { " as far as it is known; drawn into since it was last read" } else { "" };
+    let stale =
+        if is_stale(buffer, cell) { " as far as it is known; drawn into since it was last read" } else { "" };
     Some(format!("{}: farthest {}{stale}", place(cell), value(buffer.farthest(cell), view)))
 }

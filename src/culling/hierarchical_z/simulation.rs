@@ -1,19 +1,21 @@
-//! The parallel form on a simulated machine: processors that own structures, renderers that own regions of the screen.
+//! The parallel form on a simulated machine: processors that own structures, renderers that own regions of
+//! the screen.
 //!
-//! Georges 1995, Sections 4 and 5: structures (a bounding volume and its geometry, here a cube of the octree and what it alone
-//! holds) are distributed over graphics processors. Each draws its visible structures by decreasing area on the screen, then
-//! asks for its invisible ones by increasing number of primitives; a renderer holds regions of 128 × 128 pixels, rasterizes
-//! what it is sent in the order of arrival, and answers for a box with whether any pixel of the region is left on (the
-//! all-enables-off bit). Every n frames all visible structures are checked against the finished image.
+//! Georges 1995, Sections 4 and 5: structures (a bounding volume and its geometry, here a cube of the octree
+//! and what it alone holds) are distributed over graphics processors. Each draws its visible structures by
+//! decreasing area on the screen, then asks for its invisible ones by increasing number of primitives; a
+//! renderer holds regions of 128 × 128 pixels, rasterizes what it is sent in the order of arrival, and
+//! answers for a box with whether any pixel of the region is left on (the all-enables-off bit). Every n
+//! frames all visible structures are checked against the finished image.
 //!
-//! A discrete-event simulation in whole ticks: events are taken by time, then in the order in which they were made, so a frame
-//! is the same on every machine. What is asked at a tick is answered from what was rasterized before it, by the same
-//! queries as in the sequential form.
+//! A discrete-event simulation in whole ticks: events are taken by time, then in the order in which they were
+//! made, so a frame is the same on every machine. What is asked at a tick is answered from what was
+//! rasterized before it, by the same queries as in the sequential form.
 //!
-//! Departures: the cost of an operation is a parameter, not that of a Pixel-Planes 5; a processor of the hybrid distribution
-//! asks first for the cube above several of its invisible structures (the paper leaves open how it recombines its allotment into
-//! a tree); with dynamic allocation a region that no renderer holds counts as seen, since it cannot be asked.
-//! Cost: O(jobs · log jobs) beside what is drawn and asked.
+//! Departures: the cost of an operation is a parameter, not that of a Pixel-Planes 5; a processor of the
+//! hybrid distribution asks first for the cube above several of its invisible structures (the paper leaves
+//! open how it recombines its allotment into a tree); with dynamic allocation a region that no renderer holds
+//! counts as seen, since it cannot be asked. Cost: O(jobs · log jobs) beside what is drawn and asked.
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
@@ -24,7 +26,10 @@ use crate::culling::depth::{Answer, Buffer, Faces, Query, footprint};
 use crate::culling::evidence::{Facing, Tested, prim_faces_away};
 use crate::culling::{DrawList, Event, Observer, Verdict};
 use crate::drawing::Subject;
-use crate::geometry::{Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View, nearest_depth};
+use crate::geometry::{
+    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View,
+    nearest_depth,
+};
 use crate::index::Octree;
 use crate::raster::Options;
 use crate::scene::Scene;
@@ -52,7 +57,8 @@ pub struct Machine {
     pub overlap: bool,
     /// A processor asks once for the farthest depth of each region and rejects by it alone (Section 5.3).
     pub farthest_first: bool,
-    /// Ticks to transform a primitive (a box counts as twelve), to rasterize one in a region, to answer for a box, and for a message.
+    /// Ticks to transform a primitive (a box counts as twelve), to rasterize one in a region, to answer for a
+    /// box, and for a message.
     pub transform: u32,
     pub rasterize: u32,
     pub answer: u32,
@@ -248,7 +254,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     ) -> Self {
         let options = Options { backface_culling: params.backface_culling, ..Options::default() };
         let (machine, frustum, projection) = (&params.machine, view.frustum(), view.projection());
-        Self { index, scene, view, params, machine, options, frustum, projection, buffer, drawn, lists, out, watch, state: State::default() }
+        Self {
+            index,
+            scene,
+            view,
+            params,
+            machine,
+            options,
+            frustum,
+            projection,
+            buffer,
+            drawn,
+            lists,
+            out,
+            watch,
+            state: State::default(),
+        }
     }
 
     /// Runs the frame; returns the tick at which the last unit is done.
@@ -302,7 +323,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             if self.index.nodes()[at].level <= COARSE_LEVEL {
                 coarse += 1;
             }
-            let prims: Vec<PrimId> = self.index.own(node).iter().chain(self.index.shared(node)).copied().collect();
+            let prims: Vec<PrimId> =
+                self.index.own(node).iter().chain(self.index.shared(node)).copied().collect();
             if prims.is_empty() || self.drop_outside(node) {
                 continue;
             }
@@ -315,7 +337,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
                         }
                     }
                 }
-                "structure" => self.state.processors[coarse % count].structures.push(Structure { node, prims }),
+                "structure" => {
+                    self.state.processors[coarse % count].structures.push(Structure { node, prims })
+                }
                 _ => self.state.processors[dealt % count].structures.push(Structure { node, prims }),
             }
             dealt += 1;
@@ -325,36 +349,49 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
 
     /// Drops a structure out of view; it keeps its place on the lists (Section 5.1).
     fn drop_outside(&mut self, node: NodeId) -> bool {
-        let (all, frustum, held) = (Frustum::<S::Vector>::ALL, &self.frustum, &self.index.nodes()[node.at()].held);
+        let (all, frustum, held) =
+            (Frustum::<S::Vector>::ALL, &self.frustum, &self.index.nodes()[node.at()].held);
         let test = frustum.test(held, all);
         let is_outside = matches!(test, FrustumTest::Outside(_));
         if is_outside {
             for &prim in self.index.own(node) {
-                self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node), frustum, held, all, test)));
+                self.watch.note(move || {
+                    Evidence::Tested(Tested::of(Subject::Node(node), frustum, held, all, test))
+                });
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             }
         }
         is_outside
     }
 
-    /// Visible structures by decreasing area on the screen, invisible ones by increasing number of primitives (Section 4.2).
+    /// Visible structures by decreasing area on the screen, invisible ones by increasing number of primitives
+    /// (Section 4.2).
     fn sort_lists(&mut self, p: usize) {
         let processor = &self.state.processors[p];
-        let (mut visible, mut hidden): (Vec<usize>, Vec<usize>) =
-            (0..processor.structures.len()).partition(|&s| self.lists.visible[p][processor.structures[s].node.at()]);
-        let area = |s: &usize| match footprint(self.view, &self.projection, &self.index.nodes()[processor.structures[*s].node.at()].held) {
+        let (mut visible, mut hidden): (Vec<usize>, Vec<usize>) = (0..processor.structures.len())
+            .partition(|&s| self.lists.visible[p][processor.structures[s].node.at()]);
+        let area = |s: &usize| match footprint(
+            self.view,
+            &self.projection,
+            &self.index.nodes()[processor.structures[*s].node.at()].held,
+        ) {
             Footprint::Seen(image) => image.pixels.area(),
             Footprint::Outside => 0,
             Footprint::CrossesNear => u64::MAX,
         };
         visible.sort_by_key(|s| (Reverse(area(s)), *s));
         hidden.sort_by_key(|&s| (processor.structures[s].prims.len(), s));
-        let groups = if DISTRIBUTIONS[self.machine.distribution] == "hybrid" { self.grouped(p, &hidden) } else { vec![] };
+        let groups = if DISTRIBUTIONS[self.machine.distribution] == "hybrid" {
+            self.grouped(p, &hidden)
+        } else {
+            vec![]
+        };
         let mut in_group = vec![false; processor.structures.len()];
         groups.iter().flatten().for_each(|&s| in_group[s] = true);
         let single = hidden.into_iter().filter(|&s| !in_group[s]).map(|s| vec![s]);
         let mut to_ask: Vec<Vec<usize>> = groups.into_iter().chain(single).collect();
-        let work = |group: &Vec<usize>| group.iter().map(|&s| processor.structures[s].prims.len()).sum::<usize>();
+        let work =
+            |group: &Vec<usize>| group.iter().map(|&s| processor.structures[s].prims.len()).sum::<usize>();
         to_ask.sort_by_key(|g| (work(g), g[0]));
         (self.state.processors[p].to_draw, self.state.processors[p].to_ask) = (visible.into(), to_ask.into());
     }
@@ -368,7 +405,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     fn group_of(&self, node: NodeId) -> NodeId {
         let above = |n: &NodeId| self.index.parent_of(*n);
-        std::iter::successors(Some(node), above).find(|n| self.index.nodes()[n.at()].level <= COARSE_LEVEL + 1).unwrap_or(node)
+        std::iter::successors(Some(node), above)
+            .find(|n| self.index.nodes()[n.at()].level <= COARSE_LEVEL + 1)
+            .unwrap_or(node)
     }
 
     /// Gives regions to renderers: all of them at once, or the busiest of the last frame.
@@ -397,7 +436,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Dynamic allocation: whoever is idle takes regions that nobody held, when all else is done.
     fn release_regions(&mut self) {
         let renderers = self.machine.renderers as usize;
-        let free: Vec<usize> = (0..self.state.queues.len()).filter(|&r| self.state.holder[r].is_none() && !self.state.queues[r].is_empty()).collect();
+        let free: Vec<usize> = (0..self.state.queues.len())
+            .filter(|&r| self.state.holder[r].is_none() && !self.state.queues[r].is_empty())
+            .collect();
         for (k, region) in free.into_iter().enumerate() {
             self.state.holder[region] = Some((k % renderers) as u16);
             self.next_of_renderer((k % renderers) as u16);
@@ -405,14 +446,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     fn window(&self, region: u32) -> PixelRect {
         let (x, y) = (region % self.state.columns * REGION_PX, region / self.state.columns * REGION_PX);
-        PixelRect { x0: x, x1: (x + REGION_PX).min(self.view.width), y0: y, y1: (y + REGION_PX).min(self.view.height) }
+        PixelRect {
+            x0: x,
+            x1: (x + REGION_PX).min(self.view.width),
+            y0: y,
+            y1: (y + REGION_PX).min(self.view.height),
+        }
     }
     fn regions(&self, pixels: PixelRect) -> Vec<u32> {
         if pixels.is_empty() {
             return vec![];
         }
         let rows = pixels.y0 / REGION_PX..=(pixels.y1 - 1) / REGION_PX;
-        rows.flat_map(|row| (pixels.x0 / REGION_PX..=(pixels.x1 - 1) / REGION_PX).map(move |c| row * self.state.columns + c)).collect()
+        rows.flat_map(|row| {
+            (pixels.x0 / REGION_PX..=(pixels.x1 - 1) / REGION_PX).map(move |c| row * self.state.columns + c)
+        })
+        .collect()
     }
 
     /// What a processor that is free does next.
@@ -422,7 +471,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         if let Some(since) = processor.idle.take()
             && since < now
         {
-            self.note_work(Worked { unit: Unit::Processor(p), job: Job::Wait, from: since, to: now, node: NodeId(0), region: 0, count: 0 });
+            self.note_work(Worked {
+                unit: Unit::Processor(p),
+                job: Job::Wait,
+                from: since,
+                to: now,
+                node: NodeId(0),
+                region: 0,
+                count: 0,
+            });
         }
         let processor = &mut self.state.processors[p as usize];
         if let Some(s) = processor.found.pop_front() {
@@ -444,7 +501,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.lists.visible[p as usize][node.at()] = true;
         let cost = self.machine.transform * prims.len() as u32;
         let (from, to) = (self.state.now, self.state.now + cost);
-        self.note_work(Worked { unit: Unit::Processor(p), job, from, to, node, region: 0, count: prims.len() as u32 });
+        self.note_work(Worked {
+            unit: Unit::Processor(p),
+            job,
+            from,
+            to,
+            node,
+            region: 0,
+            count: prims.len() as u32,
+        });
         self.watch.event(Event::DecidedNode(node, Verdict::Partial));
         let mut bins: std::collections::BTreeMap<u32, Vec<PrimId>> = Default::default();
         for prim in prims {
@@ -484,10 +549,20 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let cost = self.machine.transform * 12;
         let (from, to) = (self.state.now, self.state.now + cost);
         self.watch.event(Event::Line(line::OBSCURED));
-        self.note_work(Worked { unit: Unit::Processor(p), job: Job::Ask, from, to, node, region: 0, count: group.len() as u32 });
+        self.note_work(Worked {
+            unit: Unit::Processor(p),
+            job: Job::Ask,
+            from,
+            to,
+            node,
+            region: 0,
+            count: group.len() as u32,
+        });
         let image = match footprint(self.view, &self.projection, &bounds) {
             Footprint::Seen(image) => image,
-            Footprint::Outside => BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 0.0 },
+            Footprint::Outside => {
+                BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 0.0 }
+            }
             Footprint::CrossesNear => {
                 self.let_through(p, group);
                 return self.after(cost, What::Free(p));
@@ -496,7 +571,17 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let nearest = nearest_depth(&self.projection, &whole, self.view.eye.near);
         let regions = self.regions(image.pixels);
         let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
-        let question = Question { processor: p, structures: group, node, bounds, image, nearest, open: regions.len() as u32, is_seen: false, answer };
+        let question = Question {
+            processor: p,
+            structures: group,
+            node,
+            bounds,
+            image,
+            nearest,
+            open: regions.len() as u32,
+            is_seen: false,
+            answer,
+        };
         self.state.questions.push(question);
         let number = self.state.questions.len() - 1;
         let unheld = regions.iter().any(|&r| self.state.holder[r as usize].is_none());
@@ -515,8 +600,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         }
         self.after(cost, What::Free(p));
     }
-    /// The maximum-depth shortcut: whether a box lies behind the farthest depth of all its regions, as this processor asked for
-    /// it once, after its visible list (Section 5.3).
+    /// The maximum-depth shortcut: whether a box lies behind the farthest depth of all its regions, as this
+    /// processor asked for it once, after its visible list (Section 5.3).
     fn behind_farthest(&mut self, p: u16, regions: &[u32], nearest: f32) -> bool {
         if !self.machine.farthest_first {
             return false;
@@ -524,7 +609,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         if self.state.processors[p as usize].farthest.is_empty() {
             self.watch.note(|| Evidence::RefreshedAll);
             self.buffer.refresh_all();
-            let all = (0..self.state.queues.len() as u32).map(|r| self.buffer.farthest_over(self.window(r))).collect();
+            let all = (0..self.state.queues.len() as u32)
+                .map(|r| self.buffer.farthest_over(self.window(r)))
+                .collect();
             self.state.processors[p as usize].farthest = all;
         }
         regions.iter().all(|&r| nearest < self.state.processors[p as usize].farthest[r as usize])
@@ -554,11 +641,24 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         match self.state.messages[message].clone() {
             Message::Draw { node, prims } => {
                 let from = to - self.machine.rasterize * prims.len() as u32;
-                self.note_work(Worked { unit, job: Job::Rasterize, from, to, node, region, count: prims.len() as u32 });
+                self.note_work(Worked {
+                    unit,
+                    job: Job::Rasterize,
+                    from,
+                    to,
+                    node,
+                    region,
+                    count: prims.len() as u32,
+                });
                 let options = Options { window: Some(window), ..self.options };
                 for &prim in &prims {
-                    let rasterized =
-                        Rasterized { prim, operands: None, is_hidden: false, backface_culling: options.backface_culling, window: Some(window) };
+                    let rasterized = Rasterized {
+                        prim,
+                        operands: None,
+                        is_hidden: false,
+                        backface_culling: options.backface_culling,
+                        window: Some(window),
+                    };
                     self.watch.note(move || Evidence::Rasterized(rasterized));
                 }
                 self.buffer.draw_all(self.scene, &prims, &options);
@@ -568,7 +668,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
                     let q = &self.state.questions[question];
                     (q.image, q.bounds, q.node, q.nearest)
                 };
-                let query = Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
+                let query =
+                    Query::new(&mut *self.buffer, nearest, Asked::new(node, line::BEHIND, &mut *self.watch));
                 let answer = query.faces_in(&bounds, &image, self.view, window);
                 self.note_work(Worked {
                     unit,
@@ -606,14 +707,21 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let q = &mut self.state.questions[number];
         q.answer.is_hidden = !q.is_seen;
         let (p, node, group) = (q.processor, q.node, std::mem::take(&mut q.structures));
-        let answered = Answered { node, bounds: q.bounds, pixels: q.image.pixels, answer: q.answer, crosses_near: false };
+        let answered = Answered {
+            node,
+            bounds: q.bounds,
+            pixels: q.image.pixels,
+            answer: q.answer,
+            crosses_near: false,
+        };
         if q.is_seen {
             self.watch.note(move || Evidence::Answered(answered));
             return self.let_through(p, group);
         }
         for s in group {
             let structure = &self.state.processors[p as usize].structures[s];
-            let own = structure.prims.iter().filter(|&prim| !self.index.shared(structure.node).contains(prim));
+            let own =
+                structure.prims.iter().filter(|&prim| !self.index.shared(structure.node).contains(prim));
             for &prim in own {
                 self.watch.note(move || Evidence::Answered(answered));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
@@ -640,7 +748,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             }
         }
         self.lists.frames += 1;
-        let interval = if self.params.check_interval == 0 { CHECK_FRAMES } else { self.params.check_interval };
+        let interval =
+            if self.params.check_interval == 0 { CHECK_FRAMES } else { self.params.check_interval };
         if self.lists.frames < interval {
             return;
         }
@@ -652,7 +761,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             let n = &self.index.nodes()[at];
             let Footprint::Seen(image) = footprint(self.view, &self.projection, &n.held) else { continue };
             let nearest = nearest_depth(&self.projection, &n.held_whole, self.view.eye.near);
-            let query = Query::new(&mut *self.buffer, nearest, Asked::new(NodeId(at as u32), line::UNLIST, &mut *self.watch));
+            let query = Query::new(
+                &mut *self.buffer,
+                nearest,
+                Asked::new(NodeId(at as u32), line::UNLIST, &mut *self.watch),
+            );
             if query.faces(&n.held, &image, self.view).is_hidden {
                 self.lists.visible.iter_mut().for_each(|v| v[at] = false);
                 self.watch.note(|| Evidence::Unlisted(NodeId(at as u32)));

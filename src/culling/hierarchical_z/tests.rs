@@ -59,21 +59,32 @@ fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> 
         points.extend((0..S::CORNERS).map(|_| middle + S::Vector::from_fn(|_| (unit() - 0.5) * size)));
     }
     let corner = |k: u32| k * S::CORNERS as u32;
-    Arc::new(Scene::new(Parts::simple("soup", points, (0..n).map(|k| make([corner(k), corner(k) + 1, corner(k) + 2])).collect())).expect("valid"))
+    Arc::new(
+        Scene::new(Parts::simple(
+            "soup",
+            points,
+            (0..n).map(|k| make([corner(k), corner(k) + 1, corner(k) + 2])).collect(),
+        ))
+        .expect("valid"),
+    )
 }
 
 /// The outside of a box: points and primitives.
 type Shell<S> = fn(&Aabb<<S as Space>::Vector>) -> (Vec<<S as Space>::Vector>, Vec<<S as Space>::Corners>);
 
-/// A box that a query calls hidden changes no pixel when its outside is drawn after the rest; and of the boxes that
-/// change none, most are called hidden.
+/// A box that a query calls hidden changes no pixel when its outside is drawn after the rest; and of the
+/// boxes that change none, most are called hidden.
 fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners, shell: Shell<S>) {
     let mut rng = Pcg32::new(seed, 9);
     let (mut hidden, mut unseen, mut rectangle_hidden) = (0, 0, 0);
     for _ in 0..60 {
         let scene = soup::<S>(&mut rng, 60, make);
         let view = crate::scene::random_views(&scene, 1, u64::from(rng.next_u32()))[0];
-        let view = View { width: 1 + rng.next_u32() % 150, height: if S::CORNERS == 2 { 1 } else { 1 + rng.next_u32() % 150 }, ..view };
+        let view = View {
+            width: 1 + rng.next_u32() % 150,
+            height: if S::CORNERS == 2 { 1 } else { 1 + rng.next_u32() % 150 },
+            ..view
+        };
         let mut buffer = Buffer::default();
         buffer.begin(&view);
         for part in scene.live().chunks(25) {
@@ -103,16 +114,24 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             let mut with = drawn.clone();
             S::draw(&mut with, &outside, &view, outside.live(), &Options::default());
             // Ties go to the lower id, so a tie may show as well; both count as a change.
-            let changed = |t: &Target| (0..t.depth.len()).any(|i| t.depth[i] != drawn.depth[i] || t.item[i] != drawn.item[i]);
+            let changed = |t: &Target| {
+                (0..t.depth.len()).any(|i| t.depth[i] != drawn.depth[i] || t.item[i] != drawn.item[i])
+            };
             let answer = Query::new(&mut buffer, image.nearest, Nobody).faces(&bounds, &image, &view);
             assert!(!answer.is_hidden || !changed(&with), "{bounds:?} is called hidden and shows");
-            assert!(told != Some(!answer.is_hidden) && (told.is_some() || !changed(&with)), "{bounds:?}: asked for at once and by parts");
+            assert!(
+                told != Some(!answer.is_hidden) && (told.is_some() || !changed(&with)),
+                "{bounds:?}: asked for at once and by parts"
+            );
             let mut query = Query::new(&mut buffer, image.nearest, Nobody);
             let by_rectangle = query.face(0, &FaceImage::rectangle(image.pixels));
             assert!(!by_rectangle || answer.is_hidden, "what the rectangle hides, the faces do");
             if let Footprint::Seen(sphere) = project_sphere(&view, &bounds) {
                 let (r, s) = (image.pixels, sphere.pixels);
-                assert!(r.is_empty() || s.x0 <= r.x0 && s.x1 >= r.x1 && s.y0 <= r.y0 && s.y1 >= r.y1, "the sphere is about the box");
+                assert!(
+                    r.is_empty() || s.x0 <= r.x0 && s.x1 >= r.x1 && s.y0 <= r.y0 && s.y1 >= r.y1,
+                    "the sphere is about the box"
+                );
                 assert!(sphere.nearest >= image.nearest);
             }
             hidden += u32::from(answer.is_hidden);
@@ -147,7 +166,8 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     let scene = soup::<S>(&mut rng, 300, make);
     for (form, interval) in [(0, 1), (0, 30), (1, 1), (1, 30)] {
         let params = Params { form, check_interval: interval, leaf_primitives: 4, ..Params::default() };
-        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet)
+            .expect("not cancelled");
         let (mut memory, mut bare) = (Memory::default(), Memory { depths_only: true, ..Memory::default() });
         for view in crate::scene::random_views(&scene, 12, 3) {
             for step in 0..4 {
@@ -158,11 +178,18 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
                 HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut Unobserved);
                 let plain = render(&scene, &view, scene.live());
                 assert_eq!(render(&scene, &view, &list.prims), plain, "form {form}, interval {interval}");
-                assert_eq!(*memory.scratch.buffer.target(), plain, "form {form}, interval {interval}: its own image");
+                assert_eq!(
+                    *memory.scratch.buffer.target(),
+                    plain,
+                    "form {form}, interval {interval}: its own image"
+                );
                 let mut same = DrawList::default();
                 HierarchicalZ::cull(&index, &scene, &view, &params, &mut bare, &mut same, &mut Unobserved);
                 assert_eq!(list, same, "form {form}, interval {interval}: by depths alone");
-                assert!(bare.scratch.buffer.target().item.is_empty() && bare.scratch.buffer.target().depth == plain.depth);
+                assert!(
+                    bare.scratch.buffer.target().item.is_empty()
+                        && bare.scratch.buffer.target().depth == plain.depth
+                );
             }
         }
     }
@@ -174,15 +201,24 @@ fn every_image_of_a_flight_with_jumps_is_the_plain_one() {
     flights::<Solid>(|c| c);
 }
 
-/// The simulated machine draws the plain image however structures and regions are dealt, says what it answers, and takes as long
-/// as its busiest unit.
+/// The simulated machine draws the plain image however structures and regions are dealt, says what it
+/// answers, and takes as long as its busiest unit.
 fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     let mut rng = Pcg32::new(6, 9);
     let scene = soup::<S>(&mut rng, 200, make);
-    for (case, (distribution, allocation)) in [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1)].into_iter().enumerate() {
-        let machine = Machine { processors: 3, renderers: 2, distribution, allocation, overlap: case % 2 == 0, ..Machine::default() };
+    for (case, (distribution, allocation)) in [(0, 0), (1, 0), (2, 0), (0, 1), (2, 1)].into_iter().enumerate()
+    {
+        let machine = Machine {
+            processors: 3,
+            renderers: 2,
+            distribution,
+            allocation,
+            overlap: case % 2 == 0,
+            ..Machine::default()
+        };
         let params = Params { machine, leaf_primitives: 4, check_interval: 3, ..Params::default() };
-        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet)
+            .expect("not cancelled");
         let (mut memory, mut hidden, mut work) = (Memory::default(), 0, 0);
         for view in crate::scene::random_views(&scene, 6, 4) {
             let view = View { width: 300, height: view.height.min(200), ..view };
@@ -200,7 +236,8 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
                     told[p.at()].get_or_insert(*v);
                 }
             }
-            let mut drawn: Vec<PrimId> = scene.live().iter().copied().filter(|p| told[p.at()] == Some(Verdict::Visible)).collect();
+            let mut drawn: Vec<PrimId> =
+                scene.live().iter().copied().filter(|p| told[p.at()] == Some(Verdict::Visible)).collect();
             hidden += told.iter().filter(|t| **t == Some(Verdict::Hidden)).count();
             drawn.sort_unstable();
             assert_eq!(drawn, list.ascending(), "case {case}: told and answered");
@@ -216,9 +253,15 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
 }
 
 fn work_of_renderers<S: Faces>(notes: &[Evidence<S>], case: usize) -> usize {
-    let mut work: Vec<_> = notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some((w.unit, w.from, w.to)) } else { None }).collect();
+    let mut work: Vec<_> = notes
+        .iter()
+        .filter_map(|n| if let Evidence::Worked(w) = n { Some((w.unit, w.from, w.to)) } else { None })
+        .collect();
     work.sort();
-    assert!(work.windows(2).all(|w| w[0].0 != w[1].0 || w[0].2 <= w[1].1), "case {case}: no unit does two things at a time");
+    assert!(
+        work.windows(2).all(|w| w[0].0 != w[1].0 || w[0].2 <= w[1].1),
+        "case {case}: no unit does two things at a time"
+    );
     work.iter().filter(|w| matches!(w.0, super::simulation::Unit::Renderer(_))).count()
 }
 
@@ -231,16 +274,31 @@ fn the_simulated_machine_draws_the_plain_image() {
 /// Boxes of all sizes just before, at and just behind a wall that fills the image: only the last are hidden.
 #[test]
 fn a_wall_hides_what_lies_behind_it_only() {
-    let points = [(-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0)].map(|(x, y)| Vec3::new(x, y, -10.0)).into();
-    let scene = Scene::<Solid>::new(Parts::simple("a wall", points, vec![[0, 1, 2], [0, 2, 3]])).expect("valid");
-    let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far: 100.0 };
+    let points = [(-90.0, -90.0), (90.0, -90.0), (90.0, 90.0), (-90.0, 90.0)]
+        .map(|(x, y)| Vec3::new(x, y, -10.0))
+        .into();
+    let scene =
+        Scene::<Solid>::new(Parts::simple("a wall", points, vec![[0, 1, 2], [0, 2, 3]])).expect("valid");
+    let eye = Eye {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov: std::f32::consts::FRAC_PI_2,
+        near: 0.5,
+        far: 100.0,
+    };
     let mut buffer = Buffer::default();
     buffer.begin_depths(&View { eye, width: 200, height: 150 });
     buffer.draw(&scene, scene.live(), &Options::default());
     for half in [0.3, 1.0, 4.0] {
         for (x, y) in [(0.0, 0.0), (-3.0, 2.0), (5.0, -4.0), (7.0, 6.0)] {
-            for (depth, is_hidden) in [(9.95, false), (9.999, false), (10.0, false), (10.001, true), (12.0, true)] {
-                let bounds = Aabb { min: Vec3::new(x - half, y - half, -depth - half), max: Vec3::new(x + half, y + half, -depth) };
+            for (depth, is_hidden) in
+                [(9.95, false), (9.999, false), (10.0, false), (10.001, true), (12.0, true)]
+            {
+                let bounds = Aabb {
+                    min: Vec3::new(x - half, y - half, -depth - half),
+                    max: Vec3::new(x + half, y + half, -depth),
+                };
                 let told = hides(&mut buffer, &bounds, Nobody).map(|a| a.is_hidden);
                 assert_eq!(told, Some(is_hidden), "{half} wide at ({x}, {y}), {depth} deep");
             }
@@ -248,33 +306,55 @@ fn a_wall_hides_what_lies_behind_it_only() {
     }
 }
 
-/// A structure over two regions of the screen, hidden in one and seen in the other: it is drawn whichever answers last.
+/// A structure over two regions of the screen, hidden in one and seen in the other: it is drawn whichever
+/// answers last.
 #[test]
 fn a_structure_shows_if_one_region_says_so() {
     for side in [-1.0, 1.0] {
-        let mut points: Vec<_> = [(0.0, -6.0), (0.0, 6.0), (6.0, 6.0), (6.0, -6.0)].map(|(x, y)| glam::vec3(x * side, y, -5.0)).into();
+        let mut points: Vec<_> = [(0.0, -6.0), (0.0, 6.0), (6.0, 6.0), (6.0, -6.0)]
+            .map(|(x, y)| glam::vec3(x * side, y, -5.0))
+            .into();
         let mut prims = vec![[0, 1, 2], [0, 2, 3]];
         for k in 0..6 {
             let (x, first) = (k as f32 * 0.4 - 1.2, points.len() as u32);
             points.extend([(x, 0.5), (x + 0.4, 0.5), (x, 1.5)].map(|(x, y)| glam::vec3(x, y, -10.0)));
             prims.push([first, first + 1, first + 2]);
         }
-        let scene = Arc::new(Scene::<Solid>::new(Parts::simple("a row half behind a wall", points, prims)).expect("valid"));
+        let scene = Arc::new(
+            Scene::<Solid>::new(Parts::simple("a row half behind a wall", points, prims)).expect("valid"),
+        );
         for (renderers, overlap) in [(1, true), (2, true), (2, false)] {
-            let machine = Machine { processors: 2, renderers, overlap, farthest_first: false, ..Machine::default() };
+            let machine =
+                Machine { processors: 2, renderers, overlap, farthest_first: false, ..Machine::default() };
             let params = Params { machine, leaf_primitives: 6, ..Params::default() };
-            let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+            let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet)
+                .expect("not cancelled");
             let (mut memory, mut asked) = (Memory::default(), Recorder::new(usize::MAX));
             // First the row lies beyond the far plane, so that the wall is on the list alone.
             for far in [8.0, 100.0] {
-                let eye = Eye { position: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: std::f32::consts::FRAC_PI_2, near: 0.5, far };
+                let eye = Eye {
+                    position: Vec3::ZERO,
+                    target: Vec3::NEG_Z,
+                    up: Vec3::Y,
+                    fov: std::f32::consts::FRAC_PI_2,
+                    near: 0.5,
+                    far,
+                };
                 let view = View { eye, width: 256, height: 128 };
                 let mut list = DrawList::default();
                 HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut asked);
-                assert_eq!(render(&scene, &view, &list.prims), render(&scene, &view, scene.live()), "wall at {side}, {renderers} renderers");
+                assert_eq!(
+                    render(&scene, &view, &list.prims),
+                    render(&scene, &view, scene.live()),
+                    "wall at {side}, {renderers} renderers"
+                );
             }
-            let answers = asked.notes.iter().filter(|n| matches!(n, Evidence::Worked(w) if w.job == super::simulation::Job::Answer));
-            let told: Vec<u32> = answers.map(|n| if let Evidence::Worked(w) = n { w.count } else { 0 }).collect();
+            let answers = asked
+                .notes
+                .iter()
+                .filter(|n| matches!(n, Evidence::Worked(w) if w.job == super::simulation::Job::Answer));
+            let told: Vec<u32> =
+                answers.map(|n| if let Evidence::Worked(w) = n { w.count } else { 0 }).collect();
             assert!(told.contains(&0) && told.contains(&1), "one region hides it and one shows it: {told:?}");
         }
     }
@@ -286,7 +366,8 @@ fn threads_leave_no_trace() {
     let scene = soup::<Solid>(&mut rng, 6000, |c| c);
     for form in [0, 1] {
         let params = Params { form, ..Params::default() };
-        let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet).expect("not cancelled");
+        let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet)
+            .expect("not cancelled");
         let views = crate::scene::random_views(&scene, 5, 4);
         let run = || {
             let mut memory = Memory::default();

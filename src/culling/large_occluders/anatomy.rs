@@ -1,5 +1,5 @@
-//! The parts of the method by themselves: one eye, some occluders, one box. For figures, benchmarks and tests, which
-//! all look at the very functions that the method runs.
+//! The parts of the method by themselves: one eye, some occluders, one box. For figures, benchmarks and
+//! tests, which all look at the very functions that the method runs.
 
 use super::joint::{Candidate, Scratch, jointly};
 use super::occluders::Occluders;
@@ -32,10 +32,11 @@ pub struct Tangent<V> {
 }
 
 impl<S: Shape> Blockers<S> {
-    /// Occluders from polygons (segments in flatland) over shared points, front side counter-clockwise. Polygons
-    /// without area are left out, so check [`Blockers::len`].
+    /// Occluders from polygons (segments in flatland) over shared points, front side counter-clockwise.
+    /// Polygons without area are left out, so check [`Blockers::len`].
     pub fn new(points: &[S::Vector], polygons: &[Vec<u32>]) -> Self {
-        let faces: Vec<Face> = polygons.iter().map(|c| Face { corners: c.clone(), prims: Vec::new() }).collect();
+        let faces: Vec<Face> =
+            polygons.iter().map(|c| Face { corners: c.clone(), prims: Vec::new() }).collect();
         Self { occluders: Occluders::new(points, &faces), margin: Margin::GEOMETRIC }
     }
     /// Demands what the pixels of a view demand, where it is otherwise plain geometry.
@@ -74,17 +75,37 @@ impl<S: Shape> Blockers<S> {
             return vec![full.occluder as usize];
         }
         let members = jointly(&self.occluders, &candidates, &mut Scratch::default());
-        candidates.iter().enumerate().filter(|(i, _)| members >> i & 1 == 1).map(|(_, c)| c.occluder as usize).collect()
+        candidates
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| members >> i & 1 == 1)
+            .map(|(_, c)| c.occluder as usize)
+            .collect()
     }
-    /// The supporting and the separating plane through each edge of an occluder, for an eye; `None` where the edge's
-    /// line meets the box, empty where the box lies on the eye's side.
-    pub fn planes(&self, id: usize, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Vec<Option<[Tangent<S::Vector>; 2]>> {
+    /// The supporting and the separating plane through each edge of an occluder, for an eye; `None` where the
+    /// edge's line meets the box, empty where the box lies on the eye's side.
+    pub fn planes(
+        &self,
+        id: usize,
+        bounds: &Aabb<S::Vector>,
+        eye: S::Vector,
+    ) -> Vec<Option<[Tangent<S::Vector>; 2]>> {
         let sight = Sight::of(&self.occluders, id as u32, S::widened(eye), self.margin);
-        let relation = Relation::new(&self.occluders, id as u32, if sight.side == 0 { 1 } else { sight.side }, bounds, false);
+        let relation = Relation::new(
+            &self.occluders,
+            id as u32,
+            if sight.side == 0 { 1 } else { sight.side },
+            bounds,
+            false,
+        );
         let outline = self.occluders.outline(id as u32);
         let tangents = relation.planes.iter().enumerate().map(|(i, planes)| {
             let Planes::Tangent(pair) = planes else { return None };
-            let edge = if outline.len() == 2 { vec![outline[i]] } else { vec![outline[i], outline[(i + 1) % outline.len()]] };
+            let edge = if outline.len() == 2 {
+                vec![outline[i]]
+            } else {
+                vec![outline[i], outline[(i + 1) % outline.len()]]
+            };
             Some((*pair).map(|plane| Tangent {
                 vertex: S::rounded(corner::<S>(bounds, plane.vertex)),
                 normal: plane.normal,
@@ -98,12 +119,15 @@ impl<S: Shape> Blockers<S> {
     pub fn area_angle(&self, id: usize, from: S::Vector) -> f64 {
         selection::area_angle(self.occluders.get(id as u32), S::widened(from))
     }
-    /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a number that
-    /// depends on all of them.
+    /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a
+    /// number that depends on all of them.
     pub fn make_relations(&self, bounds: &Aabb<S::Vector>, eye: S::Vector, naive: bool) -> f64 {
         let side = |id: u32| Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
-        let arm = |planes: &Planes<S::Vector>| if let Planes::Tangent([plane, _]) = planes { f64::from(plane.normal.get(0)) } else { 1.0 };
-        let relation = |id: u32| Relation::new(&self.occluders, id, if side(id) < 0 { -1 } else { 1 }, bounds, naive);
+        let arm = |planes: &Planes<S::Vector>| {
+            if let Planes::Tangent([plane, _]) = planes { f64::from(plane.normal.get(0)) } else { 1.0 }
+        };
+        let relation =
+            |id: u32| Relation::new(&self.occluders, id, if side(id) < 0 { -1 } else { 1 }, bounds, naive);
         (0..self.len() as u32).map(|id| relation(id).planes.iter().map(arm).sum::<f64>()).sum()
     }
 }
@@ -118,20 +142,31 @@ pub struct Kept<S: Shape> {
 impl<S: Shape> Blockers<S> {
     /// The relations of all occluders to boxes, for an eye.
     pub fn keep(&self, boxes: &[Aabb<S::Vector>], eye: S::Vector) -> Kept<S> {
-        let side = |id: u32| if Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 };
+        let side = |id: u32| {
+            if Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 }
+        };
         let all = boxes.iter().flat_map(|b| (0..self.len() as u32).map(move |id| (b, id)));
         let relations = all.map(|(b, id)| Relation::new(&self.occluders, id, side(id), b, false)).collect();
-        let depth = |b: &Aabb<S::Vector>| b.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max);
+        let depth = |b: &Aabb<S::Vector>| {
+            b.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max)
+        };
         Kept { relations, depths: boxes.iter().map(depth).collect() }
     }
-    /// Checks kept relations from an eye on the same sides of the occluders, each occluder looked at once as in a frame, for
-    /// timing. How many are partial, and how many full.
+    /// Checks kept relations from an eye on the same sides of the occluders, each occluder looked at once as
+    /// in a frame, for timing. How many are partial, and how many full.
     pub fn check(&self, kept: &Kept<S>, eye: S::Vector) -> [usize; 2] {
-        let sights: Vec<Sight<S>> = (0..self.len() as u32).map(|id| Sight::of(&self.occluders, id, S::widened(eye), self.margin)).collect();
+        let sights: Vec<Sight<S>> = (0..self.len() as u32)
+            .map(|id| Sight::of(&self.occluders, id, S::widened(eye), self.margin))
+            .collect();
         let mut counts = [0; 2];
         for (relations, depth) in kept.relations.chunks(self.len().max(1)).zip(&kept.depths) {
             for (relation, sight) in relations.iter().zip(&sights).filter(|(r, s)| r.side == s.side) {
-                let seen = relation.classify(sight, self.occluders.thickness(relation.occluder), *depth, self.margin);
+                let seen = relation.classify(
+                    sight,
+                    self.occluders.thickness(relation.occluder),
+                    *depth,
+                    self.margin,
+                );
                 counts[0] += usize::from(seen.occlusion == Occlusion::Partial);
                 counts[1] += usize::from(seen.occlusion == Occlusion::Full);
             }
@@ -141,14 +176,24 @@ impl<S: Shape> Blockers<S> {
 }
 
 /// One of the two of [`tangent_corners`], for timing: by table, or by looking at every corner.
-pub fn tangent_corners_by<S: Shape>(from: S::Vector, to: S::Vector, bounds: &Aabb<S::Vector>, naive: bool) -> Option<[u8; 2]> {
+pub fn tangent_corners_by<S: Shape>(
+    from: S::Vector,
+    to: S::Vector,
+    bounds: &Aabb<S::Vector>,
+    naive: bool,
+) -> Option<[u8; 2]> {
     let edge = Edge { from: S::widened(from), along: S::widened(to) - S::widened(from) };
     if naive { S::tangents_naive(&edge, bounds) } else { S::tangents(&edge, bounds) }
 }
 
-/// The two box corners at which planes through an edge touch it, by table and by looking at every corner (Section 2.1);
+/// The two box corners at which planes through an edge touch it, by table and by looking at every corner
+/// (Section 2.1);
 /// `None` where the edge's line meets the box. In flatland `to` is not used.
-pub fn tangent_corners<S: Shape>(from: S::Vector, to: S::Vector, bounds: &Aabb<S::Vector>) -> [Option<[u8; 2]>; 2] {
+pub fn tangent_corners<S: Shape>(
+    from: S::Vector,
+    to: S::Vector,
+    bounds: &Aabb<S::Vector>,
+) -> [Option<[u8; 2]>; 2] {
     let edge = Edge { from: S::widened(from), along: S::widened(to) - S::widened(from) };
     [S::tangents(&edge, bounds), S::tangents_naive(&edge, bounds)]
 }

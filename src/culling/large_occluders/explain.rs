@@ -43,7 +43,14 @@ pub struct Chosen {
 
 impl Chosen {
     /// An occluder of a list with its rank there.
-    pub fn of<S: Shape>(occluders: &Occluders<S>, id: u32, rank: usize, area_angle: f32, [leaf, direction]: [u32; 2], new: bool) -> Self {
+    pub fn of<S: Shape>(
+        occluders: &Occluders<S>,
+        id: u32,
+        rank: usize,
+        area_angle: f32,
+        [leaf, direction]: [u32; 2],
+        new: bool,
+    ) -> Self {
         Self { occluder: id, name: occluders.name(id), rank: rank as u32, area_angle, leaf, direction, new }
     }
 }
@@ -108,25 +115,34 @@ impl Related {
         let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
         let d = self.decisive;
         let why = match self.occlusion {
-            Occlusion::None if self.behind[1] <= 0.0 => format!("{who} lies wholly on the eye's side of {by}: no occlusion."),
+            Occlusion::None if self.behind[1] <= 0.0 => {
+                format!("{who} lies wholly on the eye's side of {by}: no occlusion.")
+            }
             Occlusion::None => format!(
-                "The eye is outside a separating {plane} of {by} and {who}, by {} units: no part of the one is behind the other.",
+                "The eye is outside a separating {plane} of {by} and {who}, by {} units: no part of the one \
+                 is behind the other.",
                 short(-d.distance as f32)
             ),
             Occlusion::Partial if self.behind[0] <= 0.0 => {
-                format!("The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial occlusion.")
+                format!(
+                    "The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial \
+                     occlusion."
+                )
             }
             Occlusion::Partial if d.distance < 0.0 => format!(
-                "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, by {} units: partial occlusion.",
+                "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, \
+                 by {} units: partial occlusion.",
                 short(-d.distance as f32)
             ),
             Occlusion::Partial => format!(
-                "{who} is behind {by} by less than the margin that pixels need (inside by {} units, {} needed): partial occlusion.",
+                "{who} is behind {by} by less than the margin that pixels need (inside by {} units, {} \
+                 needed): partial occlusion.",
                 short(d.distance as f32),
                 short(d.needed as f32)
             ),
             Occlusion::Full => format!(
-                "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {} units, where {} are needed: full occlusion.",
+                "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {} units, \
+                 where {} are needed: full occlusion.",
                 self.edges,
                 short(d.distance as f32),
                 short(d.needed as f32)
@@ -156,14 +172,21 @@ const MEMBERS: usize = 16;
 
 impl Joined {
     /// The members of a set that [`super::jointly`] found.
-    pub fn of<S: Shape>(occluders: &Occluders<S>, owner: Owner, candidates: &[Candidate], members: Members) -> Self {
-        let mut joined = Self { owner, count: 0, candidates: candidates.len() as u32, members: [0; MEMBERS], shared: 0 };
+    pub fn of<S: Shape>(
+        occluders: &Occluders<S>,
+        owner: Owner,
+        candidates: &[Candidate],
+        members: Members,
+    ) -> Self {
+        let mut joined =
+            Self { owner, count: 0, candidates: candidates.len() as u32, members: [0; MEMBERS], shared: 0 };
         for (_, candidate) in candidates.iter().enumerate().filter(|(i, _)| members >> i & 1 == 1) {
             if let Some(to) = joined.members.get_mut(joined.count as usize) {
                 *to = candidate.occluder;
             }
             joined.count += 1;
-            joined.shared += (occluders.keys(candidate.occluder).len() as u32).saturating_sub(candidate.seen.inside.count_ones());
+            joined.shared += (occluders.keys(candidate.occluder).len() as u32)
+                .saturating_sub(candidate.seen.inside.count_ones());
         }
         joined
     }
@@ -261,7 +284,10 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("occluder_prim", n.name.0),
                 Field { name: "occlusion", value: Value::Word(n.result().into()) },
                 switch("reused", n.reused),
-                Field { name: "eye_side", value: Value::Word(if n.side > 0 { "front" } else { "back" }.into()) },
+                Field {
+                    name: "eye_side",
+                    value: Value::Word(if n.side > 0 { "front" } else { "back" }.into()),
+                },
                 number("eye_height_units", n.height),
                 number("box_nearest_behind_units", n.behind[0]),
                 number("box_farthest_behind_units", n.behind[1]),
@@ -270,12 +296,18 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 number("viewpoint_distance_units", n.decisive.distance),
                 number("needed_units", n.decisive.needed),
                 number("margin_units", n.decisive.distance - n.decisive.needed),
-                Field { name: "supporting_satisfied", value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)) },
+                Field {
+                    name: "supporting_satisfied",
+                    value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)),
+                },
             ],
             Self::Joined(n) => vec![
                 owner_field(n.owner),
                 integer("members", n.count),
-                Field { name: "occluders", value: Value::List(n.members().iter().map(|&m| m.into()).collect()) },
+                Field {
+                    name: "occluders",
+                    value: Value::List(n.members().iter().map(|&m| m.into()).collect()),
+                },
                 integer("partial_occluders", n.candidates),
                 integer("shared_edges_ignored", n.shared),
             ],
@@ -285,7 +317,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
     fn sentence(&self, _: &Scene<S>) -> String {
         match self {
             Self::Chosen(n) => format!(
-                "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf {} and direction {}{}.",
+                "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of \
+                 those listed for leaf {} and direction {}{}.",
                 S::PRIM,
                 n.name,
                 n.rank + 1,
@@ -297,7 +330,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Tested(n) => n.sentence(),
             Self::Related(n) => n.sentence::<S>(),
             Self::Joined(n) => format!(
-                "{} connected occluders hide {} together: the eye is inside all their supporting planes but the {} through edges that they share from opposite sides.",
+                "{} connected occluders hide {} together: the eye is inside all their supporting planes but \
+                 the {} through edges that they share from opposite sides.",
                 n.count,
                 owner_name(n.owner),
                 n.shared
@@ -308,7 +342,14 @@ impl<S: Shape> Note<S> for Evidence<S> {
 }
 
 /// Draws the active occluders, and the evidence of a note.
-pub fn draw<S: Shape>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+pub fn draw<S: Shape>(
+    seen: &Seen,
+    scene: &Scene<S>,
+    index: &Index<S>,
+    view: &View<S>,
+    note: Option<&Evidence<S>>,
+    to: &mut Drawing<S::Vector>,
+) {
     for &id in &seen.active {
         outline(index, id, Layer::Evidence, Role::Occluder, to);
     }
@@ -366,7 +407,16 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
     for (i, planes) in relation.planes.iter().enumerate() {
         let Planes::Tangent([supporting, separating]) = planes else { continue };
         let decisive = i == note.decisive.edge as usize;
-        draw_plane::<S>(index, note, i, supporting.vertex, if decisive { Role::Evidence } else { Role::Faint }, view, &bounds, to);
+        draw_plane::<S>(
+            index,
+            note,
+            i,
+            supporting.vertex,
+            if decisive { Role::Evidence } else { Role::Faint },
+            view,
+            &bounds,
+            to,
+        );
         if S::Vector::AXES == 2 && note.occlusion != Occlusion::Full {
             draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
         }
@@ -378,8 +428,8 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
     }
 }
 
-/// A plane through an edge and a corner of the box, from the box past the edge toward the eye: a line in flatland, in
-/// space the triangle between the corner and the edge, drawn out.
+/// A plane through an edge and a corner of the box, from the box past the edge toward the eye: a line in
+/// flatland, in space the triangle between the corner and the edge, drawn out.
 #[allow(clippy::too_many_arguments)]
 fn draw_plane<S: Shape>(
     index: &Index<S>,
@@ -394,7 +444,8 @@ fn draw_plane<S: Shape>(
     let at = corner::<S>(bounds, vertex);
     let ends = index.occluders.edges(note.occluder);
     let flat = S::Vector::AXES == 2;
-    let ends = if flat { vec![ends[edge].from] } else { vec![ends[edge].from, ends[(edge + 1) % ends.len()].from] };
+    let ends =
+        if flat { vec![ends[edge].from] } else { vec![ends[edge].from, ends[(edge + 1) % ends.len()].from] };
     let reach = (S::widened(view.eye.position) - at).length() * 1.15;
     let drawn_out = |p: S::Point| {
         let ray = p - at;

@@ -1,18 +1,18 @@
 //! Joint occlusion by connected occluders (Section 2).
 //!
-//! Occluders that partially occlude a box hide it together where the eye lies inside all their supporting planes but
-//! those through edges that two of them share and lie on opposite sides of as seen from the eye. Why that suffices:
-//! walk the border of their union as seen from the eye, each edge with its occluder on the left; an edge that
-//! two share from opposite sides is walked both ways and cancels. If a point of the box lies to the left of all that is
-//! left, every step turns counter-clockwise around it, so the border winds around it, so some occluder
-//! covers it; and the box lies behind all their planes. A shared edge with both on one side (a silhouette edge, Figure 4)
-//! does not cancel; an outline that is not convex (Figure 5 b) has an edge whose line the box crosses; occluders
-//! that share nothing (5 c) keep all their edges.
+//! Occluders that partially occlude a box hide it together where the eye lies inside all their supporting
+//! planes but those through edges that two of them share and lie on opposite sides of as seen from the eye.
+//! Why that suffices: walk the border of their union as seen from the eye, each edge with its occluder on the
+//! left; an edge that two share from opposite sides is walked both ways and cancels. If a point of the box
+//! lies to the left of all that is left, every step turns counter-clockwise around it, so the border winds
+//! around it, so some occluder covers it; and the box lies behind all their planes. A shared edge with both
+//! on one side (a silhouette edge, Figure 4) does not cancel; an outline that is not convex (Figure 5 b) has
+//! an edge whose line the box crosses; occluders that share nothing (5 c) keep all their edges.
 //!
-//! The largest set that passes is found by striking out, until nothing changes, each occluder with a failed edge that
-//! no other one cancels. Whatever passes survives, since an edge that fails here fails in every smaller set;
-//! so components need no separate search. Where more than two occluders share an edge the better ranked ones are paired.
-//! Cost: O(edges of the candidates) a pass, rarely more than three passes.
+//! The largest set that passes is found by striking out, until nothing changes, each occluder with a failed
+//! edge that no other one cancels. Whatever passes survives, since an edge that fails here fails in every
+//! smaller set; so components need no separate search. Where more than two occluders share an edge the better
+//! ranked ones are paired. Cost: O(edges of the candidates) a pass, rarely more than three passes.
 
 use super::occluders::Occluders;
 use super::relation::Classified;
@@ -40,7 +40,11 @@ pub struct Scratch {
 pub type Members = u64;
 
 /// The largest set of candidates that jointly hides the box; 0 if none does. At most 64 candidates.
-pub fn jointly<S: Shape>(occluders: &Occluders<S>, candidates: &[Candidate], scratch: &mut Scratch) -> Members {
+pub fn jointly<S: Shape>(
+    occluders: &Occluders<S>,
+    candidates: &[Candidate],
+    scratch: &mut Scratch,
+) -> Members {
     let mut alive: Members = 0;
     for (i, candidate) in candidates.iter().enumerate() {
         alive |= u64::from(candidate.seen.behind) << i;

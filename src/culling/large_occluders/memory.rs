@@ -2,7 +2,8 @@
 //!
 //! A relation holds as long as the eye stays on one side of the occluder, so it is checked and not computed
 //! again. Those below a node that is decided as a whole are forgotten; those outside the frustum are kept.
-//! At most [`KEPT`] relations a node are kept, so memory is bounded by the tree and not by the length of a walk.
+//! At most [`KEPT`] relations a node are kept, so memory is bounded by the tree and not by the length of a
+//! walk.
 
 use super::relation::{Relation, Sight};
 use super::space::Shape;
@@ -10,8 +11,8 @@ use crate::culling::Verdict;
 use crate::geometry::{NodeId, ObjectId};
 use crate::index::KdTree;
 
-/// Relations that one node or object keeps at most, twice the largest set of active occluders: one set for the
-/// way a walker looks and one for where it looked before.
+/// Relations that one node or object keeps at most, twice the largest set of active occluders: one set for
+/// the way a walker looks and one for where it looked before.
 const KEPT: usize = 128;
 
 /// See the module. Made for one scene and its parameters.
@@ -88,8 +89,14 @@ impl<S: Shape> Memory<S> {
         });
         fates.fill(None);
     }
-    /// The occluders near a detail object for a direction, chosen by `choose` if another direction was asked for last; how many.
-    pub fn near(&mut self, object: ObjectId, direction: u32, choose: impl FnOnce(&mut Vec<(u32, f32)>)) -> usize {
+    /// The occluders near a detail object for a direction, chosen by `choose` if another direction was asked
+    /// for last; how many.
+    pub fn near(
+        &mut self,
+        object: ObjectId,
+        direction: u32,
+        choose: impl FnOnce(&mut Vec<(u32, f32)>),
+    ) -> usize {
         let slot = &mut self.near[object.at()];
         if slot.as_ref().is_none_or(|n| n.0 != direction) {
             choose(&mut self.list);
@@ -117,7 +124,8 @@ impl<S: Shape> Memory<S> {
     pub fn sight_of(&self, id: u32) -> &Sight<S> {
         &self.sights[id as usize]
     }
-    /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look first.
+    /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look
+    /// first.
     pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {
         let kept = self.of(owner);
         let fits = |r: &Relation<S>| r.occluder == occluder && r.side == side;

@@ -2,16 +2,18 @@
 //!
 //! Coorg and Teller, "Real-Time Occlusion Culling for Models with Large Occluders", I3D 1997,
 //! <https://doi.org/10.1145/253284.253312>. A kD-tree is walked from the root (Figure 9); each node's box is
-//! tested against a small set of occluders by supporting and separating planes (Section 2, [`relation`]), one by one
-//! and as connected sets ([`joint`]); only those that partially occlude a node are passed to its children. The set is
-//! chosen by place and viewing direction (Section 3.1, [`selection`]); the planes are kept from frame to frame
-//! (Section 3, [`memory`]); what survives is tested object by object against the occluders near it (Section 3.2).
+//! tested against a small set of occluders by supporting and separating planes (Section 2, [`relation`]), one
+//! by one and as connected sets ([`joint`]); only those that partially occlude a node are passed to its
+//! children. The set is chosen by place and viewing direction (Section 3.1, [`selection`]); the planes are
+//! kept from frame to frame (Section 3, [`memory`]); what survives is tested object by object against the
+//! occluders near it (Section 3.2).
 //!
-//! Departures: occlusion is demanded with a margin, so that it also holds for the pixels of the rasterizer (see
+//! Departures: occlusion is demanded with a margin, so that it also holds for the pixels of the rasterizer
+//! (see
 //! [`relation`]); where an occluder's own plane cuts a box the relation is partial, not none, since what
 //! lies behind it can be occluded; the jointly occluding set need not be a whole component (see [`joint`]);
-//! occluders are picked from a leaf's longer list by where they are used (see [`selection`]); detail objects are also
-//! tested against the frustum.
+//! occluders are picked from a leaf's longer list by where they are used (see [`selection`]); detail objects
+//! are also tested against the frustum.
 //! Cost: O(occluders · nodes visited); memory O(nodes · occluders).
 
 pub mod anatomy;
@@ -62,7 +64,15 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         // The paper's: height 8, 32 occluders for each of 8 directions.
-        Self { tree_height: 8, occluders: 32, directions: 8, marginal_gain: 0, cache: true, detail_objects: true, backface_culling: false }
+        Self {
+            tree_height: 8,
+            occluders: 32,
+            directions: 8,
+            marginal_gain: 0,
+            cache: true,
+            detail_objects: true,
+            backface_culling: false,
+        }
     }
 }
 
@@ -83,7 +93,10 @@ pub struct Index<S: Shape> {
 
 impl Params {
     fn key<S: Space>(&self, scene: &Scene<S>) -> saved::Key {
-        saved::Key { scene: scene.hash_hex(), params: [self.tree_height, self.directions, self.occluders, self.marginal_gain] }
+        saved::Key {
+            scene: scene.hash_hex(),
+            params: [self.tree_height, self.directions, self.occluders, self.marginal_gain],
+        }
     }
 }
 
@@ -94,11 +107,20 @@ const DETAIL_PRIMS: u32 = 4;
 
 impl<S: Shape> Index<S> {
     /// Builds it, with the selection out of `saved` bytes if there are any. `Ok(None)` when cancelled.
-    fn build(scene: &Arc<Scene<S>>, params: &Params, saved: Option<&[u8]>, progress: &dyn Progress) -> Result<Option<Self>, String> {
+    fn build(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self>, String> {
         progress.report(0.0, "building the kD-tree");
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
-        let Some(tree) = KdTree::build(boxes, params.tree_height, || progress.cancelled()) else { return Ok(None) };
-        let Some(faces) = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 }) else { return Ok(None) };
+        let Some(tree) = KdTree::build(boxes, params.tree_height, || progress.cancelled()) else {
+            return Ok(None);
+        };
+        let Some(faces) = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 }) else {
+            return Ok(None);
+        };
         let all = Occluders::<S>::new(scene.points(), &faces);
         let rest = Part { whole: progress, start: 0.4, length: 0.55 };
         let gain = f64::from(params.marginal_gain) / 100.0;
@@ -114,7 +136,15 @@ impl<S: Shape> Index<S> {
         let occluders = Occluders::<S>::new(scene.points(), &faces);
         let (by_object, runs) = runs(scene, &tree);
         let selection = selection.renumbered(&kept);
-        Ok(Some(Self { tree, occluders, selection, details: details(scene), by_object, runs, saved: saved.into() }))
+        Ok(Some(Self {
+            tree,
+            occluders,
+            selection,
+            details: details(scene),
+            by_object,
+            runs,
+            saved: saved.into(),
+        }))
     }
     /// The primitives at and below a node, object by object within each leaf.
     fn objects_of(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
@@ -136,8 +166,10 @@ impl<S: Shape> Index<S> {
 /// The tree's primitives with those of each leaf sorted by object, and the beginnings of the runs.
 fn runs<S: Space>(scene: &Scene<S>, tree: &KdTree<S::Vector>) -> (Vec<PrimId>, Vec<(u32, ObjectId)>) {
     let mut order = tree.prims_below(NodeId(0)).to_vec();
-    let mut leaves: Vec<Range<usize>> =
-        (0..tree.nodes().len()).filter(|&n| tree.nodes()[n].is_leaf()).map(|n| tree.range(NodeId(n as u32))).collect();
+    let mut leaves: Vec<Range<usize>> = (0..tree.nodes().len())
+        .filter(|&n| tree.nodes()[n].is_leaf())
+        .map(|n| tree.range(NodeId(n as u32)))
+        .collect();
     leaves.sort_unstable_by_key(|r| r.start);
     let mut runs = Vec::new();
     for leaf in leaves {
@@ -161,7 +193,10 @@ fn details<S: Space>(scene: &Scene<S>) -> Vec<Option<Aabb<S::Vector>>> {
         *bounds = bounds.union(scene.prim_bounds(prim));
     }
     let most = scene.bounds().diagonal() * DETAIL_SHARE;
-    found.into_iter().map(|(count, bounds)| (count >= DETAIL_PRIMS && bounds.diagonal() <= most).then_some(bounds)).collect()
+    found
+        .into_iter()
+        .map(|(count, bounds)| (count >= DETAIL_PRIMS && bounds.diagonal() <= most).then_some(bounds))
+        .collect()
 }
 
 impl<S: Shape> Hierarchy<S> for Index<S> {
@@ -252,25 +287,50 @@ impl<S: Shape> Method<S> for LargeOccluders {
     const CARD: Card = Card {
         key: "large-occluders",
         name: "Large occluders",
-        summary: "Drops every node of a kD-tree that one large convex polygon, or connected ones together, hide from the Eye.",
+        summary: "Drops every node of a kD-tree that one large convex polygon, or connected ones together, \
+                  hide from the Eye.",
         paper: "Coorg and Teller. Real-Time Occlusion Culling for Models with Large Occluders. I3D 1997.",
         doi: "10.1145/253284.253312",
         conservative: true,
         code: CODE,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let height = knob("tree-height", "levels", "levels of the kD-tree; 8 gives 255 nodes", "Coorg and Teller 1997, Section 4");
+        let height = knob(
+            "tree-height",
+            "levels",
+            "levels of the kD-tree; 8 gives 255 nodes",
+            "Coorg and Teller 1997, Section 4",
+        );
         knobs.integer(height, 1..=24, &mut params.tree_height);
-        let most = knob("occluders", "", "how many occluders are active at most, k in the paper", "Coorg and Teller 1997, Section 3.1");
+        let most = knob(
+            "occluders",
+            "",
+            "how many occluders are active at most, k in the paper",
+            "Coorg and Teller 1997, Section 3.1",
+        );
         knobs.integer(most, 1..=64, &mut params.occluders);
-        let directions = knob("directions", "", "viewing directions that have a set of their own", "Coorg and Teller 1997, Section 3.1");
+        let directions = knob(
+            "directions",
+            "",
+            "viewing directions that have a set of their own",
+            "Coorg and Teller 1997, Section 3.1",
+        );
         knobs.integer(directions, 1..=64, &mut params.directions);
-        let meaning = "leaves out an occluder whose area-angle is below this share of the sum of the better ones; 0: never";
-        knobs.integer(knob("marginal-gain", "%", meaning, "Coorg and Teller 1997, Section 5"), 0..=100, &mut params.marginal_gain);
+        let meaning = "leaves out an occluder whose area-angle is below this share of the sum of the better \
+                       ones; 0: never";
+        knobs.integer(
+            knob("marginal-gain", "%", meaning, "Coorg and Teller 1997, Section 5"),
+            0..=100,
+            &mut params.marginal_gain,
+        );
         let cache = knob("cache", "", "keeps planes from frame to frame", "Coorg and Teller 1997, Section 3");
         knobs.switch(cache, &mut params.cache);
-        let detail =
-            knob("detail-objects", "", "tests what survives object by object against the occluders near it", "Coorg and Teller 1997, Section 3.2");
+        let detail = knob(
+            "detail-objects",
+            "",
+            "tests what survives object by object against the occluders near it",
+            "Coorg and Teller 1997, Section 3.2",
+        );
         knobs.switch(detail, &mut params.detail_objects);
         backface_knob(knobs, &mut params.backface_culling);
     }
@@ -281,7 +341,12 @@ impl<S: Shape> Method<S> for LargeOccluders {
     fn save(index: &Index<S>) -> Option<Vec<u8>> {
         Some(index.saved.to_vec())
     }
-    fn restore(scene: &Arc<Scene<S>>, params: &Params, saved: &[u8], progress: &dyn Progress) -> Result<Option<Index<S>>, String> {
+    fn restore(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: &[u8],
+        progress: &dyn Progress,
+    ) -> Result<Option<Index<S>>, String> {
         Index::build(scene, params, Some(saved), progress)
     }
     fn cull<O: Observer<Evidence<S>>>(
@@ -321,7 +386,14 @@ impl<S: Shape> Method<S> for LargeOccluders {
     fn apply(dense: &mut explain::Seen, _: &Scene<S>, note: &Evidence<S>) {
         note.apply(dense);
     }
-    fn explain(dense: &explain::Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        dense: &explain::Seen,
+        scene: &Scene<S>,
+        index: &Index<S>,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         explain::draw(dense, scene, index, view, note, to);
     }
 }
@@ -359,11 +431,25 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
         let mut list = Vec::new();
-        largest_from(&index.occluders, index.selection.list(leaf, direction).iter(), self.eye, self.params.occluders, &mut list);
+        largest_from(
+            &index.occluders,
+            index.selection.list(leaf, direction).iter(),
+            self.eye,
+            self.params.occluders,
+            &mut list,
+        );
         for (rank, &(id, area_angle)) in list.iter().enumerate() {
             let memory = &self.memory;
-            self.watch
-                .note(|| Evidence::Chosen(Chosen::of(&index.occluders, id, rank, area_angle, [leaf.0, direction], !memory.active.contains(&id))));
+            self.watch.note(|| {
+                Evidence::Chosen(Chosen::of(
+                    &index.occluders,
+                    id,
+                    rank,
+                    area_angle,
+                    [leaf.0, direction],
+                    !memory.active.contains(&id),
+                ))
+            });
             if self.looks_at(id) {
                 self.sets.push(id);
             }
@@ -379,7 +465,10 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let sight = self.memory.sight(id, |sight| {
             sight.look(occluders, id, eye, margin);
             // What is not drawn hides nothing.
-            if sight.side != 0 && one_sided && occluders.prims(id).iter().any(|&p| prim_faces_away(scene, position, p)) {
+            if sight.side != 0
+                && one_sided
+                && occluders.prims(id).iter().any(|&p| prim_faces_away(scene, position, p))
+            {
                 sight.side = 0;
             }
         });
@@ -395,7 +484,9 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         if planes != 0 {
             let test = self.frustum.test(&node.bounds, planes);
             let frustum = &self.frustum;
-            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test)));
+            self.watch.note(move || {
+                Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
+            });
             match test {
                 FrustumTest::Outside(_) => {
                     self.watch.event(Event::Line(line::OUTSIDE));
@@ -481,7 +572,14 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     }
 
     /// One occluder and one box.
-    fn test_one(&mut self, owner: Owner, bounds: &Aabb<S::Vector>, id: u32, depth: f64, near: usize) -> (Occlusion, Option<Candidate>) {
+    fn test_one(
+        &mut self,
+        owner: Owner,
+        bounds: &Aabb<S::Vector>,
+        id: u32,
+        depth: f64,
+        near: usize,
+    ) -> (Occlusion, Option<Candidate>) {
         let (index, margin) = (self.index, self.margin);
         let side = self.memory.sight_of(id).side;
         let kept = if self.params.cache { self.memory.find(owner, id, side, near) } else { None };
@@ -502,7 +600,18 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let sight = self.memory.sight_of(id);
         let thickness = index.occluders.thickness(id);
         let seen = relation.classify(sight, thickness, depth, margin);
-        self.watch.note(|| Evidence::Related(Related::of(&index.occluders, owner, relation, sight, seen, depth, margin, kept.is_some())));
+        self.watch.note(|| {
+            Evidence::Related(Related::of(
+                &index.occluders,
+                owner,
+                relation,
+                sight,
+                seen,
+                depth,
+                margin,
+                kept.is_some(),
+            ))
+        });
         let candidate = seen.behind.then_some(Candidate { occluder: id, side, seen });
         (seen.occlusion, candidate)
     }
@@ -517,8 +626,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
     }
 
-    /// Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out of view or that the
-    /// occluders near them hide.
+    /// Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out of
+    /// view or that the occluders near them hide.
     fn gather(&mut self, id: NodeId, cutting: u8) {
         let index = self.index;
         if !self.params.detail_objects {
@@ -550,8 +659,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         }
     }
 
-    /// Section 3.2: whether a detail object is hidden by what looks large from it toward the eye, since visibility between
-    /// two points goes both ways. Found out once a frame.
+    /// Section 3.2: whether a detail object is hidden by what looks large from it toward the eye, since
+    /// visibility between two points goes both ways. Found out once a frame.
     fn fate(&mut self, object: ObjectId, cutting: u8) -> Verdict {
         if let Some(known) = self.memory.fates[object.at()] {
             return known;
@@ -569,7 +678,9 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     fn is_outside(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, planes: u8) -> bool {
         let test = self.frustum.test(bounds, planes);
         let frustum = &self.frustum;
-        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Object(object), frustum, bounds, planes, test)));
+        self.watch.note(move || {
+            Evidence::Tested(Tested::of(Subject::Object(object), frustum, bounds, planes, test))
+        });
         matches!(test, FrustumTest::Outside(_))
     }
 
@@ -582,7 +693,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let near = self.memory.near(object, direction, |list| {
             let leaf = leaf_at::<S>(&index.tree, center);
             // What cuts or touches the object's box, as its own primitives do, cannot hide all of it.
-            let beside = index.selection.list(leaf, direction).iter().filter(|l| !index.occluders.cuts(l.0, bounds));
+            let beside =
+                index.selection.list(leaf, direction).iter().filter(|l| !index.occluders.cuts(l.0, bounds));
             largest_from(&index.occluders, beside, S::widened(center), most, list);
         });
         let start = self.sets.len();

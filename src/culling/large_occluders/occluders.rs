@@ -16,8 +16,8 @@ pub struct Occluder<S: Shape> {
     pub normal: S::Point,
     /// Its first corner.
     pub anchor: S::Point,
-    /// Its corners lie between these signed distances from the plane through `anchor`, world units: polygons of
-    /// a file are planar only up to rounding, so an occluder's plane is a thin slab.
+    /// Its corners lie between these signed distances from the plane through `anchor`, world units: polygons
+    /// of a file are planar only up to rounding, so an occluder's plane is a thin slab.
     pub slab: [f64; 2],
     /// Mean of its corners.
     pub center: S::Point,
@@ -36,7 +36,8 @@ pub struct Occluder<S: Shape> {
 pub struct Occluders<S: Shape> {
     all: Vec<Occluder<S>>,
     edges: Vec<Edge<S::Point>>,
-    /// For each edge the number of its pair of corners, which edges of other occluders have too; and its sense.
+    /// For each edge the number of its pair of corners, which edges of other occluders have too; and its
+    /// sense.
     keys: Vec<(u32, bool)>,
     key_count: usize,
     prims: Vec<PrimId>,
@@ -45,7 +46,8 @@ pub struct Occluders<S: Shape> {
 impl<S: Shape> Occluders<S> {
     /// Makes ready those faces that can hide anything: at most [`MAX_EDGES`] corners and some area.
     pub fn new(points: &[S::Vector], faces: &[Face]) -> Self {
-        let mut made = Self { all: Vec::new(), edges: Vec::new(), keys: Vec::new(), key_count: 0, prims: Vec::new() };
+        let mut made =
+            Self { all: Vec::new(), edges: Vec::new(), keys: Vec::new(), key_count: 0, prims: Vec::new() };
         let mut names: Vec<([u32; 2], u32)> = Vec::new();
         for (source, face) in faces.iter().enumerate().filter(|(_, f)| f.corners.len() <= MAX_EDGES) {
             let corners = corners_of::<S>(points, &face.corners);
@@ -57,7 +59,8 @@ impl<S: Shape> Occluders<S> {
             let (normal, anchor) = (vector * (1.0 / area), corners[0]);
             let heights = corners.iter().map(|c| normal.dot(*c - anchor));
             let slab = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
-            let center = corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
+            let center =
+                corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
             let (edge, prim) = (made.edges.len() as u32, made.prims.len() as u32);
             for i in 0..corners.len() {
                 let (name, sense) = S::edge_key(&face.corners, i);
@@ -67,7 +70,16 @@ impl<S: Shape> Occluders<S> {
             }
             made.prims.extend(&face.prims);
             let (edges, prims) = (edge..made.edges.len() as u32, prim..made.prims.len() as u32);
-            made.all.push(Occluder { normal, anchor, slab, center, area, source: source as u32, edges, prims });
+            made.all.push(Occluder {
+                normal,
+                anchor,
+                slab,
+                center,
+                area,
+                source: source as u32,
+                edges,
+                prims,
+            });
         }
         names.sort_unstable();
         for (i, (name, edge)) in names.iter().enumerate() {
@@ -138,14 +150,16 @@ impl<S: Shape> Occluders<S> {
         let ([low, high], slab) = (self.heights(id, bounds), self.all[id as usize].slab);
         low <= slab[1] && slab[0] <= high
     }
-    /// Signed distances of a box from the plane through an occluder's first corner: of its lowest and its highest corner.
+    /// Signed distances of a box from the plane through an occluder's first corner: of its lowest and its
+    /// highest corner.
     #[inline]
     pub fn heights(&self, id: u32, bounds: &Aabb<S::Vector>) -> [f64; 2] {
         let occluder = &self.all[id as usize];
         let (mut low, mut high) = (0.0, 0.0);
         for axis in 0..S::Vector::AXES {
             let (n, o) = (occluder.normal.get(axis), occluder.anchor.get(axis));
-            let (a, b) = (n * (f64::from(bounds.min.get(axis)) - o), n * (f64::from(bounds.max.get(axis)) - o));
+            let (a, b) =
+                (n * (f64::from(bounds.min.get(axis)) - o), n * (f64::from(bounds.max.get(axis)) - o));
             low += a.min(b);
             high += a.max(b);
         }

@@ -1,23 +1,27 @@
 //! One occluder and one box: supporting and separating planes (Section 2).
 //!
-//! Everything here is about the viewpoint P, one edge e of the occluder, and a corner t of the box. P lies inside
-//! the plane through e and t exactly if t lies on the occluder's side of the plane through P and e. Inside all
-//! *supporting* planes, every corner of the box lies on the occluder's side of every edge: full occlusion. Inside
-//! all *separating* planes, some corner does: partial occlusion. Besides, the occluder's own plane must separate
-//! P and the box; where it cuts the box, what lies behind it can still be occluded, so that is partial too.
+//! Everything here is about the viewpoint P, one edge e of the occluder, and a corner t of the box. P lies
+//! inside the plane through e and t exactly if t lies on the occluder's side of the plane through P and e.
+//! Inside all
+//! *supporting* planes, every corner of the box lies on the occluder's side of every edge: full occlusion.
+//! Inside all *separating* planes, some corner does: partial occlusion. Besides, the occluder's own plane
+//! must separate P and the box; where it cuts the box, what lies behind it can still be occluded, so that is
+//! partial too.
 //!
 //! # The margin
 //! The answer is to hold for the image, so a point that is called hidden must be hidden at every pixel center
-//! that any triangle through it could reach. Vertices are snapped to 1/256 pixel, so both outlines move by up to
-//! ε = √2/512 pixel, together 2ε. It suffices that every corner t of the box lies inside the plane through P and e by
-//! at least `lateral = δ·W` world units, with δ > 2ε pixels at unit depth and W the greatest view depth of the box.
-//! Let s be the least distance of the box behind the occluder's plane, h the height of P above it, |r| the
-//! distance of P from e's line, and ψ the angle between the plane through P and e and the nearest tangent plane. No
-//! corner is nearer to the line than s, and none makes an angle with the plane through P and e that is nearer to 0
-//! than ψ or nearer to π than P's own height: so each is inside by s·min(sin ψ, h/|r|) or more. As
+//! that any triangle through it could reach. Vertices are snapped to 1/256 pixel, so both outlines move by up
+//! to ε = √2/512 pixel, together 2ε. It suffices that every corner t of the box lies inside the plane through
+//! P and e by at least `lateral = δ·W` world units, with δ > 2ε pixels at unit depth and W the greatest view
+//! depth of the box. Let s be the least distance of the box behind the occluder's plane, h the height of P
+//! above it, |r| the distance of P from e's line, and ψ the angle between the plane through P and e and the
+//! nearest tangent plane. No corner is nearer to the line than s, and none makes an angle with the plane
+//! through P and e that is nearer to 0 than ψ or nearer to π than P's own height: so each is inside by
+//! s·min(sin ψ, h/|r|) or more. As
 //! `|r|·sin ψ` is P's distance from the supporting plane, the condition is
 //! `s · min(distance, h) ≥ |r| · lateral`, plus what f64 rounds (see [`ROUNDING`]).
-//! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping tilts it by at most 2ε·px/h; so
+//! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping tilts it by at most 2ε·px/h;
+//! so
 //! `s ≥ lateral + DEPTH_ROUNDING·(h + thickness)` keeps it in front.
 
 use super::occluders::Occluders;
@@ -28,15 +32,15 @@ use crate::geometry::{Aabb, View};
 const SNAP_PX: f64 = 1.0 / 128.0;
 /// Relative error of the 1/w that the rasterizer interpolates in 32 bits.
 const DEPTH_ROUNDING: f64 = 1.0 / (1u32 << 17) as f64;
-/// Relative error of a distance in f64, generously: a normal of products of exact differences, one sum of three
-/// products, is within 20 roundings of 2⁻⁵³; a tangent corner that lost a tie is off by as much.
+/// Relative error of a distance in f64, generously: a normal of products of exact differences, one sum of
+/// three products, is within 20 roundings of 2⁻⁵³; a tangent corner that lost a tie is off by as much.
 const ROUNDING: f64 = 1.0 / (1u64 << 46) as f64;
 
 /// Relative error of a distance by a unit normal that is kept in 32 bits.
 const NORMAL_ROUNDING: f64 = 1.0 / (1u32 << 22) as f64;
 
-/// A plane through an edge of the occluder and a corner of the box. Kept in 32 bits: what is kept from frame to frame is
-/// read from main memory.
+/// A plane through an edge of the occluder and a corner of the box. Kept in 32 bits: what is kept from frame
+/// to frame is read from main memory.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Plane<V> {
     /// Unit length, toward the occluder.
@@ -92,7 +96,8 @@ pub struct Relation<S: Shape> {
     pub occluder: u32,
     /// On which side of the occluder the eye is: 1 in front, −1 behind.
     pub side: i8,
-    /// Distances of the box's nearest and farthest corner behind the occluder, world units; negative: on the eye's side.
+    /// Distances of the box's nearest and farthest corner behind the occluder, world units; negative: on the
+    /// eye's side.
     pub behind: [f64; 2],
     /// Greatest distance of a tangent corner from its edge, world units; for the error bound.
     arm: f64,
@@ -123,8 +128,8 @@ pub struct Classified {
     pub behind: bool,
 }
 
-/// The test that decided a classification: for full occlusion the supporting plane that the eye is least inside of, for
-/// partial the one it is farthest outside of, for none the separating one.
+/// The test that decided a classification: for full occlusion the supporting plane that the eye is least
+/// inside of, for partial the one it is farthest outside of, for none the separating one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Decisive {
     /// The edge, and the corner of the box, that span the plane.
@@ -143,7 +148,8 @@ pub struct Sight<S: Shape> {
     pub side: i8,
     /// Distance of the eye from the occluder's slab, world units.
     pub height: f64,
-    /// By edge: the eye from the edge's first corner, that vector's length, and the eye's distance from the edge's line.
+    /// By edge: the eye from the edge's first corner, that vector's length, and the eye's distance from the
+    /// edge's line.
     pub edges: Vec<(S::Point, f64, f64)>,
     /// The greatest of those distances.
     reach: f64,
@@ -154,21 +160,31 @@ pub struct Sight<S: Shape> {
 pub struct Margin {
     /// World units per unit of view depth.
     pub lateral: f64,
-    /// Least height of the eye above an occluder: below it the near plane may cut a hole that the eye looks through.
+    /// Least height of the eye above an occluder: below it the near plane may cut a hole that the eye looks
+    /// through.
     pub height: f64,
 }
 
 impl Margin {
-    /// Occlusion in the sense of geometry: no pixels, no near plane; only what f64 rounds is on the safe side.
+    /// Occlusion in the sense of geometry: no pixels, no near plane; only what f64 rounds is on the safe
+    /// side.
     pub const GEOMETRIC: Self = Self { lateral: 0.0, height: 0.0 };
     /// The margin of a view.
     pub fn of<S: Shape>(view: &View<S>) -> Self {
         let tan = f64::from(view.eye.fov * 0.5).tan();
         let aspect = f64::from(view.width) / f64::from(view.height.max(1));
-        let (across, pixels) = if Relation::<S>::AXES > 2 { (tan * tan * (1.0 + aspect * aspect), view.height) } else { (tan * tan, view.width) };
-        // A ray within the image makes at most this angle with the line of sight; a hundredth for the snapped border.
+        let (across, pixels) = if Relation::<S>::AXES > 2 {
+            (tan * tan * (1.0 + aspect * aspect), view.height)
+        } else {
+            (tan * tan, view.width)
+        };
+        // A ray within the image makes at most this angle with the line of sight; a hundredth for the snapped
+        // border.
         let secant = (1.0 + across).sqrt();
-        Self { lateral: SNAP_PX * 2.0 * tan / f64::from(pixels), height: f64::from(view.eye.near) * secant * 1.01 }
+        Self {
+            lateral: SNAP_PX * 2.0 * tan / f64::from(pixels),
+            height: f64::from(view.eye.near) * secant * 1.01,
+        }
     }
 }
 
@@ -205,14 +221,19 @@ impl<S: Shape> Relation<S> {
     pub fn new(occluders: &Occluders<S>, id: u32, side: i8, bounds: &Aabb<S::Vector>, naive: bool) -> Self {
         let occluder = occluders.get(id);
         let [low, high] = occluders.heights(id, bounds);
-        let behind = if side > 0 { [occluder.slab[0] - high, occluder.slab[0] - low] } else { [low - occluder.slab[1], high - occluder.slab[1]] };
+        let behind = if side > 0 {
+            [occluder.slab[0] - high, occluder.slab[0] - low]
+        } else {
+            [low - occluder.slab[1], high - occluder.slab[1]]
+        };
         let diagonal = (corner::<S>(bounds, (1 << Self::AXES) - 1) - corner::<S>(bounds, 0)).length();
         let mut relation = Self { occluder: id, side, behind, arm: 0.0, diagonal, planes: PlaneList::EMPTY };
         if behind[1] > 0.0 {
             let edges = occluders.edges(id);
             for edge in edges {
                 let touched = if naive { S::tangents_naive(edge, bounds) } else { S::tangents(edge, bounds) };
-                let planes = touched.map_or(Planes::Crossing, |touched| relation.tangent(edge, touched, bounds));
+                let planes =
+                    touched.map_or(Planes::Crossing, |touched| relation.tangent(edge, touched, bounds));
                 relation.planes.push(planes);
             }
         }
@@ -221,7 +242,12 @@ impl<S: Shape> Relation<S> {
 
     const AXES: usize = <S::Vector as crate::geometry::Vector>::AXES;
 
-    fn tangent(&mut self, edge: &super::space::Edge<S::Point>, touched: [u8; 2], bounds: &Aabb<S::Vector>) -> Planes<S::Vector> {
+    fn tangent(
+        &mut self,
+        edge: &super::space::Edge<S::Point>,
+        touched: [u8; 2],
+        bounds: &Aabb<S::Vector>,
+    ) -> Planes<S::Vector> {
         let side = f64::from(self.side);
         let arms = touched.map(|vertex| corner::<S>(bounds, vertex) - edge.from);
         let unit = |arm: S::Point| {
@@ -232,10 +258,15 @@ impl<S: Shape> Relation<S> {
         let plane = |i: usize| Plane { normal: S::rounded(normals[i]), vertex: touched[i] };
         self.arm = self.arm.max(arms[0].length()).max(arms[1].length());
         // The other corner lies on the positive side of the supporting plane.
-        Planes::Tangent(if normals[0].dot(arms[1]) >= 0.0 { [plane(0), plane(1)] } else { [plane(1), plane(0)] })
+        Planes::Tangent(if normals[0].dot(arms[1]) >= 0.0 {
+            [plane(0), plane(1)]
+        } else {
+            [plane(1), plane(0)]
+        })
     }
 
-    /// The classification from an eye. `thickness`: of the occluder's slab; `depth`: the greatest view depth of the box.
+    /// The classification from an eye. `thickness`: of the occluder's slab; `depth`: the greatest view depth
+    /// of the box.
     #[inline]
     pub fn classify(&self, sight: &Sight<S>, thickness: f64, depth: f64, margin: Margin) -> Classified {
         let mut found = Classified { occlusion: Occlusion::None, inside: 0, behind: false };
@@ -244,14 +275,17 @@ impl<S: Shape> Relation<S> {
         }
         let [s, _] = self.behind;
         let lateral = margin.lateral * depth.max(0.0);
-        found.behind = s > 0.0 && s >= lateral + DEPTH_ROUNDING * (sight.height + thickness + s) && s * sight.height >= sight.reach * lateral;
+        found.behind = s > 0.0
+            && s >= lateral + DEPTH_ROUNDING * (sight.height + thickness + s)
+            && s * sight.height >= sight.reach * lateral;
         // What a lost tie between two tangent corners may turn a plane by, and what rounding may move it.
         let lateral = lateral + ROUNDING * self.arm * self.diagonal / s;
         let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
         let mut inside = 0;
         for (i, (planes, &(r, length, distance))) in self.planes.iter().zip(&sight.edges).enumerate() {
             let Planes::Tangent([supporting, separating]) = planes else { continue };
-            let (reached, touched) = (S::widened(supporting.normal).dot(r), S::widened(separating.normal).dot(r));
+            let (reached, touched) =
+                (S::widened(supporting.normal).dot(r), S::widened(separating.normal).dot(r));
             // Where the occluder's plane cuts the box, either corner will do.
             let partial = if s > 0.0 { touched > 0.0 } else { touched > 0.0 || reached > 0.0 };
             if !partial {
@@ -271,12 +305,22 @@ impl<S: Shape> Relation<S> {
         let s = self.behind[0];
         let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
         let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
-        let tests = self.planes.iter().zip(&sight.edges).enumerate().filter_map(|(i, (planes, &(r, length, distance)))| {
-            let Planes::Tangent([supporting, separating]) = planes else { return None };
-            let (plane, needed) =
-                if seen.occlusion == Occlusion::None { (separating, 0.0) } else { (supporting, (distance * lateral + blur * length) / s) };
-            Some(Decisive { edge: i as u8, vertex: plane.vertex, distance: S::widened(plane.normal).dot(r), needed })
-        });
+        let tests = self.planes.iter().zip(&sight.edges).enumerate().filter_map(
+            |(i, (planes, &(r, length, distance)))| {
+                let Planes::Tangent([supporting, separating]) = planes else { return None };
+                let (plane, needed) = if seen.occlusion == Occlusion::None {
+                    (separating, 0.0)
+                } else {
+                    (supporting, (distance * lateral + blur * length) / s)
+                };
+                Some(Decisive {
+                    edge: i as u8,
+                    vertex: plane.vertex,
+                    distance: S::widened(plane.normal).dot(r),
+                    needed,
+                })
+            },
+        );
         tests.min_by(|a, b| (a.distance - a.needed).total_cmp(&(b.distance - b.needed))).unwrap_or_default()
     }
 }

@@ -1,7 +1,8 @@
-//! The selection as bytes, so that the preprocess is done once: versioned, and checked against scene and parameters.
+//! The selection as bytes, so that the preprocess is done once: versioned, and checked against scene and
+//! parameters.
 //!
-//! Little-endian: the magic with the version, SHA-256 of the scene in hex, the four parameters that the selection
-//! depends on, three lengths, three tables, and SHA-256 of all that.
+//! Little-endian: the magic with the version, SHA-256 of the scene in hex, the four parameters that the
+//! selection depends on, three lengths, three tables, and SHA-256 of all that.
 
 use sha2::{Digest, Sha256};
 
@@ -56,7 +57,10 @@ pub fn read(bytes: &[u8], key: &Key, nodes: usize, occluders: usize) -> Result<S
     let (params, words) = words.split_first_chunk::<4>().ok_or_else(damaged)?;
     if *params != key.params {
         let [height, directions, most, gain] = params;
-        return Err(format!("it was made with tree-height={height} directions={directions} occluders={most} marginal-gain={gain}"));
+        return Err(format!(
+            "it was made with tree-height={height} directions={directions} occluders={most} \
+             marginal-gain={gain}"
+        ));
     }
     let (lengths, words) = words.split_first_chunk::<3>().ok_or_else(damaged)?;
     let [leaf_of, starts, lists] = lengths.map(|n| n as usize);

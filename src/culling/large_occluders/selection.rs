@@ -1,14 +1,14 @@
-//! Dynamic occluder selection (Section 3.1): for each leaf of the kD-tree and each of some viewing directions, the
-//! occluders that look largest from there.
+//! Dynamic occluder selection (Section 3.1): for each leaf of the kD-tree and each of some viewing
+//! directions, the occluders that look largest from there.
 //!
-//! The measure is the area-angle −A (N·V) / |D|²: A the occluder's area, N its normal, D the vector from the eye to
-//! its center, V the direction in which the eye sees it, D/|D|. (The paper calls V the viewing direction; taken to be
-//! the Eye's line of sight, the walls along a corridor, which hide the rooms beside it, would count for nothing.)
-//! In flatland it is A (N·V) / |D|. An occluder counts for a direction if some part of it lies in the cone
-//! that an eye of up to 120° sees which looks within that direction's share of the circle.
-//! One behind which the scene has no depth hides nothing, such as the ground, and is left out.
-//! A leaf can be large, so its list holds [`SPARE`] times as many as are used at once; those that look largest from the
-//! eye itself, or from a detail object itself, are picked from it.
+//! The measure is the area-angle −A (N·V) / |D|²: A the occluder's area, N its normal, D the vector from the
+//! eye to its center, V the direction in which the eye sees it, D/|D|. (The paper calls V the viewing
+//! direction; taken to be the Eye's line of sight, the walls along a corridor, which hide the rooms beside
+//! it, would count for nothing.) In flatland it is A (N·V) / |D|. An occluder counts for a direction if some
+//! part of it lies in the cone that an eye of up to 120° sees which looks within that direction's share of
+//! the circle. One behind which the scene has no depth hides nothing, such as the ground, and is left out.
+//! A leaf can be large, so its list holds [`SPARE`] times as many as are used at once; those that look
+//! largest from the eye itself, or from a detail object itself, are picked from it.
 //! Directions lie in the ground plane (in flatland: in the plane), evenly spaced, the first along x.
 //! Cost: O(leaves · directions · polygons), in parallel over leaves; deterministic.
 
@@ -40,7 +40,8 @@ pub struct Selection {
     lists: Vec<(u32, f32)>,
 }
 
-/// The area-angle of an occluder from a point: an estimate of the solid angle (in flatland: the angle) that it subtends.
+/// The area-angle of an occluder from a point: an estimate of the solid angle (in flatland: the angle) that
+/// it subtends.
 pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
     let toward = occluder.center - from;
     let distance = toward.length();
@@ -48,8 +49,8 @@ pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
     if power > 0.0 { occluder.area * (occluder.normal.dot(toward) / distance).abs() / power } else { 0.0 }
 }
 
-/// Cosine of the widest angle off a direction at which an occluder counts for it: 60° to the side of an eye that itself looks
-/// up to half a step beside the direction.
+/// Cosine of the widest angle off a direction at which an occluder counts for it: 60° to the side of an eye
+/// that itself looks up to half a step beside the direction.
 fn cone(directions: u32) -> f64 {
     let off = std::f64::consts::PI * (1.0 / 3.0 + 1.0 / f64::from(directions.max(1)));
     if off < std::f64::consts::PI { cosine(off) } else { -1.0 }
@@ -77,7 +78,8 @@ fn better(a: &(u32, f32), b: &(u32, f32)) -> std::cmp::Ordering {
     b.1.total_cmp(&a.1).then(a.0.cmp(&b.0))
 }
 
-/// Those of a list that look largest from a point, best first, at most `most`, with their area-angles from there.
+/// Those of a list that look largest from a point, best first, at most `most`, with their area-angles from
+/// there.
 pub fn largest_from<'a, S: Shape>(
     occluders: &Occluders<S>,
     list: impl Iterator<Item = &'a (u32, f32)>,
@@ -124,8 +126,12 @@ impl Selection {
             if progress.cancelled() {
                 return None;
             }
-            let ranked: Vec<_> =
-                some.par_iter().map(|(_, cell)| rank::<S>(occluders, &tree.nodes()[0].bounds, cell, [directions, most], gain)).collect();
+            let ranked: Vec<_> = some
+                .par_iter()
+                .map(|(_, cell)| {
+                    rank::<S>(occluders, &tree.nodes()[0].bounds, cell, [directions, most], gain)
+                })
+                .collect();
             lists.extend(ranked.into_iter().flatten());
         }
         let mut starts = vec![0];
@@ -148,7 +154,8 @@ impl Selection {
         }
         best as u32
     }
-    /// The best occluders of a leaf and direction with their area-angles from the middle of the leaf, best first.
+    /// The best occluders of a leaf and direction with their area-angles from the middle of the leaf, best
+    /// first.
     pub fn list(&self, leaf: NodeId, direction: u32) -> &[(u32, f32)] {
         let at = self.leaf_of[leaf.at()] as usize * self.directions.len() + direction as usize;
         &self.lists[self.starts[at] as usize..self.starts[at + 1] as usize]
@@ -157,7 +164,8 @@ impl Selection {
     pub fn tables(&self) -> (&[u32], &[u32], &[(u32, f32)]) {
         (&self.leaf_of, &self.starts, &self.lists)
     }
-    /// A selection from its tables, if they fit each other and a tree of `nodes` nodes and `occluders` occluders.
+    /// A selection from its tables, if they fit each other and a tree of `nodes` nodes and `occluders`
+    /// occluders.
     pub fn of_tables(
         directions: u32,
         (leaf_of, starts, lists): (Vec<u32>, Vec<u32>, Vec<(u32, f32)>),
@@ -169,11 +177,17 @@ impl Selection {
         let leaves = leaf_of.iter().max().map_or(0, |&most| most as usize + 1);
         let fits = leaf_of.len() == nodes && starts.len() == leaves * directions as usize + 1;
         let known = lists.iter().all(|l| (l.0 as usize) < occluders);
-        (ascending && whole && fits && known).then(|| Self { directions: ways(directions), leaf_of, starts, lists })
+        (ascending && whole && fits && known).then(|| Self {
+            directions: ways(directions),
+            leaf_of,
+            starts,
+            lists,
+        })
     }
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
-        self.lists.len() * size_of::<(u32, f32)>() + (self.starts.len() + self.leaf_of.len()) * size_of::<u32>()
+        self.lists.len() * size_of::<(u32, f32)>()
+            + (self.starts.len() + self.leaf_of.len()) * size_of::<u32>()
     }
     /// Every occluder that some list names, ascending.
     pub fn named(&self) -> Vec<u32> {
@@ -214,7 +228,9 @@ fn cells<S: Shape>(tree: &KdTree<S::Vector>) -> Vec<(NodeId, Aabb<S::Vector>)> {
             cells.push((id, cell));
             continue;
         };
-        let cut = |v: S::Vector| S::Vector::from_fn(|a| if a == node.axis as usize { node.split } else { v.get(a) });
+        let cut = |v: S::Vector| {
+            S::Vector::from_fn(|a| if a == node.axis as usize { node.split } else { v.get(a) })
+        };
         open.push((high, Aabb { min: cut(cell.min), max: cell.max }));
         open.push((low, Aabb { min: cell.min, max: cut(cell.max) }));
     }
@@ -236,7 +252,8 @@ fn rank<S: Shape>(
         let occluder = occluders.get(id);
         (if occluder.normal.dot(from - occluder.anchor) > 0.0 { -low } else { high }) > enough
     };
-    let mut scored: Vec<(u32, f32)> = occluders.all().iter().enumerate().map(|(id, o)| (id as u32, area_angle(o, from) as f32)).collect();
+    let mut scored: Vec<(u32, f32)> =
+        occluders.all().iter().enumerate().map(|(id, o)| (id as u32, area_angle(o, from) as f32)).collect();
     scored.retain(|s| s.1 > 0.0 && has_depth(s.0));
     scored.sort_unstable_by(better);
     let cosine = cone(directions);
@@ -245,7 +262,8 @@ fn rank<S: Shape>(
         let mut sum = 0.0;
         let mut list = Vec::new();
         for &(id, score) in &scored {
-            if list.len() == (most * SPARE).max(LEAST) as usize || sum > 0.0 && f64::from(score) < gain * sum {
+            if list.len() == (most * SPARE).max(LEAST) as usize || sum > 0.0 && f64::from(score) < gain * sum
+            {
                 break;
             }
             if is_toward(occluders, id, from, toward, cosine) {
@@ -259,7 +277,13 @@ fn rank<S: Shape>(
 }
 
 /// Whether some corner of an occluder, the middle of an edge, or its center lies within a cone.
-fn is_toward<S: Shape>(occluders: &Occluders<S>, id: u32, from: S::Point, toward: [f64; 2], cosine: f64) -> bool {
+fn is_toward<S: Shape>(
+    occluders: &Occluders<S>,
+    id: u32,
+    from: S::Point,
+    toward: [f64; 2],
+    cosine: f64,
+) -> bool {
     let center = occluders.get(id).center;
     let within = |p: S::Point| {
         let v = p - from;

@@ -16,7 +16,17 @@ pub use solid::{outline_seen_from, sides_of_outline};
 
 /// A point or direction in f64.
 pub trait Point:
-    Copy + Debug + Default + PartialEq + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Neg<Output = Self> + Mul<f64, Output = Self>
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
 {
     fn dot(self, other: Self) -> f64;
     fn get(self, axis: usize) -> f64;
@@ -48,17 +58,17 @@ pub trait Shape: Space {
     fn area(corners: &[Self::Point]) -> Self::Point;
     /// Edge `i` of the polygon.
     fn edge(corners: &[Self::Point], i: usize) -> Edge<Self::Point>;
-    /// The corners that two polygons must share to share edge `i`, the lesser first; and whether the edge runs
-    /// from the lesser to the greater as seen from the front (in flatland: whether it is the first end).
+    /// The corners that two polygons must share to share edge `i`, the lesser first; and whether the edge
+    /// runs from the lesser to the greater as seen from the front (in flatland: whether it is the first end).
     fn edge_key(corners: &[u32], i: usize) -> ([u32; 2], bool);
-    /// A normal, not of unit length, of the plane through an edge and the vertex at `arm` from `edge.from`. For
-    /// an eye at `r` from `edge.from` in front of the occluder, `normal · r > 0` says that the vertex lies on
-    /// the occluder's side of the plane through eye and edge.
+    /// A normal, not of unit length, of the plane through an edge and the vertex at `arm` from `edge.from`.
+    /// For an eye at `r` from `edge.from` in front of the occluder, `normal · r > 0` says that the vertex
+    /// lies on the occluder's side of the plane through eye and edge.
     fn through(edge: &Edge<Self::Point>, arm: Self::Point) -> Self::Point;
     /// Distance of the point at `r` from `edge.from` from the edge's line.
     fn distance(edge: &Edge<Self::Point>, r: Self::Point) -> f64;
-    /// The two corners of a box at which planes through the edge touch it, by table (Section 2.1); `None` where
-    /// the edge's line meets the box.
+    /// The two corners of a box at which planes through the edge touch it, by table (Section 2.1); `None`
+    /// where the edge's line meets the box.
     fn tangents(edge: &Edge<Self::Point>, bounds: &Aabb<Self::Vector>) -> Option<[u8; 2]>;
     /// The same by looking at every corner: the reference and the peer of the benchmark.
     fn tangents_naive(edge: &Edge<Self::Point>, bounds: &Aabb<Self::Vector>) -> Option<[u8; 2]>;

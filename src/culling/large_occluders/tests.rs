@@ -10,7 +10,9 @@ use super::anatomy::{Blockers, Occlusion, outline_seen_from, tangent_corners};
 use super::space::Shape;
 use crate::culling::{Methods, Run, Settings};
 use crate::geometry::{Aabb, Flat, Solid, Space, Vector, View, orient2d, orient3d};
-use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, example, figure_eight_path, framing_view, load, random_views};
+use crate::scene::{
+    AnyScene, LoadOptions, Quiet, Scene, example, figure_eight_path, framing_view, load, random_views,
+};
 
 /// Cases of each property; more by `CULLSCOPE_FUZZ_CASES`.
 fn cases(default: usize) -> usize {
@@ -38,7 +40,9 @@ impl Chance {
         // On the grid some boxes are flat.
         let size = if grid { 2.0 } else { self.unit() * 4.0 };
         Aabb::of(
-            [self.point::<V>(grid), self.point::<V>(grid)].map(|p| p * (size / 4.0)).map(|p| if grid { V::from_fn(|a| p.get(a).round()) } else { p }),
+            [self.point::<V>(grid), self.point::<V>(grid)]
+                .map(|p| p * (size / 4.0))
+                .map(|p| if grid { V::from_fn(|a| p.get(a).round()) } else { p }),
         )
     }
 }
@@ -65,7 +69,9 @@ impl Exact for Solid {
         orient3d(from.as_dvec3(), to.as_dvec3(), through.as_dvec3(), of.as_dvec3())
     }
     fn is_blocked(a: Vec3, b: Vec3, polygon: &[Vec3]) -> bool {
-        let side = |p: Vec3, q: Vec3, r: Vec3, s: Vec3| orient3d(p.as_dvec3(), q.as_dvec3(), r.as_dvec3(), s.as_dvec3());
+        let side = |p: Vec3, q: Vec3, r: Vec3, s: Vec3| {
+            orient3d(p.as_dvec3(), q.as_dvec3(), r.as_dvec3(), s.as_dvec3())
+        };
         (1..polygon.len() - 1).any(|i| {
             let t = [polygon[0], polygon[i], polygon[i + 1]];
             let turns = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| side(a, b, t[i], t[j]));
@@ -75,7 +81,8 @@ impl Exact for Solid {
     }
 }
 
-/// A table's tangent corners are tangent by exact arithmetic, and missing only where the edge's line meets the box.
+/// A table's tangent corners are tangent by exact arithmetic, and missing only where the edge's line meets
+/// the box.
 fn tangents_are_tangent<S: Exact>(seed: u64) {
     let mut chance = Chance(Pcg32::new(seed, 1));
     let mut found = 0;
@@ -90,13 +97,20 @@ fn tangents_are_tangent<S: Exact>(seed: u64) {
         for corners in by.into_iter().flatten() {
             for vertex in corners.map(|v| bounds.corner(v as usize)) {
                 let signs: Vec<f64> = bounds.corners().map(|c| S::sign(edge, vertex, c)).collect();
-                assert!(signs.iter().all(|s| *s >= 0.0) || signs.iter().all(|s| *s <= 0.0), "{edge:?} {bounds:?} {vertex:?}: {signs:?}");
+                assert!(
+                    signs.iter().all(|s| *s >= 0.0) || signs.iter().all(|s| *s <= 0.0),
+                    "{edge:?} {bounds:?} {vertex:?}: {signs:?}"
+                );
             }
         }
         // Both find them or neither, but where the line touches the box.
         if let [Some(table), Some(naive)] = by {
             found += 1;
-            let same = |v: u8| naive.iter().any(|n| S::sign(edge, bounds.corner(v as usize), bounds.corner(*n as usize)) == 0.0);
+            let same = |v: u8| {
+                naive
+                    .iter()
+                    .any(|n| S::sign(edge, bounds.corner(v as usize), bounds.corner(*n as usize)) == 0.0)
+            };
             assert!(table.iter().all(|v| same(*v)), "{edge:?} {bounds:?}: {by:?}");
         } else if !grid {
             assert_eq!(by, [None, None], "{edge:?} {bounds:?}");
@@ -123,9 +137,11 @@ fn outlines_separate_what_is_seen_from_what_is_not() {
         for i in 0..outline.len() {
             let (a, b) = (outline[i], outline[(i + 1) % outline.len()]);
             assert_eq!((a ^ b).count_ones(), 1, "{from}: an edge of the box");
-            // The plane through the eye and an edge of the outline has the whole box on one side: always the same one.
+            // The plane through the eye and an edge of the outline has the whole box on one side: always the
+            // same one.
             let [p, q] = [a, b].map(|v| bounds.corner(v as usize).as_dvec3());
-            let sides: Vec<f64> = bounds.corners().map(|c| orient3d(from.as_dvec3(), p, q, c.as_dvec3())).collect();
+            let sides: Vec<f64> =
+                bounds.corners().map(|c| orient3d(from.as_dvec3(), p, q, c.as_dvec3())).collect();
             assert!(sides.iter().all(|s| *s <= 0.0), "{from}: {sides:?}");
         }
     }
@@ -157,8 +173,8 @@ fn occluders<S: Exact>(chance: &mut Chance, grid: bool) -> (Vec<S::Vector>, Vec<
     (points, polygons)
 }
 
-/// What is called hidden is hidden, by exact arithmetic: no segment from the eye to a corner of the box, or to a random
-/// point in it, gets past the occluders that are said to hide it.
+/// What is called hidden is hidden, by exact arithmetic: no segment from the eye to a corner of the box, or
+/// to a random point in it, gets past the occluders that are said to hide it.
 fn nothing_visible_is_called_hidden<S: Exact>(seed: u64, offset: f32) {
     let mut chance = Chance(Pcg32::new(seed, 3));
     let (mut full, mut joint) = (0, 0);
@@ -168,9 +184,11 @@ fn nothing_visible_is_called_hidden<S: Exact>(seed: u64, offset: f32) {
         let (mut points, polygons) = occluders::<S>(&mut chance, grid);
         let mut bounds = chance.bounds::<S::Vector>(grid);
         let mut eye: S::Vector = chance.point(grid);
-        // Toward the other side of the occluders, so that hiding is frequent; on the grid at degenerate places.
+        // Toward the other side of the occluders, so that hiding is frequent; on the grid at degenerate
+        // places.
         if case % 2 == 1 {
-            let middle = points.iter().take(points.len() - 3).fold(S::Vector::default(), |s, p| s + *p) * (1.0 / (points.len() - 3) as f32);
+            let middle = points.iter().take(points.len() - 3).fold(S::Vector::default(), |s, p| s + *p)
+                * (1.0 / (points.len() - 3) as f32);
             eye = middle + (middle - bounds.center()) * 0.7;
         }
         let shift = S::Vector::splat(offset);
@@ -185,15 +203,25 @@ fn nothing_visible_is_called_hidden<S: Exact>(seed: u64, offset: f32) {
             continue;
         }
         (full, joint) = (full + usize::from(hiding.len() == 1), joint + usize::from(hiding.len() > 1));
-        let members: Vec<Vec<S::Vector>> = hiding.iter().map(|&i| polygons[i].iter().map(|&c| points[c as usize]).collect()).collect();
-        let inside = (0..4).map(|_| S::Vector::from_fn(|a| bounds.min.get(a) + bounds.size().get(a) * chance.unit())).collect::<Vec<_>>();
+        let members: Vec<Vec<S::Vector>> =
+            hiding.iter().map(|&i| polygons[i].iter().map(|&c| points[c as usize]).collect()).collect();
+        let inside = (0..4)
+            .map(|_| S::Vector::from_fn(|a| bounds.min.get(a) + bounds.size().get(a) * chance.unit()))
+            .collect::<Vec<_>>();
         for target in bounds.corners().chain(inside) {
             // A random point may round out of the box.
             let target = target.max(bounds.min).min(bounds.max);
-            assert!(members.iter().any(|m| S::is_blocked(eye, target, m)), "case {case}: {eye:?} sees {target:?} of {bounds:?} past {members:?}");
+            assert!(
+                members.iter().any(|m| S::is_blocked(eye, target, m)),
+                "case {case}: {eye:?} sees {target:?} of {bounds:?} past {members:?}"
+            );
         }
     }
-    assert!(full > all / 60 && joint > all / 400, "{}: {full} and {joint} of {all} cases hide anything", S::NAME);
+    assert!(
+        full > all / 60 && joint > all / 400,
+        "{}: {full} and {joint} of {all} cases hide anything",
+        S::NAME
+    );
 }
 
 #[test]
@@ -220,11 +248,14 @@ fn the_regions_of_figure_2() {
     let wall = Blockers::<Flat>::new(&[Vec2::new(-1.0, 0.0), Vec2::new(1.0, 0.0)], &[vec![0, 1]]);
     let target = Aabb { min: Vec2::new(-0.5, -3.0), max: Vec2::new(0.5, -2.0) };
     let at = |x: f32, y: f32| wall.classify(0, &target, Vec2::new(x, y));
-    assert_eq!([at(0.0, 2.0), at(2.2, 2.0), at(9.0, 2.0)], [Occlusion::Full, Occlusion::Partial, Occlusion::None]);
+    assert_eq!(
+        [at(0.0, 2.0), at(2.2, 2.0), at(9.0, 2.0)],
+        [Occlusion::Full, Occlusion::Partial, Occlusion::None]
+    );
     // On the box's own side, on the occluder, on its line, in the box.
     assert_eq!([at(0.0, -1.0), at(0.0, 0.0), at(3.0, 0.0), at(0.0, -2.5)], [Occlusion::None; 4]);
-    // The supporting line, from the far right corner of the box through the wall's right end, separates 3 from 2: at
-    // y = 2 it is at x = 1 + 2 · 0.5 / 3.
+    // The supporting line, from the far right corner of the box through the wall's right end, separates 3
+    // from 2: at y = 2 it is at x = 1 + 2 · 0.5 / 3.
     assert_eq!([at(1.333, 2.0), at(1.334, 2.0)], [Occlusion::Full, Occlusion::Partial]);
     // The separating line, from the near left corner: x = 1 + 2 · 1.5 / 2.
     assert_eq!([at(2.499, 2.0), at(2.501, 2.0)], [Occlusion::Partial, Occlusion::None]);
@@ -233,7 +264,10 @@ fn the_regions_of_figure_2() {
 #[test]
 fn connected_occluders_hide_together_what_neither_hides_alone() {
     // Figure 3, in flatland: a bent wall.
-    let wall = Blockers::<Flat>::new(&[Vec2::new(-2.0, 0.0), Vec2::new(0.0, 0.4), Vec2::new(2.0, 0.0)], &[vec![0, 1], vec![1, 2]]);
+    let wall = Blockers::<Flat>::new(
+        &[Vec2::new(-2.0, 0.0), Vec2::new(0.0, 0.4), Vec2::new(2.0, 0.0)],
+        &[vec![0, 1], vec![1, 2]],
+    );
     let target = Aabb { min: Vec2::new(-0.8, -3.0), max: Vec2::new(0.8, -2.0) };
     let eye = Vec2::new(0.0, 3.0);
     assert_eq!([0, 1].map(|i| wall.classify(i, &target, eye)), [Occlusion::Partial; 2]);
@@ -246,7 +280,10 @@ fn connected_occluders_hide_together_what_neither_hides_alone() {
 #[test]
 fn a_shared_silhouette_edge_is_not_ignored() {
     // Figure 4: two walls that meet in a corner, both to the left of it as seen from the eye.
-    let corner = Blockers::<Flat>::new(&[Vec2::new(-4.0, 0.0), Vec2::new(0.0, 0.0), Vec2::new(-4.0, -1.0)], &[vec![0, 1], vec![1, 2]]);
+    let corner = Blockers::<Flat>::new(
+        &[Vec2::new(-4.0, 0.0), Vec2::new(0.0, 0.0), Vec2::new(-4.0, -1.0)],
+        &[vec![0, 1], vec![1, 2]],
+    );
     let target = Aabb { min: Vec2::new(-1.0, -4.0), max: Vec2::new(1.0, -3.0) };
     let eye = Vec2::new(-0.5, 3.0);
     assert_eq!(corner.classify(0, &target, eye), Occlusion::Partial);
@@ -270,15 +307,27 @@ fn only_convex_connected_outlines_hide_jointly() {
     let notched: Vec<Vec<u32>> = all.iter().filter(|p| **p != pane(1, 1)).cloned().collect();
     let low = Aabb { min: Vec3::new(-2.5, -1.5, -2.0), max: Vec3::new(2.5, -0.5, -1.0) };
     assert!(Blockers::<Solid>::new(&points, &notched).hiding(&target(2.5, 1.5), eye).is_empty());
-    assert_eq!(Blockers::<Solid>::new(&points, &notched).hiding(&low, eye).len(), 3, "the lower row still hides what is low");
+    assert_eq!(
+        Blockers::<Solid>::new(&points, &notched).hiding(&low, eye).len(),
+        3,
+        "the lower row still hides what is low"
+    );
     // (c) Disconnected: two squares with a gap that the box does not even reach into.
     let pair: Vec<Vec3> = square(-1.01, 0.0).into_iter().chain(square(1.01, 0.0)).collect();
-    assert!(Blockers::<Solid>::new(&pair, &[vec![0, 1, 2, 3], vec![4, 5, 6, 7]]).hiding(&target(1.5, 0.5), eye).is_empty());
+    assert!(
+        Blockers::<Solid>::new(&pair, &[vec![0, 1, 2, 3], vec![4, 5, 6, 7]])
+            .hiding(&target(1.5, 0.5), eye)
+            .is_empty()
+    );
 }
 
 fn run<S: Methods>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
     let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
-    S::method("large-occluders").expect("listed").ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled")
+    S::method("large-occluders")
+        .expect("listed")
+        .ready(scene, &settings, &Quiet)
+        .expect("settings")
+        .expect("not cancelled")
 }
 
 fn solid(call: &str) -> Arc<Scene<Solid>> {
@@ -336,13 +385,19 @@ fn a_saved_selection_is_the_one_that_was_made_and_fits_nothing_else() {
     let settings = |k: &str| Settings([("occluders".to_owned(), k.to_owned())].into());
     let mut made = run(&scene, &[("occluders", "16")]);
     let saved = made.save().expect("there is something to save");
-    let mut restored = entry.restore(&scene, &settings("16"), &saved, &Quiet).expect("it fits").expect("not cancelled");
+    let mut restored =
+        entry.restore(&scene, &settings("16"), &saved, &Quiet).expect("it fits").expect("not cancelled");
     for view in &scene.paths()[0].views[..12] {
         assert_eq!(made.cull(view), restored.cull(view));
     }
-    let refused = |scene: &Arc<Scene<Solid>>, k: &str, bytes: &[u8]| entry.restore(scene, &settings(k), bytes, &Quiet).err().map(|e| e.to_string());
+    let refused = |scene: &Arc<Scene<Solid>>, k: &str, bytes: &[u8]| {
+        entry.restore(scene, &settings(k), bytes, &Quiet).err().map(|e| e.to_string())
+    };
     assert!(refused(&scene, "8", &saved).is_some_and(|e| e.contains("occluders=16")));
-    assert_eq!(refused(&solid("generate:building?polygons=1500&seed=2"), "16", &saved).as_deref(), Some("it was made for another scene"));
+    assert_eq!(
+        refused(&solid("generate:building?polygons=1500&seed=2"), "16", &saved).as_deref(),
+        Some("it was made for another scene")
+    );
     let mut rng = Chance(Pcg32::new(8, 8));
     for _ in 0..300 {
         let mut bytes = saved.clone();
@@ -354,16 +409,26 @@ fn a_saved_selection_is_the_one_that_was_made_and_fits_nothing_else() {
         }
         assert!(refused(&scene, "16", &bytes).is_some());
     }
-    assert!(Solid::method("frustum").expect("listed").restore(&scene, &Settings::default(), &saved, &Quiet).is_err());
+    assert!(
+        Solid::method("frustum")
+            .expect("listed")
+            .restore(&scene, &Settings::default(), &saved, &Quiet)
+            .is_err()
+    );
 }
 
 #[test]
 fn it_culls_what_frustum_culling_keeps() {
     let scene = solid("generate:building?polygons=20000");
-    let mut frustum = Solid::method("frustum").expect("listed").ready(&scene, &Settings::default(), &Quiet).expect("ok").expect("ok");
+    let mut frustum = Solid::method("frustum")
+        .expect("listed")
+        .ready(&scene, &Settings::default(), &Quiet)
+        .expect("ok")
+        .expect("ok");
     let mut large = run(&scene, &[]);
     let views = &scene.paths()[0].views;
-    let drawn = |run: &mut dyn Run<Solid>| views.iter().step_by(4).map(|v| run.cull(v).prims.len()).sum::<usize>();
+    let drawn =
+        |run: &mut dyn Run<Solid>| views.iter().step_by(4).map(|v| run.cull(v).prims.len()).sum::<usize>();
     let (before, after) = (drawn(&mut *frustum), drawn(&mut *large));
     // Walls and floors, which hide the rest, are a good part of so small a building.
     assert!(6 * before > 10 * after, "{before} and {after}");
@@ -378,7 +443,10 @@ fn nothing_hides_what_lies_before_it_or_what_the_near_plane_uncovers() {
     (view.eye.position, view.eye.target) = (Vec3::new(0.0, 0.0, 0.05), Vec3::ZERO);
     let mut hides = |near: f32| {
         view.eye.near = near;
-        !Blockers::<Solid>::new(&wall, &[vec![0, 1, 2, 3]]).for_view(&view).hiding(&target, view.eye.position).is_empty()
+        !Blockers::<Solid>::new(&wall, &[vec![0, 1, 2, 3]])
+            .for_view(&view)
+            .hiding(&target, view.eye.position)
+            .is_empty()
     };
     assert!(hides(0.01) && !hides(0.1));
     let before = Aabb { min: Vec3::new(-0.1, -0.1, 0.1), max: Vec3::new(0.1, 0.1, 0.2) };

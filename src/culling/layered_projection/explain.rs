@@ -137,7 +137,8 @@ pub struct Ended {
     pub spent: bool,
 }
 
-/// The method's private state at a step: the front with the solidity of each cell, and what was projected last.
+/// The method's private state at a step: the front with the solidity of each cell, and what was projected
+/// last.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
     front: BTreeMap<CellId, Queued>,
@@ -239,7 +240,11 @@ impl<S: Cellular> Note<S> for Evidence<S> {
         let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
-            Self::Seeded(n) => vec![integer("node", node_of(n.cell).0), number("distance_units", n.distance.into()), word("origin", n.origin.word())],
+            Self::Seeded(n) => vec![
+                integer("node", node_of(n.cell).0),
+                number("distance_units", n.distance.into()),
+                word("origin", n.origin.word()),
+            ],
             Self::Tested(n) => n.fields(),
             Self::Facing(n) => n.fields(),
             Self::Transferred(n) => vec![
@@ -273,8 +278,14 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("reads", n.answer.reads),
                 switch("hidden", n.answer.is_hidden),
             ],
-            Self::Bounded(n) => vec![number("share", n.share.into()), number("allowed", n.most.into()), integer("drawn", n.drawn)],
-            Self::Ended(n) => vec![integer("cells", n.cells), integer("budget_left", n.left), switch("spent", n.spent)],
+            Self::Bounded(n) => vec![
+                number("share", n.share.into()),
+                number("allowed", n.most.into()),
+                integer("drawn", n.drawn),
+            ],
+            Self::Ended(n) => {
+                vec![integer("cells", n.cells), integer("budget_left", n.left), switch("spent", n.spent)]
+            }
         }
     }
     fn sentence(&self, _: &Scene<S>) -> String {
@@ -285,7 +296,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence::<S>(),
             Self::Transferred(n) => transfer_sentence::<S>(n),
             Self::Projected(n) => format!(
-                "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} {prims}s that meet it are drawn now, {} of the budget are left.",
+                "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} \
+                 {prims}s that meet it are drawn now, {} of the budget are left.",
                 node_of(n.cell),
                 short(n.solidity),
                 n.rank + 1,
@@ -302,7 +314,9 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 if n.share > n.most { "the budget grows by half" } else { "that is enough" }
             ),
             Self::Ended(n) if n.spent => format!("The budget is spent after {} cells.", n.cells),
-            Self::Ended(n) => format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left),
+            Self::Ended(n) => {
+                format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left)
+            }
         }
     }
 }
@@ -311,12 +325,20 @@ fn seed_sentence(n: &Seeded) -> String {
     let (node, distance) = (node_of(n.cell), short(n.distance));
     match n.origin {
         Origin::Eye => format!("The Eye is in the cell of node {node}: the front begins there."),
-        Origin::Nearest => format!("The Eye is outside of all cells; the nearest cell in view is node {node}, {distance} units away."),
+        Origin::Nearest => format!(
+            "The Eye is outside of all cells; the nearest cell in view is node {node}, {distance} units away."
+        ),
         Origin::Ray => {
-            format!("On a ray from the Eye, {distance} units away, node {node} is the first that holds something: the front begins there too.")
+            format!(
+                "On a ray from the Eye, {distance} units away, node {node} is the first that holds \
+                 something: the front begins there too."
+            )
         }
         Origin::Again => {
-            format!("The front is empty and budget is left: the nearest cell in view that was not reached, node {node}, starts a new one.")
+            format!(
+                "The front is empty and budget is left: the nearest cell in view that was not reached, node \
+                 {node}, starts a new one."
+            )
         }
     }
 }
@@ -327,7 +349,8 @@ fn asked_sentence(n: &Asked) -> String {
     match (n.answer.is_hidden, n.answer.decisive) {
         (true, Some((_, held))) => {
             format!(
-                "Node {node} begins at depth {}, behind {}, the farthest that is drawn where it would show: it is hidden.",
+                "Node {node} begins at depth {}, behind {}, the farthest that is drawn where it would show: \
+                 it is hidden.",
                 depth(n.answer.nearest),
                 depth(held)
             )
@@ -335,7 +358,8 @@ fn asked_sentence(n: &Asked) -> String {
         (true, None) => format!("Node {node} covers no pixel's center: it is hidden."),
         (false, Some((_, held))) => {
             format!(
-                "Node {node} begins at depth {}, and where it would show nothing nearer than {} is drawn: it is projected.",
+                "Node {node} begins at depth {}, and where it would show nothing nearer than {} is drawn: it \
+                 is projected.",
                 depth(n.answer.nearest),
                 depth(held)
             )
@@ -352,13 +376,15 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     } else {
         ("what of A faces the Eye, of ρ_max", short(n.share))
     };
-    let product = if n.along == 1.0 { short(n.of_a) } else { format!("{} × {}", short(n.along), short(n.of_a)) };
+    let product =
+        if n.along == 1.0 { short(n.of_a) } else { format!("{} × {}", short(n.along), short(n.of_a)) };
     let terms = format!("{share} + {product} = {}", short(n.sum()));
     let star = if n.star_shaped {
         String::new()
     } else {
         format!(
-            " The way from its center to the Eye does not leave through that face: it is not star-shaped, and with the penalty it has {}.",
+            " The way from its center to the Eye does not leave through that face: it is not star-shaped, \
+             and with the penalty it has {}.",
             short(n.solidity)
         )
     };
@@ -370,12 +396,19 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     format!("Node {a} hands its solidity on to node {b}: {name} + {part} = {terms}.{star}{before}")
 }
 
-/// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid first, as far as
-/// labels do not meet when the whole scene is shown.
+/// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid
+/// first, as far as labels do not meet when the whole scene is shown.
 fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
     let apart = scene.bounds().diagonal() * LABELS_APART;
-    let projected = seen.projected.iter().enumerate().rev().take(NUMBERED).map(|(at, &cell)| (cell, format!("#{}", at + 1)));
-    let front = seen.in_order().into_iter().take(LABELED).map(|(cell, queued)| (cell, short(queued.solidity)));
+    let projected = seen
+        .projected
+        .iter()
+        .enumerate()
+        .rev()
+        .take(NUMBERED)
+        .map(|(at, &cell)| (cell, format!("#{}", at + 1)));
+    let front =
+        seen.in_order().into_iter().take(LABELED).map(|(cell, queued)| (cell, short(queued.solidity)));
     let mut taken: Vec<S::Vector> = Vec::new();
     for (cell, text) in projected.chain(front) {
         let at = index.cells.any().center(cell);
@@ -387,10 +420,20 @@ fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut
 }
 
 /// Draws the front, the latest projected cells, and the evidence of a note.
-pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+pub fn draw<S: Cellular>(
+    seen: &Seen,
+    scene: &Scene<S>,
+    index: &Index<S>,
+    view: &View<S>,
+    note: Option<&Evidence<S>>,
+    to: &mut Drawing<S::Vector>,
+) {
     // In space the edges of many cells hide each other and the scene: those that are next say more.
     let shown = if S::Vector::AXES == 2 { usize::MAX } else { NEXT_IN_SPACE };
-    seen.in_order().into_iter().take(shown).for_each(|(cell, _)| outline(index, cell, Layer::Nodes, Role::Undecided, to));
+    seen.in_order()
+        .into_iter()
+        .take(shown)
+        .for_each(|(cell, _)| outline(index, cell, Layer::Nodes, Role::Undecided, to));
     if S::Vector::AXES == 2 {
         labels(seen, scene, index, to);
     }
@@ -399,7 +442,12 @@ pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: 
         Some(Evidence::Facing(n)) => n.draw(scene, view, to),
         Some(Evidence::Seeded(n)) => {
             outline(index, n.cell, Layer::Emphasis, Role::Current, to);
-            to.line(Layer::Evidence, Role::Evidence, Subject::Node(node_of(n.cell)), [view.eye.position, index.cells.any().center(n.cell)]);
+            to.line(
+                Layer::Evidence,
+                Role::Evidence,
+                Subject::Node(node_of(n.cell)),
+                [view.eye.position, index.cells.any().center(n.cell)],
+            );
         }
         Some(Evidence::Projected(n)) => outline(index, n.cell, Layer::Emphasis, Role::Current, to),
         Some(Evidence::Asked(n)) => {
@@ -411,8 +459,14 @@ pub fn draw<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: 
     }
 }
 
-/// Figure 6: both cells, the normal of the face between them, the view direction, and the ray of the star-shape test.
-fn draw_transfer<S: Cellular>(n: &Transferred<S::Vector>, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+/// Figure 6: both cells, the normal of the face between them, the view direction, and the ray of the
+/// star-shape test.
+fn draw_transfer<S: Cellular>(
+    n: &Transferred<S::Vector>,
+    index: &Index<S>,
+    view: &View<S>,
+    to: &mut Drawing<S::Vector>,
+) {
     let cells = index.cells.any();
     outline(index, n.a, Layer::Emphasis, Role::Partial, to);
     outline(index, n.b, Layer::Emphasis, Role::Current, to);
@@ -423,11 +477,22 @@ fn draw_transfer<S: Cellular>(n: &Transferred<S::Vector>, index: &Index<S>, view
     label(to, a + n.normal * length, "n".into());
     to.push(Layer::Evidence, Role::Eye, subject, Mark::Arrow(a, a + n.sight * length));
     label(to, a + n.sight * length, "v".into());
-    to.line(Layer::Evidence, if n.star_shaped { Role::Faint } else { Role::Hidden }, subject, [b, view.eye.position]);
+    to.line(
+        Layer::Evidence,
+        if n.star_shaped { Role::Faint } else { Role::Hidden },
+        subject,
+        [b, view.eye.position],
+    );
     to.push(Layer::Evidence, Role::Evidence, subject, Mark::Dot { at: b, radius_pt: 2.5 });
 }
 
-fn outline<S: Cellular>(index: &Index<S>, cell: CellId, layer: Layer, role: Role, to: &mut Drawing<S::Vector>) {
+fn outline<S: Cellular>(
+    index: &Index<S>,
+    cell: CellId,
+    layer: Layer,
+    role: Role,
+    to: &mut Drawing<S::Vector>,
+) {
     debug_assert_eq!(cell_of(node_of(cell)), Some(cell));
     for edge in index.cells.any().edges(cell) {
         to.line(layer, role, Subject::Node(node_of(cell)), edge);

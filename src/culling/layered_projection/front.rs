@@ -1,7 +1,8 @@
 //! The front: cells that wait for projection, least solidity first.
 //!
-//! Klosowski and Silva 2000, Sections 3.2 and 4.2: a priority queue in which a cell that is put in again gets the new value
-//! and leaves its old place, and in which equal values leave in the order in which they were put in. Cost: O(log n).
+//! Klosowski and Silva 2000, Sections 3.2 and 4.2: a priority queue in which a cell that is put in again gets
+//! the new value and leaves its old place, and in which equal values leave in the order in which they were
+//! put in. Cost: O(log n).
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -120,7 +121,9 @@ mod tests {
                 front.put(cell, solidity);
             } else if rng.next_u32().is_multiple_of(20) {
                 // The first of the least.
-                let want = (0..list.len()).min_by(|a, b| list[*a].1.total_cmp(&list[*b].1)).map(|at| list.remove(at));
+                let want = (0..list.len())
+                    .min_by(|a, b| list[*a].1.total_cmp(&list[*b].1))
+                    .map(|at| list.remove(at));
                 assert_eq!(front.take(), want);
             }
         }

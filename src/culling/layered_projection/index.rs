@@ -1,7 +1,7 @@
 //! What is built once: cells, which primitives meet which cell, and both as bytes.
 //!
-//! Klosowski and Silva 2000, Sections 3.1, 4.3 and 5.1. To the rest of the house it is a tree of two levels: the region, and
-//! below it the cells.
+//! Klosowski and Silva 2000, Sections 3.1, 4.3 and 5.1. To the rest of the house it is a tree of two levels:
+//! the region, and below it the cells.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,7 +10,9 @@ use super::Params;
 use super::saved::{self, Key};
 use crate::geometry::{Aabb, CellId, NodeId, PrimId, Space};
 use crate::index::Hierarchy;
-use crate::index::tessellation::{Assignment, BoxCells, Cellular, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree};
+use crate::index::tessellation::{
+    Assignment, BoxCells, Cellular, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree,
+};
 use crate::scene::{Part, Progress, Scene};
 
 /// Cells of either shape.
@@ -59,7 +61,8 @@ impl<S: Cellular> Index<S> {
     pub fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self> {
         progress.report(0.0, "dividing space into cells");
         let cells = Cells::build(scene, params, &Part { whole: progress, start: 0.0, length: 0.3 })?;
-        let assignment = Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.7 })?;
+        let assignment =
+            Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.7 })?;
         Some(Self::of(scene, params, cells, assignment))
     }
     /// Builds it from bytes.

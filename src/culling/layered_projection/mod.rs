@@ -1,20 +1,23 @@
 //! `layered-projection`: draws what is most likely visible first, until a budget is spent.
 //!
-//! Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG 6(2), 2000,
-//! <https://doi.org/10.1109/2945.856993>. Space is divided into cells ([`index`]); from the cell of the Eye on, the front
-//! ([`front`]) grows over neighbors, and always the cell is projected that has the least solidity: an estimate of how much
-//! stands between it and the Eye, handed on from cell to cell (Figures 4 to 6, [`walk`]).
+//! Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG
+//! 6(2), 2000, <https://doi.org/10.1109/2945.856993>. Space is divided into cells ([`index`]); from the cell
+//! of the Eye on, the front ([`front`]) grows over neighbors, and always the cell is projected that has the
+//! least solidity: an estimate of how much stands between it and the Eye, handed on from cell to cell
+//! (Figures 4 to 6, [`walk`]).
 //!
-//! Departures: the view direction of the transfer is that from the Eye to the cell's center, for a single one says nothing
-//! near the rim of a wide view; a transfer against the view direction counts as none, not as negative; where a cell is cut
-//! by the view volume, its primitives are tested one by one, as the paper's baseline does; where the front runs dry before
-//! the budget does, the nearest cell in view that was not reached starts a new one, so that with an unlimited budget
-//! nothing is missed. The penalty is added: the paper leaves it open, and a factor leaves the solidity 0 of empty space as it
-//! is, through which the front flows around everything and takes what is behind for as good as what is seen. Two parameters
-//! go beyond the paper by default, for they find more (`cullscope paper klosowski-silva-table-1`): `transfer=whole` hands on
-//! all solidity in place of its part v · n, for through the oblique faces of tetrahedra that part shrinks from cell to cell;
-//! `update=star-shaped` lets the value stand that came through the face toward the Eye, where in the paper the latest one
-//! replaces it. `transfer=aligned`, `update=latest` is the paper's arithmetic.
+//! Departures: the view direction of the transfer is that from the Eye to the cell's center, for a single one
+//! says nothing near the rim of a wide view; a transfer against the view direction counts as none, not as
+//! negative; where a cell is cut by the view volume, its primitives are tested one by one, as the paper's
+//! baseline does; where the front runs dry before the budget does, the nearest cell in view that was not
+//! reached starts a new one, so that with an unlimited budget nothing is missed. The penalty is added: the
+//! paper leaves it open, and a factor leaves the solidity 0 of empty space as it is, through which the front
+//! flows around everything and takes what is behind for as good as what is seen. Two parameters go beyond the
+//! paper by default, for they find more (`cullscope paper klosowski-silva-table-1`): `transfer=whole` hands
+//! on all solidity in place of its part v · n, for through the oblique faces of tetrahedra that part shrinks
+//! from cell to cell;
+//! `update=star-shaped` lets the value stand that came through the face toward the Eye, where in the paper
+//! the latest one replaces it. `transfer=aligned`, `update=latest` is the paper's arithmetic.
 //! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod explain;
@@ -54,7 +57,8 @@ pub struct Params {
     leaf_size: u32,
     /// Which of [`Params::TRANSFERS`].
     transfer: usize,
-    /// Added to the solidity of a cell that is not star-shaped, per cent of a cell that holds ρ_max primitives.
+    /// Added to the solidity of a cell that is not star-shaped, per cent of a cell that holds ρ_max
+    /// primitives.
     penalty: u32,
     /// Which of [`Params::UPDATES`].
     update: usize,
@@ -146,8 +150,10 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     const CARD: Card = Card {
         key: "layered-projection",
         name: "Prioritized-layered projection",
-        summary: "Divides space into cells and projects those first that least is likely to stand in front of, until a budget of primitives is spent.",
-        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set Estimation. IEEE TVCG 6(2), 2000.",
+        summary: "Divides space into cells and projects those first that least is likely to stand in front \
+                  of, until a budget of primitives is spent.",
+        paper: "Klosowski and Silva. The Prioritized-Layered Projection Algorithm for Visible Set \
+                Estimation. IEEE TVCG 6(2), 2000.",
         doi: "10.1109/2945.856993",
         conservative: false,
         code: CODE,
@@ -161,27 +167,53 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         let budget = Knob::new(
             "budget",
             "primitives",
-            "how much is drawn: a number of primitives, a share of the scene such as 10%, or what fits into a time such as 5ms",
+            "how much is drawn: a number of primitives, a share of the scene such as 10%, or what fits into \
+             a time such as 5ms",
             section!("3"),
         );
         knobs.budget(budget, &mut params.budget);
-        let leaf = Knob::new("leaf-size", "%", "a cell shorter than this share of the scene's longest side is not divided", section!("4.3"));
+        let leaf = Knob::new(
+            "leaf-size",
+            "%",
+            "a cell shorter than this share of the scene's longest side is not divided",
+            section!("4.3"),
+        );
         knobs.integer(leaf, 1..=100, &mut params.leaf_size);
-        let meaning = "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
-        knobs.choice(Knob::new("transfer", "", meaning, section!("3.2")), Params::TRANSFERS, &mut params.transfer);
-        let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached by; 100 is a full cell";
+        let meaning =
+            "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
+        knobs.choice(
+            Knob::new("transfer", "", meaning, section!("3.2")),
+            Params::TRANSFERS,
+            &mut params.transfer,
+        );
+        let meaning = "added to the solidity of a cell that the eye does not see through the face it is \
+                       reached by; 100 is a full cell";
         knobs.integer(Knob::new("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
-        let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from the face the eye sees it through";
+        let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from \
+                       the face the eye sees it through";
         knobs.choice(Knob::new("update", "", meaning, section!("3.2")), Params::UPDATES, &mut params.update);
-        let meaning = "how a cell's primitives count: each as one, as in the paper, or by the cosine toward the eye of those that face it";
-        knobs.choice(Knob::new("occupancy", "", meaning, section!("6")), Params::OCCUPANCIES, &mut params.occupancy);
-        let meaning = "cells from which the front grows: that of the eye, and the first with primitives on rays into the view";
+        let meaning = "how a cell's primitives count: each as one, as in the paper, or by the cosine toward \
+                       the eye of those that face it";
+        knobs.choice(
+            Knob::new("occupancy", "", meaning, section!("6")),
+            Params::OCCUPANCIES,
+            &mut params.occupancy,
+        );
+        let meaning = "cells from which the front grows: that of the eye, and the first with primitives on \
+                       rays into the view";
         knobs.integer(Knob::new("seeds", "", meaning, section!("6")), 1..=10_000, &mut params.seeds);
-        let meaning = "after the budget each cell left is asked against the z-buffer and drawn unless hidden, so that nothing visible is missed";
+        let meaning = "after the budget each cell left is asked against the z-buffer and drawn unless \
+                       hidden, so that nothing visible is missed";
         knobs.switch(Knob::new("queries", "", meaning, section!("6")), &mut params.queries);
-        let meaning = "the budget grows until at least so many of the pixels can no longer change; 0: it does not grow";
+        let meaning =
+            "the budget grows until at least so many of the pixels can no longer change; 0: it does not grow";
         knobs.integer(Knob::new("quality", "%", meaning, section!("6")), 0..=100, &mut params.quality);
-        let seed = Knob::new("seed", "", "decides how the centers of cells are moved before they are triangulated", section!("4.3"));
+        let seed = Knob::new(
+            "seed",
+            "",
+            "decides how the centers of cells are moved before they are triangulated",
+            section!("4.3"),
+        );
         knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
         backface_knob(knobs, &mut params.backface_culling);
     }
@@ -191,7 +223,12 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     fn save(index: &Index<S>) -> Option<Vec<u8>> {
         Some(index.save())
     }
-    fn restore(scene: &Arc<Scene<S>>, params: &Params, saved: &[u8], _: &dyn Progress) -> Result<Option<Index<S>>, String> {
+    fn restore(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: &[u8],
+        _: &dyn Progress,
+    ) -> Result<Option<Index<S>>, String> {
         Index::restore(scene, params, saved).map(Some)
     }
     fn cull<O: Observer<Evidence<S>>>(
@@ -220,7 +257,14 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     fn picture(seen: &Seen, _: &View<S>, notes: &[Evidence<S>], which: usize, _: DepthScale) -> Drawing {
         picture::picture(seen, notes, which)
     }
-    fn explain(seen: &Seen, scene: &Scene<S>, index: &Index<S>, view: &View<S>, note: Option<&Evidence<S>>, to: &mut Drawing<S::Vector>) {
+    fn explain(
+        seen: &Seen,
+        scene: &Scene<S>,
+        index: &Index<S>,
+        view: &View<S>,
+        note: Option<&Evidence<S>>,
+        to: &mut Drawing<S::Vector>,
+    ) {
         explain::draw(seen, scene, index, view, note, to);
     }
 }

@@ -1,4 +1,5 @@
-//! Pictures of what is not in the world: the front as the list that it is, and how solid the cells were that were projected.
+//! Pictures of what is not in the world: the front as the list that it is, and how solid the cells were that
+//! were projected.
 
 use glam::vec2;
 
@@ -34,7 +35,13 @@ fn list<S: Cellular>(seen: &Seen, notes: &[Evidence<S>]) -> Drawing {
     for (row, (cell, queued)) in front.iter().take(ROWS).enumerate() {
         let y = TOP_PT + ROW_PT * row as f32;
         let how = if queued.is_star_shaped { "" } else { ", penalized" };
-        text(&mut to, 0.0, y, Role::Ink, format!("{}. node {}: {}{how}", row + 1, node_of(*cell), short(queued.solidity)));
+        text(
+            &mut to,
+            0.0,
+            y,
+            Role::Ink,
+            format!("{}. node {}: {}{how}", row + 1, node_of(*cell), short(queued.solidity)),
+        );
         let width = 110.0 * queued.solidity / most;
         let role = if queued.is_star_shaped { Role::Undecided } else { Role::Hidden };
         bar(&mut to, role, Subject::Node(node_of(*cell)), [150.0, y - 7.0, 150.0 + width.max(0.5), y]);
@@ -43,19 +50,31 @@ fn list<S: Cellular>(seen: &Seen, notes: &[Evidence<S>]) -> Drawing {
     if left_out > 0 {
         text(&mut to, 0.0, TOP_PT + ROW_PT * ROWS as f32, Role::Faint, format!("and {left_out} more"));
     }
-    let projected = notes.iter().rev().filter_map(|n| if let Evidence::Projected(p) = n { Some(p) } else { None });
+    let projected =
+        notes.iter().rev().filter_map(|n| if let Evidence::Projected(p) = n { Some(p) } else { None });
     for (row, p) in projected.take(ROWS).enumerate() {
         let y = TOP_PT + ROW_PT * row as f32;
-        text(&mut to, 300.0, y, Role::Ink, format!("#{}: node {}, {}, drew {}", p.rank + 1, node_of(p.cell), short(p.solidity), p.drawn));
+        text(
+            &mut to,
+            300.0,
+            y,
+            Role::Ink,
+            format!("#{}: node {}, {}, drew {}", p.rank + 1, node_of(p.cell), short(p.solidity), p.drawn),
+        );
     }
     finished(to, TOP_PT + ROW_PT * (ROWS + 1) as f32, "The front")
 }
 
-/// How solid each projected cell was when it was taken, in the order of projection: a flat line is one layer, a step the next.
+/// How solid each projected cell was when it was taken, in the order of projection: a flat line is one layer,
+/// a step the next.
 fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
     let mut to = Drawing::default();
-    let taken: Vec<_> =
-        notes.iter().filter_map(|n| if let Evidence::Projected(p) = n { Some((p.cell, p.solidity, p.drawn)) } else { None }).collect();
+    let taken: Vec<_> = notes
+        .iter()
+        .filter_map(
+            |n| if let Evidence::Projected(p) = n { Some((p.cell, p.solidity, p.drawn)) } else { None },
+        )
+        .collect();
     heading(&mut to, 0.0, format!("Solidity of the {} cells projected so far, in their order", taken.len()));
     let most = taken.iter().map(|t| t.1).fold(f32::MIN_POSITIVE, f32::max);
     let (left, right, top, bottom) = (44.0, WIDTH_PT - 6.0, TOP_PT + 4.0, 190.0);
@@ -67,7 +86,12 @@ fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
         let x = left + width * at as f32;
         let y = bottom - (bottom - top) * tallest.1 / most;
         let role = if draws { Role::Visible } else { Role::Outside };
-        bar(&mut to, role, Subject::Node(node_of(tallest.0)), [x, y.min(bottom - 0.8), x + (width * 0.85).max(0.3), bottom]);
+        bar(
+            &mut to,
+            role,
+            Subject::Node(node_of(tallest.0)),
+            [x, y.min(bottom - 0.8), x + (width * 0.85).max(0.3), bottom],
+        );
     }
     to.line(Layer::Evidence, Role::Ink, Subject::None, [vec2(left, bottom), vec2(right, bottom)]);
     for (share, y) in [(0.0, bottom), (1.0, top)] {
@@ -90,7 +114,12 @@ fn text(to: &mut Drawing, x: f32, y: f32, role: Role, text: String) {
     to.text(Layer::Labels, role, vec2(x, y), 8.0, Anchor::Start, text);
 }
 fn bar(to: &mut Drawing, role: Role, subject: Subject, [x0, y0, x1, y1]: [f32; 4]) {
-    to.push(Layer::Areas, role, subject, Mark::Area(vec![vec2(x0, y0), vec2(x1, y0), vec2(x1, y1), vec2(x0, y1)]));
+    to.push(
+        Layer::Areas,
+        role,
+        subject,
+        Mark::Area(vec![vec2(x0, y0), vec2(x1, y0), vec2(x1, y1), vec2(x0, y1)]),
+    );
 }
 fn finished(mut to: Drawing, bottom: f32, title: &str) -> Drawing {
     to.size_pt = vec2(WIDTH_PT, bottom);

@@ -1,8 +1,10 @@
-//! What the budget leaves, asked against the z-buffer of what it drew (Section 6): PLP first, then queries for the rest, which
-//! make the result exact; and how much of the image the rest could still change, which tells when a budget is enough.
+//! What the budget leaves, asked against the z-buffer of what it drew (Section 6): PLP first, then queries
+//! for the rest, which make the result exact; and how much of the image the rest could still change, which
+//! tells when a budget is enough.
 //!
-//! A cell is hidden if its box is; then the primitives that meet it alone are. Of those that meet several cells each is compared
-//! by itself, since its fragments may reach over a cell's boundary by the rasterizer's rounding.
+//! A cell is hidden if its box is; then the primitives that meet it alone are. Of those that meet several
+//! cells each is compared by itself, since its fragments may reach over a cell's boundary by the rasterizer's
+//! rounding.
 
 use crate::culling::depth::{Answer, Buffer, Faces, Nobody, footprint, hides};
 use crate::geometry::{Aabb, Footprint, PixelRect, PrimId, View};
@@ -42,7 +44,13 @@ impl<S: Faces> Rest<S> {
     pub fn doubt(&mut self, view: &View<S>) -> Doubt<'_, S> {
         self.buffer.refresh_all();
         let (columns, rows) = self.buffer.pyramid().size(Doubt::<S>::LEVEL);
-        Doubt { buffer: &self.buffer, view: *view, columns, marks: vec![false; (columns * rows) as usize], is_all: false }
+        Doubt {
+            buffer: &self.buffer,
+            view: *view,
+            columns,
+            marks: vec![false; (columns * rows) as usize],
+            is_all: false,
+        }
     }
 }
 

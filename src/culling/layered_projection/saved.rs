@@ -1,8 +1,9 @@
-//! Cells and assignment as bytes, so that the preprocess is done once (Section 5.1): versioned, and checked against scene
-//! and parameters.
+//! Cells and assignment as bytes, so that the preprocess is done once (Section 5.1): versioned, and checked
+//! against scene and parameters.
 //!
-//! Little-endian: the magic with the version, SHA-256 of the scene in hex, the parameters that the cells depend on, seven
-//! tables with their lengths (two of the cells, one of points or the region, four of the assignment), and SHA-256 of all that.
+//! Little-endian: the magic with the version, SHA-256 of the scene in hex, the parameters that the cells
+//! depend on, seven tables with their lengths (two of the cells, one of points or the region, four of the
+//! assignment), and SHA-256 of all that.
 
 use sha2::{Digest, Sha256};
 
@@ -35,7 +36,10 @@ impl Key {
     }
     fn describe(params: [u32; 3]) -> String {
         let [tessellation, leaf_size, seed] = params;
-        format!("tessellation={} leaf-size={leaf_size} seed={seed}", Params::TESSELLATIONS.get(tessellation as usize).unwrap_or(&"?"))
+        format!(
+            "tessellation={} leaf-size={leaf_size} seed={seed}",
+            Params::TESSELLATIONS.get(tessellation as usize).unwrap_or(&"?")
+        )
     }
 }
 
@@ -50,7 +54,10 @@ pub fn write<S: Cellular>(key: &Key, cells: &Cells<S>, assignment: &Assignment) 
         }
         Cells::Simplices(simplices) => {
             let (points, cells) = simplices.tables();
-            (points.iter().flat_map(axes).collect(), cells.iter().flat_map(|c| [c.vertices, c.neighbors].concat()).collect::<Vec<_>>())
+            (
+                points.iter().flat_map(axes).collect(),
+                cells.iter().flat_map(|c| [c.vertices, c.neighbors].concat()).collect::<Vec<_>>(),
+            )
         }
     };
     let [own, own_starts, shared, shared_starts] = assignment.tables();
@@ -69,7 +76,11 @@ pub fn write<S: Cellular>(key: &Key, cells: &Cells<S>, assignment: &Assignment) 
 ///
 /// # Errors
 /// Why they do not fit: damaged, of another version, scene or parameters.
-pub fn read<S: Cellular>(bytes: &[u8], key: &Key, scene: &Scene<S>) -> Result<(Cells<S>, Assignment), String> {
+pub fn read<S: Cellular>(
+    bytes: &[u8],
+    key: &Key,
+    scene: &Scene<S>,
+) -> Result<(Cells<S>, Assignment), String> {
     let damaged = || "the file is damaged".to_owned();
     let (body, sum) = bytes.split_last_chunk::<CHECKSUM>().ok_or_else(damaged)?;
     let (magic, rest) = body.split_first_chunk::<12>().ok_or_else(damaged)?;
@@ -100,7 +111,9 @@ pub fn read<S: Cellular>(bytes: &[u8], key: &Key, scene: &Scene<S>) -> Result<(C
     }
     let [points, cells, own, own_starts, shared, shared_starts] = tables;
     let cells = cells_of(params[0] as usize, &points, &cells).ok_or_else(damaged)?;
-    let assignment = Assignment::of_tables([own, own_starts, shared, shared_starts], cells.any().count(), scene).ok_or_else(damaged)?;
+    let assignment =
+        Assignment::of_tables([own, own_starts, shared, shared_starts], cells.any().count(), scene)
+            .ok_or_else(damaged)?;
     Ok((cells, assignment))
 }
 
@@ -109,7 +122,10 @@ fn cells_of<S: Cellular>(tessellation: usize, points: &[u32], cells: &[u32]) -> 
     let points: Vec<S::Vector> = points.chunks_exact(S::Vector::AXES).map(point).collect();
     if tessellation == Params::DELAUNAY {
         let (rows, []) = cells.as_chunks::<8>() else { return None };
-        let simplex = |[a, b, c, d, e, f, g, h]: &[u32; 8]| Simplex { vertices: [*a, *b, *c, *d], neighbors: [*e, *f, *g, *h] };
+        let simplex = |[a, b, c, d, e, f, g, h]: &[u32; 8]| Simplex {
+            vertices: [*a, *b, *c, *d],
+            neighbors: [*e, *f, *g, *h],
+        };
         return SimplexCells::of_tables(points, rows.iter().map(simplex).collect()).map(Cells::Simplices);
     }
     let (&[min, max], (rows, [])) = (&points[..], cells.as_chunks::<2>()) else { return None };

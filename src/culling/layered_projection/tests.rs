@@ -6,7 +6,9 @@ use super::explain::Evidence;
 use super::index::node_of;
 use super::{LayeredProjection, Params};
 use crate::culling::evidence::prim_faces_away;
-use crate::culling::{Budget, DrawList, Event, Field, Method, Methods, Recorder, Run, Settings, Value, Verdict};
+use crate::culling::{
+    Budget, DrawList, Event, Field, Method, Methods, Recorder, Run, Settings, Value, Verdict,
+};
 use crate::geometry::{CellId, Flat, PrimId, Solid, View};
 use crate::index::tessellation::Cellular;
 use crate::raster::{Drawable, render};
@@ -21,7 +23,11 @@ fn settings(pairs: &[(&str, &str)]) -> Settings {
     Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
 }
 fn run<S: World>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
-    S::method("layered-projection").expect("listed").ready(scene, &settings(pairs), &Quiet).expect("settings fit").expect("not cancelled")
+    S::method("layered-projection")
+        .expect("listed")
+        .ready(scene, &settings(pairs), &Quiet)
+        .expect("settings fit")
+        .expect("not cancelled")
 }
 
 /// Views from inside and one from outside.
@@ -54,7 +60,9 @@ fn value(fields: &[Field], name: &str) -> f64 {
 fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let (mut requeued, mut ties, mut projected) = (0, 0, 0);
     for view in views(scene) {
-        let film = run(scene, &[("tessellation", kind), ("budget", "1000"), ("leaf-size", "8")]).record(&view, usize::MAX).film;
+        let film = run(scene, &[("tessellation", kind), ("budget", "1000"), ("leaf-size", "8")])
+            .record(&view, usize::MAX)
+            .film;
         let mut front: Vec<(u32, f32)> = Vec::new();
         let mut taken = Vec::new();
         for event in film.events() {
@@ -78,7 +86,10 @@ fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
         assert!(front.is_empty(), "{kind}: all are taken");
         projected += taken.len();
     }
-    assert!(projected > 50 && requeued > 20 && ties > 5, "{kind}: {projected} projected, {requeued} put in again, {ties} ties");
+    assert!(
+        projected > 50 && requeued > 20 && ties > 5,
+        "{kind}: {projected} projected, {requeued} put in again, {ties} ties"
+    );
 }
 
 #[test]
@@ -88,11 +99,16 @@ fn each_cell_is_projected_once_and_is_the_least_of_the_front() {
 
 fn keeps_to_the_budget<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     for view in views(scene) {
-        let drawn = |budget: &str| run(scene, &[("tessellation", kind), ("budget", budget)]).cull(&view).prims;
+        let drawn =
+            |budget: &str| run(scene, &[("tessellation", kind), ("budget", budget)]).cull(&view).prims;
         let all = drawn("100%");
         for budget in [0, 1, 2, 17, 100] {
             let part = drawn(&budget.to_string());
-            assert_eq!(part, all[..budget.min(all.len())], "{kind}: a smaller budget draws the beginning of a larger one's list");
+            assert_eq!(
+                part,
+                all[..budget.min(all.len())],
+                "{kind}: a smaller budget draws the beginning of a larger one's list"
+            );
         }
         assert_eq!(drawn("5%"), all[..15.min(all.len())], "{kind}");
     }
@@ -108,8 +124,15 @@ fn sees_all<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
         let mut run = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", leaf)]);
         for view in views(scene) {
             let drawn = run.cull(&view).prims;
-            assert_eq!(render(scene, &view, &drawn).item, render(scene, &view, scene.live()).item, "{kind}, leaf {leaf}");
-            assert!(drawn.len() < scene.live().len() || view.eye.near > 1.0, "{kind}: what is out of view is not drawn");
+            assert_eq!(
+                render(scene, &view, &drawn).item,
+                render(scene, &view, scene.live()).item,
+                "{kind}, leaf {leaf}"
+            );
+            assert!(
+                drawn.len() < scene.live().len() || view.eye.near > 1.0,
+                "{kind}: what is out of view is not drawn"
+            );
         }
     }
 }
@@ -126,10 +149,20 @@ fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
 
 fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &str, update: &str) {
     let view = views(scene)[4];
-    let (mut settled, mut front, mut kept) = (std::collections::BTreeSet::new(), std::collections::BTreeMap::<u32, f64>::new(), 0);
-    let film = run(scene, &[("tessellation", kind), ("penalty", "50"), ("budget", "100%"), ("transfer", transfer), ("update", update)])
-        .record(&view, usize::MAX)
-        .film;
+    let (mut settled, mut front, mut kept) =
+        (std::collections::BTreeSet::new(), std::collections::BTreeMap::<u32, f64>::new(), 0);
+    let film = run(
+        scene,
+        &[
+            ("tessellation", kind),
+            ("penalty", "50"),
+            ("budget", "100%"),
+            ("transfer", transfer),
+            ("update", update),
+        ],
+    )
+    .record(&view, usize::MAX)
+    .film;
     let (mut solidity, mut penalties, mut count) = (std::collections::BTreeMap::new(), 0, 0);
     for at in 0..film.events().len() {
         let (what, fields) = film.fields(at);
@@ -139,12 +172,16 @@ fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &s
             "SolidityTransferred" => {
                 assert_eq!(solidity[&(v("from_node") as u32)], v("from_solidity"));
                 let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
-                assert!((sum - v("transferred")).abs() <= 1e-6 * sum && (0.0..=1.00001).contains(&v("alignment")));
+                assert!(
+                    (sum - v("transferred")).abs() <= 1e-6 * sum && (0.0..=1.00001).contains(&v("alignment"))
+                );
                 assert!(transfer == "aligned" || v("alignment") == 1.0);
                 let (node, star) = (v("node") as u32, v("star_shaped") == 1.0);
                 let want = v("transferred") + if star { 0.0 } else { 0.5 };
                 assert!((want - v("solidity")).abs() <= 1e-6 * want, "{want}");
-                let stays = update == "star-shaped" && !star && (settled.contains(&node) || front.get(&node).is_some_and(|s| *s <= v("solidity")));
+                let stays = update == "star-shaped"
+                    && !star
+                    && (settled.contains(&node) || front.get(&node).is_some_and(|s| *s <= v("solidity")));
                 assert_eq!(v("keeps") == 1.0, stays, "{kind}");
                 if star {
                     settled.insert(node);
@@ -152,7 +189,9 @@ fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &s
                 kept += usize::from(stays);
                 if !stays {
                     front.insert(node, v("solidity"));
-                    let queued = film.events()[at..].iter().find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
+                    let queued = film.events()[at..]
+                        .iter()
+                        .find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
                     assert_eq!(queued, Some((node, v("solidity") as f32)));
                 }
                 penalties += usize::from(v("star_shaped") == 0.0);
@@ -186,7 +225,8 @@ fn figure_6_written_out() {
     (view.eye.near, view.eye.fov) = (0.01, 3.0);
     let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
     LayeredProjection::cull(&built, &scene, &view, &params, &mut None, &mut list, &mut recorder);
-    let handed = recorder.notes.iter().filter_map(|n| if let Evidence::Transferred(t) = n { Some(t) } else { None });
+    let handed =
+        recorder.notes.iter().filter_map(|n| if let Evidence::Transferred(t) = n { Some(t) } else { None });
     let first: Vec<_> = handed.take_while(|t| t.a == index(0)).collect();
     assert!(!first.is_empty());
     for t in first {
@@ -203,7 +243,11 @@ fn is_reproducible<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
         views(scene).iter().map(|v| run.cull(v).prims).collect::<Vec<Vec<PrimId>>>()
     };
     assert_eq!(of_seed("1"), of_seed("1"), "{kind}");
-    assert_eq!(of_seed("1") == of_seed("2"), kind != "delaunay", "{kind}: the seed moves the points of the triangulation only");
+    assert_eq!(
+        of_seed("1") == of_seed("2"),
+        kind != "delaunay",
+        "{kind}: the seed moves the points of the triangulation only"
+    );
 }
 
 #[test]
@@ -213,10 +257,14 @@ fn the_same_seed_gives_the_same_order() {
 
 fn is_told<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let view = views(scene)[4];
-    let recording = run(scene, &[("tessellation", kind), ("budget", "9"), ("backface-culling", "true")]).record(&view, usize::MAX);
+    let recording = run(scene, &[("tessellation", kind), ("budget", "9"), ("backface-culling", "true")])
+        .record(&view, usize::MAX);
     let film = &recording.film;
     assert_eq!(recording.list.prims.len(), 9);
-    assert!(film.events().iter().any(|e| matches!(e, Event::DecidedPrim(_, Verdict::OverBudget) | Event::DecidedNode(_, Verdict::OverBudget))));
+    assert!(film.events().iter().any(|e| matches!(
+        e,
+        Event::DecidedPrim(_, Verdict::OverBudget) | Event::DecidedNode(_, Verdict::OverBudget)
+    )));
     for at in 0..film.events().len() {
         assert!(!film.sentence(at).contains("NaN") && film.sentence(at).len() > 10);
     }
@@ -233,7 +281,9 @@ fn is_saved<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let mut made = run(scene, &pairs);
     let saved = made.save().expect("there is something to save");
     let entry = S::method("layered-projection").expect("listed");
-    let restore = |pairs: &[(&str, &str)], bytes: &[u8]| entry.restore(scene, &settings(pairs), bytes, &Quiet).map_err(|e| e.to_string());
+    let restore = |pairs: &[(&str, &str)], bytes: &[u8]| {
+        entry.restore(scene, &settings(pairs), bytes, &Quiet).map_err(|e| e.to_string())
+    };
     let mut again = restore(&pairs, &saved).expect("it fits").expect("not cancelled");
     for view in views(scene) {
         assert_eq!(made.cull(&view), again.cull(&view), "{kind}");
@@ -287,7 +337,11 @@ fn is_ended_from_outside<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
             assert!(run.limit(None));
             assert_eq!(part, all[..part.len()], "{kind}");
             assert!(part.len() >= most.min(all.len()), "{kind}: {} of {most}", part.len());
-            assert_eq!(*told.lock().expect("nobody panics"), part, "{kind}: all that was drawn was told, once");
+            assert_eq!(
+                *told.lock().expect("nobody panics"),
+                part,
+                "{kind}: all that was drawn was told, once"
+            );
         }
     }
     assert!(!run.remembers());
@@ -300,12 +354,18 @@ fn a_frame_can_be_ended_from_outside() {
 
 fn grows_from_several_seeds<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let view = views(scene)[0];
-    let film = run(scene, &[("tessellation", kind), ("seeds", "20"), ("budget", "100%")]).record(&view, usize::MAX).film;
+    let film = run(scene, &[("tessellation", kind), ("seeds", "20"), ("budget", "100%")])
+        .record(&view, usize::MAX)
+        .film;
     let seeds = (0..film.events().len()).filter(|&at| film.fields(at).0 == "CellSeeded").count();
     assert!(seeds > 5, "{kind}: {seeds}");
     for kind_of in [("occupancy", "front-facing"), ("seeds", "20"), ("update", "latest")] {
         let drawn = run(scene, &[("tessellation", kind), ("budget", "100%"), kind_of]).cull(&view).prims;
-        assert_eq!(render(scene, &view, &drawn).item, render(scene, &view, scene.live()).item, "{kind}, {kind_of:?}");
+        assert_eq!(
+            render(scene, &view, &drawn).item,
+            render(scene, &view, scene.live()).item,
+            "{kind}, {kind_of:?}"
+        );
     }
 }
 
@@ -318,13 +378,29 @@ fn is_exact_with_queries<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let mut hidden = 0;
     for budget in ["0", "10", "20%", "100%"] {
         for culled in ["false", "true"] {
-            let mut run = run(scene, &[("tessellation", kind), ("budget", budget), ("queries", "true"), ("backface-culling", culled)]);
+            let mut run = run(
+                scene,
+                &[
+                    ("tessellation", kind),
+                    ("budget", budget),
+                    ("queries", "true"),
+                    ("backface-culling", culled),
+                ],
+            );
             for view in views(scene) {
                 let (list, tally) = run.count(&view);
                 hidden += tally.named().get("cells_hidden").copied().unwrap_or(0);
-                let facing: Vec<PrimId> =
-                    scene.live().iter().copied().filter(|p| culled == "false" || !prim_faces_away(scene, view.eye.position, *p)).collect();
-                assert_eq!(render(scene, &view, &list.prims).item, render(scene, &view, &facing).item, "{kind}, budget {budget}");
+                let facing: Vec<PrimId> = scene
+                    .live()
+                    .iter()
+                    .copied()
+                    .filter(|p| culled == "false" || !prim_faces_away(scene, view.eye.position, *p))
+                    .collect();
+                assert_eq!(
+                    render(scene, &view, &list.prims).item,
+                    render(scene, &view, &facing).item,
+                    "{kind}, budget {budget}"
+                );
                 let mut once = list.ascending();
                 once.dedup();
                 assert_eq!(once.len(), list.prims.len(), "{kind}: drawn once");
@@ -347,7 +423,10 @@ fn keeps_its_promise<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
             let drawn = run.cull(&view).prims;
             let (image, truth) = (render(scene, &view, &drawn), render(scene, &view, scene.live()));
             let wrong = truth.wrong_pixels(&image) as f64 / truth.item.len() as f64;
-            assert!(wrong <= 1.0 - quality.parse::<f64>().expect("a number") / 100.0, "{kind}, {quality}: {wrong}");
+            assert!(
+                wrong <= 1.0 - quality.parse::<f64>().expect("a number") / 100.0,
+                "{kind}, {quality}: {wrong}"
+            );
             less += usize::from(wrong > 0.0);
         }
     }

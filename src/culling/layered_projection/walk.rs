@@ -86,7 +86,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         out: &'a mut DrawList,
         watch: &'a mut O,
     ) -> Self {
-        let unseen = Aspect { sight: Sight::Unknown, exit: Exit::Out, toward: S::Vector::default(), is_settled: false };
+        let unseen = Aspect {
+            sight: Sight::Unknown,
+            exit: Exit::Out,
+            toward: S::Vector::default(),
+            is_settled: false,
+        };
         Self {
             index,
             cells: index.cells.any(),
@@ -172,7 +177,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// The share of the image that what is in view and not drawn could still change.
     fn doubt(&mut self, rest: &mut Rest<S>) -> f32 {
-        let (index, scene, eye, planes) = (self.index, self.scene, self.view.eye.position, Frustum::<S::Vector>::ALL);
+        let (index, scene, eye, planes) =
+            (self.index, self.scene, self.view.eye.position, Frustum::<S::Vector>::ALL);
         let mut doubt = rest.doubt(self.view);
         for cell in (0..index.count() as u32).map(CellId).filter(|c| !index.assignment.own(*c).is_empty()) {
             if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside {
@@ -181,8 +187,10 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
             let faces = || !(self.params.backface_culling && prim_faces_away(scene, eye, prim));
-            let outside = || matches!(self.frustum.test(&scene.prim_bounds(prim), planes), FrustumTest::Outside(_));
-            // What the near plane may cut has no bound in the image: there are few of them, so they are drawn.
+            let outside =
+                || matches!(self.frustum.test(&scene.prim_bounds(prim), planes), FrustumTest::Outside(_));
+            // What the near plane may cut has no bound in the image: there are few of them, so they are
+            // drawn.
             if !self.marks[number] && faces() && !outside() && !doubt.of_prim(scene, prim) {
                 self.marks[number] = true;
                 self.out.prims.push(prim);
@@ -194,7 +202,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Whether all of a cell is hidden by what is drawn; says so.
     fn is_hidden(&mut self, cell: CellId, solidity: f32) -> bool {
         let (node, bounds) = (node_of(cell), self.cells.bounds(cell));
-        let Some(rest) = self.rest.as_mut().filter(|_| self.index.assignment.held(cell) > 0) else { return false };
+        let Some(rest) = self.rest.as_mut().filter(|_| self.index.assignment.held(cell) > 0) else {
+            return false;
+        };
         rest.catch_up(self.scene, &self.out.prims);
         let Some(answer) = rest.hides(&bounds) else { return false };
         self.watch.event(Event::Line(line::ASK));
@@ -223,7 +233,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // Both are in the same order.
         let mut hidden = rest.draw(self.scene, &open).iter().peekable();
         for prim in open {
-            let verdict = if hidden.next_if_eq(&&prim).is_some() { Verdict::Hidden } else { Verdict::Visible };
+            let verdict =
+                if hidden.next_if_eq(&&prim).is_some() { Verdict::Hidden } else { Verdict::Visible };
             if verdict == Verdict::Visible {
                 self.out.prims.push(prim);
             }
@@ -233,12 +244,14 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Section 4.2: the cell that holds the Eye, or else the nearest one that is in view.
     fn seed(&mut self) -> Option<CellId> {
-        let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else { return self.nearest_unreached() };
+        let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else {
+            return self.nearest_unreached();
+        };
         self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: 0.0, origin: Origin::Eye }));
         Some(cell)
     }
-    /// The nearest cell in view that holds something and was not projected. Where the front grows over faces and no number
-    /// is rounded, there is one at the beginning only.
+    /// The nearest cell in view that holds something and was not projected. Where the front grows over faces
+    /// and no number is rounded, there is one at the beginning only.
     fn nearest_unreached(&mut self) -> Option<CellId> {
         let eye = self.view.eye.position;
         let mut best: Option<(f32, CellId)> = None;
@@ -258,7 +271,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: squared.sqrt(), origin }));
         Some(cell)
     }
-    /// Section 6, several seeds: on rays through points spread over the image, the first cells that hold something.
+    /// Section 6, several seeds: on rays through points spread over the image, the first cells that hold
+    /// something.
     fn seeds_ahead(&mut self) {
         let rows = self.view.projection().rows;
         let forward = rows[S::Vector::AXES - 1];
@@ -307,7 +321,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let planes = Frustum::<S::Vector>::ALL;
         let test = self.frustum.test(&bounds, planes);
         let frustum = &self.frustum;
-        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), frustum, &bounds, planes, test)));
+        self.watch.note(move || {
+            Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), frustum, &bounds, planes, test))
+        });
         let sight = match test {
             FrustumTest::Outside(_) => {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
@@ -345,18 +361,35 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
     fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<f32> {
         let seen = self.aspects[b.cell.at()];
-        let along = if self.params.transfer == Params::WHOLE { 1.0 } else { seen.toward.dot(b.normal).max(0.0) };
+        let along =
+            if self.params.transfer == Params::WHOLE { 1.0 } else { seen.toward.dot(b.normal).max(0.0) };
         let sum = a.share + along * a.solidity;
         let star_shaped = seen.exit == Exit::Ends || seen.exit == Exit::Into(a.cell);
         let solidity = if star_shaped { sum } else { sum + self.params.penalty as f32 / 100.0 };
         let before = self.front.solidity(b.cell);
-        let keeps = self.params.update == Params::STAR_SHAPED && !star_shaped && (seen.is_settled || before.is_some_and(|v| v <= solidity));
+        let keeps = self.params.update == Params::STAR_SHAPED
+            && !star_shaped
+            && (seen.is_settled || before.is_some_and(|v| v <= solidity));
         self.aspects[b.cell.at()].is_settled |= star_shaped;
         let (held, most) = (self.index.assignment.held(a.cell), self.index.assignment.most());
         let (cell, normal, sight) = (b.cell, b.normal, seen.toward);
         let (a, share, of_a) = (a.cell, a.share, a.solidity);
         self.watch.note(|| {
-            Evidence::Transferred(Transferred { a, b: cell, held, most, share, sight, normal, along, of_a, star_shaped, solidity, before, keeps })
+            Evidence::Transferred(Transferred {
+                a,
+                b: cell,
+                held,
+                most,
+                share,
+                sight,
+                normal,
+                along,
+                of_a,
+                star_shaped,
+                solidity,
+                before,
+                keeps,
+            })
         });
         if !star_shaped {
             self.watch.event(Event::Line(line::PENALTY));
@@ -393,7 +426,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         self.ask();
         self.rank += 1;
-        let (drawn, held, left) = ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
+        let (drawn, held, left) =
+            ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
         self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left }));
         if sight != Sight::Outside {
             self.watch.event(Event::DecidedNode(node, Verdict::Visible));
@@ -410,8 +444,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.told = self.out.prims.len();
     }
 
-    /// Draws a primitive of a cell that these planes cut, or says why not. Where the rest is asked for, the cell in which the
-    /// budget ends is drawn whole.
+    /// Draws a primitive of a cell that these planes cut, or says why not. Where the rest is asked for, the
+    /// cell in which the budget ends is drawn whole.
     fn fate(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
         let outside = self.outside(prim, cutting);
         if outside.is_some() {
@@ -435,7 +469,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let test = self.frustum.test(&bounds, cutting);
             if matches!(test, FrustumTest::Outside(_)) {
                 let frustum = &self.frustum;
-                self.watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, cutting, test)));
+                self.watch.note(move || {
+                    Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, cutting, test))
+                });
                 return Some(Verdict::Outside);
             }
         }
@@ -446,8 +482,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         None
     }
 
-    /// Says of every cell and primitive that was not reached why not: it is out of view, or the budget was spent. Only if
-    /// someone listens; it changes nothing.
+    /// Says of every cell and primitive that was not reached why not: it is out of view, or the budget was
+    /// spent. Only if someone listens; it changes nothing.
     fn tell_the_rest(&mut self, spent: bool) {
         let (cells, left) = (self.rank, self.budget_left());
         self.watch.note(|| Evidence::Ended(Ended { cells, left, spent }));
@@ -475,10 +511,13 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let test = self.frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
             let frustum = &self.frustum;
-            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, planes, test)));
+            self.watch.note(move || {
+                Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, planes, test))
+            });
             return Verdict::Outside;
         }
-        // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though no plane says so.
+        // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though
+        // no plane says so.
         if spent { Verdict::OverBudget } else { Verdict::Hidden }
     }
 }

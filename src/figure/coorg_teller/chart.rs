@@ -1,5 +1,6 @@
-//! Figures 9 and 11 of the paper: the pseudocode that the explorer steps through, and the area-angle against the true
-//! solid angle, which is computed after van Oosterom and Strackee, "The Solid Angle of a Plane Triangle", 1983.
+//! Figures 9 and 11 of the paper: the pseudocode that the explorer steps through, and the area-angle against
+//! the true solid angle, which is computed after van Oosterom and Strackee, "The Solid Angle of a Plane
+//! Triangle", 1983.
 
 use glam::{DVec3, Vec2, Vec3, vec2};
 
@@ -42,8 +43,10 @@ pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
     y += line_pt * 0.6;
     paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, y), vec2(COLUMN_PT, y)]);
     paper.size_pt = vec2(COLUMN_PT, y + 1.0);
-    let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps through it: the selection of \
-                   occluders, the recursion with view-frustum culling in front, TestOcclusion opened up, and the detail objects in Gather.";
+    let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps \
+                   through it: the selection of \
+                   occluders, the recursion with view-frustum culling in front, TestOcclusion opened up, and \
+                   the detail objects in Gather.";
     Ok(page(Paper::Column, "The visibility algorithm", Vec::new(), caption, &paper))
 }
 
@@ -56,7 +59,12 @@ fn solid_angle(corners: [DVec3; 3], from: DVec3) -> f64 {
 }
 
 /// A square of side 2 around the origin, across z.
-const SQUARE: [Vec3; 4] = [Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(1.0, 1.0, 0.0), Vec3::new(-1.0, 1.0, 0.0)];
+const SQUARE: [Vec3; 4] = [
+    Vec3::new(-1.0, -1.0, 0.0),
+    Vec3::new(1.0, -1.0, 0.0),
+    Vec3::new(1.0, 1.0, 0.0),
+    Vec3::new(-1.0, 1.0, 0.0),
+];
 
 /// Area-angle by the method's own function, and the true solid angle.
 fn both(from: Vec3) -> [f64; 2] {
@@ -92,13 +100,23 @@ impl Chart {
         let [low, high] = axes(to, &self.x, &self.y, min, max);
         for (which, role) in [(1, Role::Visible), (0, Role::Evidence)] {
             let place = |(x, values): &(f64, [f64; 2])| {
-                vec2(low.x + self.x.place(*x) * (high.x - low.x), high.y - self.y.place(values[which]) * (high.y - low.y))
+                vec2(
+                    low.x + self.x.place(*x) * (high.x - low.x),
+                    high.y - self.y.place(values[which]) * (high.y - low.y),
+                )
             };
             lines.line(Layer::Evidence, role, Subject::None, self.rows.iter().map(place).collect::<Vec<_>>());
         }
         clip(&mut lines, low, high);
         to.items.extend(lines.items);
-        to.text(Layer::Labels, Role::Ink, vec2((min.x + max.x) * 0.5, max.y + LABEL_PT * 1.6), LABEL_PT, Anchor::Middle, self.label);
+        to.text(
+            Layer::Labels,
+            Role::Ink,
+            vec2((min.x + max.x) * 0.5, max.y + LABEL_PT * 1.6),
+            LABEL_PT,
+            Anchor::Middle,
+            self.label,
+        );
     }
 }
 
@@ -112,7 +130,8 @@ fn parameters(width_pt: f32) -> Plan {
         plan.line(Role::Faint, p, end);
     }
     plan.world.line(Layer::Emphasis, Role::Occluder, Subject::None, ends);
-    let mut arrow = |role, a: Vec2, b: Vec2| plan.world.push(Layer::Emphasis, role, Subject::None, Mark::Arrow(a, b));
+    let mut arrow =
+        |role, a: Vec2, b: Vec2| plan.world.push(Layer::Emphasis, role, Subject::None, Mark::Arrow(a, b));
     arrow(Role::Evidence, p, center);
     arrow(Role::Ink, center, center + normal * 1.5);
     let toward = (center - p).normalize();
@@ -132,20 +151,32 @@ pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
     const GAP_PT: f32 = 12.0;
     let width = (TWO_COLUMNS_PT - 2.0 * GAP_PT) / 3.0;
     let left = |i: usize| (width + GAP_PT) * i as f32;
-    let mut paper = Drawing { size_pt: vec2(TWO_COLUMNS_PT, HEIGHT_PT + LABEL_PT * 2.0), ..Drawing::default() };
+    let mut paper =
+        Drawing { size_pt: vec2(TWO_COLUMNS_PT, HEIGHT_PT + LABEL_PT * 2.0), ..Drawing::default() };
     let plan = parameters(width);
     let mut sketch = Drawing::default();
     let corners = [Vec2::ZERO, vec2(width, HEIGHT_PT)];
     Sheet::fit(&plan.frame, corners[0], corners[1]).place(&plan.world, &mut sketch);
     clip(&mut sketch, corners[0], corners[1]);
     paper.items.extend(sketch.items);
-    paper.text(Layer::Labels, Role::Ink, vec2(width * 0.5, HEIGHT_PT + LABEL_PT * 1.6), LABEL_PT, Anchor::Middle, "(a) parameters, in cross section");
-    let axis = |label: &str, low: f64, high: f64, logarithmic| Axis { label: label.into(), low, high, logarithmic };
+    paper.text(
+        Layer::Labels,
+        Role::Ink,
+        vec2(width * 0.5, HEIGHT_PT + LABEL_PT * 1.6),
+        LABEL_PT,
+        Anchor::Middle,
+        "(a) parameters, in cross section",
+    );
+    let axis =
+        |label: &str, low: f64, high: f64, logarithmic| Axis { label: label.into(), low, high, logarithmic };
     let charts = [
         Chart {
             x: axis("distance, units", 0.1, 100.0, true),
             y: axis("solid angle, sr", 1e-4, 1e3, true),
-            rows: (0..=60).map(|i| 10f64.powf(f64::from(i) / 20.0 - 1.0)).map(|d| (d, at_distance(d))).collect(),
+            rows: (0..=60)
+                .map(|i| 10f64.powf(f64::from(i) / 20.0 - 1.0))
+                .map(|d| (d, at_distance(d)))
+                .collect(),
             label: "(b) by distance, seen head-on",
         },
         Chart {
@@ -164,10 +195,14 @@ pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Occluder, Swatch::Line, "occluder of area A and normal N"),
         entry(Role::Eye, Swatch::Line, "viewing direction V"),
     ];
-    let caption = "The area-angle estimates the solid angle that an occluder takes up from the viewpoint P; D leads to the occluder's center, and V \
-                   is the direction in which P sees it. The charts compare the two for a square of side 2. Like the solid angle it grows \
-                   with the area and falls with the square of the distance and the cosine of obliqueness. Nearby it is too large: \
-                   half a side away nearly twice the solid angle, which is 2π at most. That does no harm, since such an occluder comes first anyway.";
+    let caption = "The area-angle estimates the solid angle that an occluder takes up from the viewpoint P; \
+                   D leads to the occluder's center, and V \
+                   is the direction in which P sees it. The charts compare the two for a square of side 2. \
+                   Like the solid angle it grows \
+                   with the area and falls with the square of the distance and the cosine of obliqueness. \
+                   Nearby it is too large: \
+                   half a side away nearly twice the solid angle, which is 2π at most. That does no harm, \
+                   since such an occluder comes first anyway.";
     Ok(page(Paper::TwoColumns, "Area-angle and solid angle", legend, caption, &paper))
 }
 

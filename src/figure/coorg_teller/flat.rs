@@ -1,5 +1,6 @@
-//! Figures 2 to 4 of the paper, in flatland: from where a box is hidden by one occluder, by two connected ones, and where a
-//! shared edge must not be ignored. Regions are exact: cut out by the method's own lines, classified by its own test.
+//! Figures 2 to 4 of the paper, in flatland: from where a box is hidden by one occluder, by two connected
+//! ones, and where a shared edge must not be ignored. Regions are exact: cut out by the method's own lines,
+//! classified by its own test.
 
 use glam::{DVec2, Vec2};
 
@@ -47,7 +48,11 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
     cast.draw(&mut plan, &[1.0, 1.0]);
     for occlusion in [Occlusion::None, Occlusion::Partial, Occlusion::Full] {
         let (_, number, words) = region_role(occlusion);
-        let mut middles: Vec<Vec2> = all.iter().filter(|(o, _)| *o == occlusion).filter_map(|(_, c)| largest(std::iter::once(c))).collect();
+        let mut middles: Vec<Vec2> = all
+            .iter()
+            .filter(|(o, _)| *o == occlusion)
+            .filter_map(|(_, c)| largest(std::iter::once(c)))
+            .collect();
         middles.sort_by(|a, b| a.x.total_cmp(&b.x));
         for at in middles {
             // Region 2 is a wedge: wider below.
@@ -59,7 +64,8 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
     let eye = cast.eye(0);
     plan.viewpoint(eye, "P");
     let (_, number, words) = region_role(cast.blockers.classify(0, &cast.target, eye));
-    let content = panels(COLUMN_PT, 1, &[plan.panel(format!("From P, in region {number}, T is {words} occluded."))]);
+    let content =
+        panels(COLUMN_PT, 1, &[plan.panel(format!("From P, in region {number}, T is {words} occluded."))]);
     let legend = vec![
         entry(Role::Occluder, Swatch::Line, "occluder A"),
         entry(Role::Evidence, Swatch::Line, "supporting line"),
@@ -69,8 +75,10 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Faint, Swatch::Area, "1: elsewhere before A"),
         entry(Role::Eye, Swatch::Dot, "viewpoint"),
     ];
-    let caption = "An occluder A and a box T in flatland. A supporting line through an end of A has A and T on one side, a separating line \
-                   has them on opposite sides. They and A's own line divide the viewpoints that have A before T into three regions: T is \
+    let caption = "An occluder A and a box T in flatland. A supporting line through an end of A has A and T \
+                   on one side, a separating line \
+                   has them on opposite sides. They and A's own line divide the viewpoints that have A \
+                   before T into three regions: T is \
                    not occluded by A (1), partially (2), or fully (3). Scene occluder_and_box, first eye.";
     Ok(page(Paper::Column, "Supporting and separating lines", legend, caption, &content))
 }
@@ -105,7 +113,8 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
             draw_tangent(&mut plan, if ignored { Role::Outside } else { Role::Evidence }, &supporting);
         }
         let alone = |p: DVec2| cast.blockers.classify(id, &cast.target, p.as_vec2()) == Occlusion::Full;
-        if let Some(at) = largest(all.iter().filter(|(_, c)| alone(super::regions::middle(c))).map(|r| &r.1)) {
+        if let Some(at) = largest(all.iter().filter(|(_, c)| alone(super::regions::middle(c))).map(|r| &r.1))
+        {
             plan.plate(at, LABEL_PT, Font::Regular, &format!("{name} alone"));
         }
     }
@@ -117,7 +126,8 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
     let eye = cast.eye(0);
     plan.viewpoint(eye, "P");
     let count = cast.blockers.hiding(&cast.target, eye).len();
-    let content = panels(COLUMN_PT, 1, &[plan.panel(format!("From P, T is hidden by {count} occluders together."))]);
+    let content =
+        panels(COLUMN_PT, 1, &[plan.panel(format!("From P, T is hidden by {count} occluders together."))]);
     let legend = vec![
         entry(Role::Occluder, Swatch::Line, "occluders A, B"),
         entry(Role::Evidence, Swatch::Line, "supporting line"),
@@ -126,9 +136,12 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Faint, Swatch::Area, "one of them hides T alone"),
         entry(Role::Eye, Swatch::Dot, "viewpoint"),
     ];
-    let caption = "Two occluders that share the edge E, a point in flatland. From the hatched region neither hides the box T, but both do \
-                   together: each of them hides it partially, and they lie on opposite sides of E, so the supporting lines through E \
-                   (dotted) need not be satisfied, only those through the outer ends. Scene connected_occluders, first eye.";
+    let caption = "Two occluders that share the edge E, a point in flatland. From the hatched region neither \
+                   hides the box T, but both do \
+                   together: each of them hides it partially, and they lie on opposite sides of E, so the \
+                   supporting lines through E \
+                   (dotted) need not be satisfied, only those through the outer ends. Scene \
+                   connected_occluders, first eye.";
     Ok(page(Paper::Column, "Occlusion by connected occluders", legend, caption, &content))
 }
 
@@ -138,13 +151,15 @@ fn shared_end(cast: &Cast) -> Vec2 {
     a.into_iter().find(|p| b.contains(p)).expect("the occluders of these scenes are connected")
 }
 
-/// What would be said if every supporting line through a shared end were ignored, whichever side its occluders lie on.
+/// What would be said if every supporting line through a shared end were ignored, whichever side its
+/// occluders lie on.
 fn ignoring_every_shared_end(cast: &Cast, p: DVec2) -> bool {
     let (eye, shared) = (p.as_vec2(), shared_end(cast));
     (0..cast.occluders.len()).all(|id| {
         let planes = cast.blockers.planes(id, &cast.target, eye);
         let rest = planes.iter().flatten().filter(|[supporting, _]| supporting.edge[0] != shared);
-        cast.blockers.classify(id, &cast.target, eye) == Occlusion::Partial && rest.into_iter().all(|[s, _]| s.eye_distance > 0.0)
+        cast.blockers.classify(id, &cast.target, eye) == Occlusion::Partial
+            && rest.into_iter().all(|[s, _]| s.eye_distance > 0.0)
     })
 }
 
@@ -157,7 +172,11 @@ enum Verdict {
 }
 
 fn verdict(cast: &Cast, p: DVec2) -> Option<Verdict> {
-    if who_hides(cast, p).is_some() { Some(Verdict::Hidden) } else { ignoring_every_shared_end(cast, p).then_some(Verdict::Wrong) }
+    if who_hides(cast, p).is_some() {
+        Some(Verdict::Hidden)
+    } else {
+        ignoring_every_shared_end(cast, p).then_some(Verdict::Wrong)
+    }
 }
 
 /// Figure 4: a shared silhouette edge must not be ignored.
@@ -171,7 +190,11 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
     let shared = shared_end(&cast);
     for id in 0..cast.occluders.len() {
         for [supporting, _] in cast.tangents(id) {
-            draw_tangent(&mut plan, if supporting.edge[0] == shared { Role::Outside } else { Role::Evidence }, &supporting);
+            draw_tangent(
+                &mut plan,
+                if supporting.edge[0] == shared { Role::Outside } else { Role::Evidence },
+                &supporting,
+            );
         }
     }
     cast.draw(&mut plan, &[1.0, -1.0]);
@@ -183,12 +206,15 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
     plan.viewpoint(eyes[0], "P");
     plan.viewpoint(eyes[1], "Q");
     // Beside the sign of what is wrong, which stands in the middle.
-    for (which, words, aside) in [(Verdict::Hidden, "T hidden", Vec2::ZERO), (Verdict::Wrong, "T visible", Vec2::new(24.0, -14.0))] {
+    for (which, words, aside) in
+        [(Verdict::Hidden, "T hidden", Vec2::ZERO), (Verdict::Wrong, "T visible", Vec2::new(24.0, -14.0))]
+    {
         if let Some(at) = largest(all.iter().filter(|r| r.0 == which).map(|r| &r.1)) {
             plan.plate(at + aside * plan.unit, LABEL_PT, Font::Regular, words);
         }
     }
-    let says = |eye: Vec2| if cast.blockers.hiding(&cast.target, eye).is_empty() { "visible" } else { "hidden" };
+    let says =
+        |eye: Vec2| if cast.blockers.hiding(&cast.target, eye).is_empty() { "visible" } else { "hidden" };
     let label = format!("The method says: T is {} from P and {} from Q.", says(eyes[0]), says(eyes[1]));
     let content = panels(COLUMN_PT, 1, &[plan.panel(label)]);
     let legend = vec![
@@ -199,8 +225,10 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Wrong, Swatch::Area, "ignoring E would call T hidden: wrong"),
         entry(Role::Eye, Swatch::Line, "what P sees of T"),
     ];
-    let caption = "A and B share E, but from P both lie on the same side of it: E is on their silhouette. If the supporting lines through E \
-                   (dotted) were ignored there, T would be called hidden, yet P sees a corner of it past E. So they are ignored only \
+    let caption = "A and B share E, but from P both lie on the same side of it: E is on their silhouette. If \
+                   the supporting lines through E \
+                   (dotted) were ignored there, T would be called hidden, yet P sees a corner of it past E. \
+                   So they are ignored only \
                    where the two occluders lie on opposite sides of E. Scene silhouette_edge, both eyes.";
     Ok(page(Paper::Column, "A shared silhouette edge counts", legend, caption, &content))
 }
@@ -267,7 +295,11 @@ mod tests {
             };
             // Rays are 1/60 of a side apart, so next to a line they may miss the sliver.
             let near = cast.borders().iter().any(|b| (b.normal.normalize().dot(p - b.at)).abs() < 0.15);
-            assert!(near || region == wanted, "{p}: {region:?}, but of {} rays {blocked} are blocked", border.len());
+            assert!(
+                near || region == wanted,
+                "{p}: {region:?}, but of {} rays {blocked} are blocked",
+                border.len()
+            );
             seen[region as usize] += usize::from(!near);
         }
         assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
@@ -281,7 +313,8 @@ mod tests {
         let mut jointly = 0;
         for p in viewpoints(&plan, 2000) {
             if all.iter().any(|(who, c)| *who == Hiding::Jointly && holds(c, p)) {
-                assert!((0..2).all(|id| cast.blockers.classify(id, &cast.target, p.as_vec2()) == Occlusion::Partial), "{p}");
+                let relation = |id| cast.blockers.classify(id, &cast.target, p.as_vec2());
+                assert!((0..2).all(|id| relation(id) == Occlusion::Partial), "{p}");
                 assert!(border_of(&cast).iter().all(|to| blocked(&cast, p, *to)), "{p}");
                 jointly += 1;
             }

@@ -1,4 +1,5 @@
-//! What the figures of this folder share: a flatland picture with labels, a cast of occluders and a box, pages.
+//! What the figures of this folder share: a flatland picture with labels, a cast of occluders and a box,
+//! pages.
 
 use std::sync::Arc;
 
@@ -24,11 +25,18 @@ pub(in crate::figure) fn entry(role: Role, swatch: Swatch, label: &str) -> Entry
 }
 
 /// A page around a picture.
-pub(in crate::figure) fn page(paper: Paper, title: &str, legend: Vec<Entry>, caption: impl Into<String>, content: &Drawing) -> Drawing {
+pub(in crate::figure) fn page(
+    paper: Paper,
+    title: &str,
+    legend: Vec<Entry>,
+    caption: impl Into<String>,
+    content: &Drawing,
+) -> Drawing {
     Page { paper, title: title.into(), legend, caption: caption.into() }.compose(content)
 }
 
-/// A flatland picture in world coordinates whose scale on paper is known, so that labels can be set on plates.
+/// A flatland picture in world coordinates whose scale on paper is known, so that labels can be set on
+/// plates.
 pub(in crate::figure) struct Plan {
     pub(in crate::figure) world: Drawing<Vec2>,
     pub(in crate::figure) frame: Aabb<Vec2>,
@@ -44,7 +52,12 @@ impl Plan {
         Aabb { min: self.frame.min.as_dvec2(), max: self.frame.max.as_dvec2() }
     }
     pub(in crate::figure) fn area(&mut self, role: Role, points: &[DVec2]) {
-        self.world.push(Layer::Areas, role, Subject::None, Mark::Area(points.iter().map(|p| p.as_vec2()).collect()));
+        self.world.push(
+            Layer::Areas,
+            role,
+            Subject::None,
+            Mark::Area(points.iter().map(|p| p.as_vec2()).collect()),
+        );
     }
     pub(in crate::figure) fn line(&mut self, role: Role, a: Vec2, b: Vec2) {
         self.world.line(Layer::Evidence, role, Subject::None, [a, b]);
@@ -95,9 +108,11 @@ impl Cast {
     pub(in crate::figure) fn of(scene: &str) -> Result<Self, SceneError> {
         let scene = example(scene)?;
         let name = |p: PrimId| scene.objects()[scene.object_of(p).at()].name.as_str();
-        let (targets, blocking): (Vec<PrimId>, Vec<PrimId>) = scene.live().iter().partition(|&&p| name(p) == "T");
+        let (targets, blocking): (Vec<PrimId>, Vec<PrimId>) =
+            scene.live().iter().partition(|&&p| name(p) == "T");
         let target = targets.iter().fold(Aabb::empty(), |sum, &p| sum.union(scene.prim_bounds(p)));
-        let polygons: Vec<Vec<u32>> = blocking.iter().filter_map(|&p| scene.corners(p)).map(|c| c.to_vec()).collect();
+        let polygons: Vec<Vec<u32>> =
+            blocking.iter().filter_map(|&p| scene.corners(p)).map(|c| c.to_vec()).collect();
         let ends = |p: PrimId| scene.prim_points(p).collect::<Vec<_>>();
         let occluders = blocking.iter().map(|&p| (name(p).to_owned(), [ends(p)[0], ends(p)[1]])).collect();
         Ok(Self { blockers: Blockers::new(scene.points(), &polygons), occluders, target, scene })
@@ -122,7 +137,8 @@ impl Cast {
         }
         all
     }
-    /// Draws the occluders and the box with their names; `sides`: 1 for a name before an occluder, −1 behind it.
+    /// Draws the occluders and the box with their names; `sides`: 1 for a name before an occluder, −1 behind
+    /// it.
     pub(in crate::figure) fn draw(&self, plan: &mut Plan, sides: &[f32]) {
         let target = self.target;
         plan.world.bounds(Layer::Emphasis, Role::Ink, Subject::None, &target);
@@ -145,13 +161,19 @@ pub(in crate::figure) fn draw_tangent(plan: &mut Plan, role: Role, tangent: &Tan
 }
 
 /// A view in space.
-pub(in crate::figure) fn view(position: Vec3, target: Vec3, fov_degrees: f32, [width, height]: [u32; 2]) -> View<Solid> {
+pub(in crate::figure) fn view(
+    position: Vec3,
+    target: Vec3,
+    fov_degrees: f32,
+    [width, height]: [u32; 2],
+) -> View<Solid> {
     let eye = Eye { position, target, up: Vec3::Y, fov: fov_degrees.to_radians(), near: 0.05, far: 1000.0 };
     View { eye, width, height }
 }
 
 /// Sets a name into a picture of space.
 pub(in crate::figure) fn name(world: &mut Drawing<Vec3>, at: Vec3, text: &str) {
-    let mark = Mark::Text { at, text: text.into(), size_pt: NAME_PT, anchor: Anchor::Middle, font: Font::Bold };
+    let mark =
+        Mark::Text { at, text: text.into(), size_pt: NAME_PT, anchor: Anchor::Middle, font: Font::Bold };
     world.push(Layer::Labels, Role::Ink, Subject::None, mark);
 }

@@ -1,5 +1,6 @@
-//! Regions of viewpoints: lines cut a rectangle into convex cells, within which nothing changes; neighbors that are
-//! alike are joined again where that leaves them convex. Cost: O(cells · lines), and O(cells³) to join.
+//! Regions of viewpoints: lines cut a rectangle into convex cells, within which nothing changes; neighbors
+//! that are alike are joined again where that leaves them convex. Cost: O(cells · lines), and O(cells³) to
+//! join.
 
 use glam::DVec2;
 
@@ -60,10 +61,16 @@ fn side(cell: &[DVec2], heights: &[f64], sign: f64) -> Vec<DVec2> {
     kept
 }
 
-/// Cells with what `class` says of their middle, neighbors of one class joined; those without a class are left out.
-pub(super) fn regions<T: Copy + PartialEq>(frame: &Aabb<DVec2>, borders: &[Border], class: impl Fn(DVec2) -> Option<T>) -> Vec<(T, Vec<DVec2>)> {
+/// Cells with what `class` says of their middle, neighbors of one class joined; those without a class are
+/// left out.
+pub(super) fn regions<T: Copy + PartialEq>(
+    frame: &Aabb<DVec2>,
+    borders: &[Border],
+    class: impl Fn(DVec2) -> Option<T>,
+) -> Vec<(T, Vec<DVec2>)> {
     let near = (frame.max - frame.min).length() * TOUCH;
-    let mut all: Vec<(T, Vec<DVec2>)> = cells(frame, borders).into_iter().filter_map(|c| Some((class(middle(&c))?, c))).collect();
+    let mut all: Vec<(T, Vec<DVec2>)> =
+        cells(frame, borders).into_iter().filter_map(|c| Some((class(middle(&c))?, c))).collect();
     while let Some((i, j, joined)) = pair(&all, near) {
         all[i].1 = joined;
         all.remove(j);
@@ -86,7 +93,10 @@ fn union(a: &[DVec2], b: &[DVec2], near: f64) -> Option<Vec<DVec2>> {
     let edges = |c: &[DVec2]| (0..c.len()).map(|i| [c[i], c[(i + 1) % c.len()]]).collect::<Vec<_>>();
     let (ea, eb) = (edges(a), edges(b));
     let left = |from: &[[DVec2; 2]], other: &[[DVec2; 2]]| {
-        from.iter().copied().filter(|e| !other.iter().any(|o| same(e[0], o[1]) && same(e[1], o[0]))).collect::<Vec<_>>()
+        from.iter()
+            .copied()
+            .filter(|e| !other.iter().any(|o| same(e[0], o[1]) && same(e[1], o[0])))
+            .collect::<Vec<_>>()
     };
     let mut open = left(&ea, &eb);
     if open.len() == ea.len() {
@@ -150,8 +160,12 @@ mod tests {
         let mut number = |span: f64| (f64::from(rng.next_u32()) / f64::from(u32::MAX) - 0.5) * span;
         let frame = Aabb { min: DVec2::new(-4.0, -3.0), max: DVec2::new(4.0, 3.0) };
         for _ in 0..50 {
-            let borders: Vec<Border> =
-                (0..7).map(|_| Border { at: DVec2::new(number(6.0), number(4.0)), normal: DVec2::new(number(2.0), number(2.0)) }).collect();
+            let borders: Vec<Border> = (0..7)
+                .map(|_| Border {
+                    at: DVec2::new(number(6.0), number(4.0)),
+                    normal: DVec2::new(number(2.0), number(2.0)),
+                })
+                .collect();
             let inside = |p: DVec2| borders.iter().filter(|b| b.normal.dot(p - b.at) > 0.0).count();
             let class = |p: DVec2| (inside(p) < 5).then(|| inside(p) / 2);
             let whole: f64 = cells(&frame, &borders).iter().map(|c| area(c)).sum();

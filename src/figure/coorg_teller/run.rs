@@ -90,8 +90,8 @@ fn shadow(plan: &mut Plan, film: &dyn Film<Flat>, wall: PrimId, name: &str) {
     plan.plate((ends[0] + ends[1]) * 0.5 - Vec2::Y * 9.0 * plan.unit, NAME_PT, Font::Bold, "O");
 }
 
-/// Nodes of the three kinds that the paper names: the largest that a frame finds hidden, the largest that it finds visible,
-/// and one that is partly hidden in both frames.
+/// Nodes of the three kinds that the paper names: the largest that a frame finds hidden, the largest that it
+/// finds visible, and one that is partly hidden in both frames.
 fn named_nodes(films: &[Arc<dyn Film<Flat>>; 2], frame: usize) -> [Option<NodeId>; 3] {
     let all = [tests(&*films[0]), tests(&*films[1])];
     let film = &films[frame];
@@ -99,10 +99,19 @@ fn named_nodes(films: &[Arc<dyn Film<Flat>>; 2], frame: usize) -> [Option<NodeId
         let size = film.hierarchy().bounds(*n).size();
         size.x * size.y
     };
-    let is = |frame: usize, node: NodeId, what: &str| all[frame].iter().any(|t| t.node == Some(node) && t.occlusion == what);
-    let deepest = || all[frame].iter().filter_map(|t| t.node).filter(|n| is_deepest(&**film, &all[frame], *n));
-    let largest = |what: &dyn Fn(NodeId) -> bool| deepest().filter(|n| what(*n)).max_by(|a, b| area(a).total_cmp(&area(b)).then(b.cmp(a)));
-    [largest(&|n| is(frame, n, "full")), largest(&|n| is(frame, n, "none")), largest(&|n| (0..2).all(|i| is(i, n, "partial")))]
+    let is = |frame: usize, node: NodeId, what: &str| {
+        all[frame].iter().any(|t| t.node == Some(node) && t.occlusion == what)
+    };
+    let deepest =
+        || all[frame].iter().filter_map(|t| t.node).filter(|n| is_deepest(&**film, &all[frame], *n));
+    let largest = |what: &dyn Fn(NodeId) -> bool| {
+        deepest().filter(|n| what(*n)).max_by(|a, b| area(a).total_cmp(&area(b)).then(b.cmp(a)))
+    };
+    [
+        largest(&|n| is(frame, n, "full")),
+        largest(&|n| is(frame, n, "none")),
+        largest(&|n| (0..2).all(|i| is(i, n, "partial"))),
+    ]
 }
 
 /// Figure 10: nodes classified for two viewpoints in a row, and what was reused.
@@ -121,7 +130,12 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
         }
         for (k, node) in named_nodes(&films, i).iter().enumerate() {
             if let Some(node) = node {
-                plan.plate(film.hierarchy().bounds(*node).center(), LABEL_PT, Font::Bold, &(k + 1).to_string());
+                plan.plate(
+                    film.hierarchy().bounds(*node).center(),
+                    LABEL_PT,
+                    Font::Bold,
+                    &(k + 1).to_string(),
+                );
             }
         }
         shadow(&mut plan, &**film, all[0].occluder, &format!("P{}", i + 1));
@@ -131,7 +145,12 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
     let mut plan = Plan::new(frame_10(), 156.0);
     for test in all.iter().filter(|t| t.node.is_some_and(|n| is_deepest(&**film, &all, n))) {
         let Some(node) = test.node else { continue };
-        fill(&mut plan, if test.reused { Role::Approximated } else { Role::Scene }, node, &film.hierarchy().bounds(node));
+        fill(
+            &mut plan,
+            if test.reused { Role::Approximated } else { Role::Scene },
+            node,
+            &film.hierarchy().bounds(node),
+        );
     }
     shadow(&mut plan, &**film, all[0].occluder, "P2");
     let reused = all.iter().filter(|t| t.reused).count();
@@ -146,10 +165,14 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Approximated, Swatch::Area, "lines kept from P1"),
         entry(Role::Scene, Swatch::Area, "lines made at P2"),
     ];
-    let caption = "Nodes of a kD-tree classified against a single occluder O for two viewpoints in a row; only the last nodes of each descent \
-                   are filled. The descent ends where a node is occluded as a whole (such as 1) or not at all (2), so few nodes are tested. \
-                   Nodes that both descents come to (such as 3) keep their supporting and separating lines, which do not depend on where \
-                   the eye stands: at P2 they are only checked. Scene two_viewpoints, both eyes, one occluder, tree-height 8.";
+    let caption = "Nodes of a kD-tree classified against a single occluder O for two viewpoints in a row; \
+                   only the last nodes of each descent \
+                   are filled. The descent ends where a node is occluded as a whole (such as 1) or not at \
+                   all (2), so few nodes are tested. \
+                   Nodes that both descents come to (such as 3) keep their supporting and separating lines, \
+                   which do not depend on where \
+                   the eye stands: at P2 they are only checked. Scene two_viewpoints, both eyes, one \
+                   occluder, tree-height 8.";
     Ok(page(Paper::TwoColumns, "One occluder, two viewpoints in a row", legend, caption, &content))
 }
 
@@ -157,14 +180,22 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
 fn details_film(with_details: bool) -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("detail_objects")?;
     let switch = if with_details { "true" } else { "false" };
-    Ok(ready(&scene, &[("occluders", "2"), ("detail-objects", switch)]).record(&eye(&scene, 0), usize::MAX).film)
+    Ok(ready(&scene, &[("occluders", "2"), ("detail-objects", switch)])
+        .record(&eye(&scene, 0), usize::MAX)
+        .film)
 }
 
 /// The occluders chosen for the eye.
 fn chosen(film: &dyn Film<Flat>) -> Vec<PrimId> {
     let prim = |at: usize| {
         let (kind, fields) = film.fields(at);
-        let id = fields.iter().find_map(|f| if let (&"prim", Value::Integer(n)) = (&f.name, &f.value) { Some(PrimId(*n as u32)) } else { None });
+        let id = fields.iter().find_map(|f| {
+            if let (&"prim", Value::Integer(n)) = (&f.name, &f.value) {
+                Some(PrimId(*n as u32))
+            } else {
+                None
+            }
+        });
         if kind == "OccluderChosen" { id } else { None }
     };
     (0..film.events().len()).filter_map(prim).collect()
@@ -191,7 +222,9 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
         let Some(object) = test.object else { continue };
         let ends: Vec<Vec2> = scene.prim_points(test.occluder).collect();
         let one = Blockers::<Flat>::new(&ends, &[vec![0, 1]]);
-        for [supporting, _] in one.planes(0, &bounds_of(&scene, object), film.view().eye.position).iter().flatten() {
+        for [supporting, _] in
+            one.planes(0, &bounds_of(&scene, object), film.view().eye.position).iter().flatten()
+        {
             draw_tangent(&mut plan, Role::Evidence, supporting);
         }
         plan.world.line(Layer::Emphasis, Role::Occluder, Subject::Prim(test.occluder), ends);
@@ -202,7 +235,11 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
         plan.plate(bounds.center() + Vec2::X * 15.0 * plan.unit, NAME_PT, Font::Bold, &object.name);
     }
     plan.viewpoint(film.view().eye.position, "P");
-    let content = panels(COLUMN_PT, 1, &[plan.panel(format!("{culled} of 3 detail objects are culled by occluders near them."))]);
+    let content = panels(
+        COLUMN_PT,
+        1,
+        &[plan.panel(format!("{culled} of 3 detail objects are culled by occluders near them."))],
+    );
     let legend = vec![
         entry(Role::Eye, Swatch::Line, "occluder that is large from P"),
         entry(Role::Occluder, Swatch::Line, "occluder that is large from a detail object"),
@@ -210,9 +247,12 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Hidden, Swatch::Line, "culled"),
         entry(Role::Visible, Swatch::Line, "drawn"),
     ];
-    let caption = "Detail objects D1 to D3 and the occluders that decide them. The two occluders that look largest from the viewpoint P hide \
-                   none of the three. Visibility goes both ways, so the occluders that look large from an object toward P are tried too: \
-                   P lies inside both supporting lines of D1 and D2 with the walls before them. D3 is drawn. Scene detail_objects, first eye, \
+    let caption = "Detail objects D1 to D3 and the occluders that decide them. The two occluders that look \
+                   largest from the viewpoint P hide \
+                   none of the three. Visibility goes both ways, so the occluders that look large from an \
+                   object toward P are tried too: \
+                   P lies inside both supporting lines of D1 and D2 with the walls before them. D3 is drawn. \
+                   Scene detail_objects, first eye, \
                    two occluders for each place and direction.";
     Ok(page(Paper::Column, "Detail objects and the occluders near them", legend, caption, &content))
 }
@@ -228,7 +268,10 @@ mod checks {
         let films = two_frames().expect("a scene");
         let [first, second] = [tests(&*films[0]), tests(&*films[1])];
         let wall = PrimId(0);
-        assert!(first.iter().chain(&second).all(|t| t.occluder == wall && t.node.is_some()), "the wall is the only occluder");
+        assert!(
+            first.iter().chain(&second).all(|t| t.occluder == wall && t.node.is_some()),
+            "the wall is the only occluder"
+        );
         assert!(first.iter().all(|t| !t.reused));
         for test in &second {
             let before = first.iter().any(|t| t.node == test.node);
@@ -239,7 +282,10 @@ mod checks {
         assert!(second.len() * 2 < films[1].hierarchy().node_count(), "the tree saves most tests");
         for (node, what) in named_nodes(&films, 1).iter().zip(["full", "none", "partial"]) {
             let node = node.unwrap_or_else(|| panic!("no node is {what} at both viewpoints"));
-            assert!(what != "partial" || second.iter().any(|t| t.node == Some(node) && t.reused), "node 3 is a reused one");
+            assert!(
+                what != "partial" || second.iter().any(|t| t.node == Some(node) && t.reused),
+                "node 3 is a reused one"
+            );
         }
     }
 
@@ -248,13 +294,24 @@ mod checks {
         let (with, without) = (details_film(true).expect("a scene"), details_film(false).expect("a scene"));
         let scene = with.scene();
         let state = |film: &Arc<dyn Film<Flat>>, object: &str| {
-            let prim = *scene.live().iter().find(|&&p| scene.objects()[scene.object_of(p).at()].name == object).expect("an object");
+            let prim = *scene
+                .live()
+                .iter()
+                .find(|&&p| scene.objects()[scene.object_of(p).at()].name == object)
+                .expect("an object");
             Stamps::new(&**film).prim(prim, film.events().len())
         };
         let (hidden, visible) = (State::Decided(Verdict::Hidden), State::Decided(Verdict::Visible));
         assert_eq!(["D1", "D2", "D3"].map(|d| state(&with, d)), [hidden, hidden, visible]);
         assert_eq!(["D1", "D2", "D3"].map(|d| state(&without, d)), [visible; 3]);
-        let near = tests(&*with).iter().filter(|t| t.object.is_some() && t.occlusion == "full").map(|t| t.occluder).collect::<Vec<_>>();
-        assert!(near.len() == 2 && near.iter().all(|p| !chosen(&*with).contains(p)), "{near:?} are not chosen for the eye");
+        let near = tests(&*with)
+            .iter()
+            .filter(|t| t.object.is_some() && t.occlusion == "full")
+            .map(|t| t.occluder)
+            .collect::<Vec<_>>();
+        assert!(
+            near.len() == 2 && near.iter().all(|p| !chosen(&*with).contains(p)),
+            "{near:?} are not chosen for the eye"
+        );
     }
 }

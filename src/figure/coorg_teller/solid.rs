@@ -1,5 +1,5 @@
-//! Figures 5 to 8 of the paper, in space: joint occlusion as the viewpoint sees it, planes through an edge that touch a box,
-//! the outlines of a box, and the codes of the regions between its extended outline.
+//! Figures 5 to 8 of the paper, in space: joint occlusion as the viewpoint sees it, planes through an edge
+//! that touch a box, the outlines of a box, and the codes of the regions between its extended outline.
 
 use glam::{DVec2, Vec2, Vec3};
 
@@ -30,7 +30,14 @@ fn stages() -> [Stage; 3] {
     let p = |points: &[[f32; 3]]| points.iter().map(|p| Vec3::from(*p)).collect();
     let folded = Stage {
         label: "(a) convex",
-        points: p(&[[-3.0, -1.2, -8.0], [0.0, -1.2, -6.0], [3.0, -1.2, -8.0], [-3.0, 1.2, -8.0], [0.0, 1.2, -6.0], [3.0, 1.2, -8.0]]),
+        points: p(&[
+            [-3.0, -1.2, -8.0],
+            [0.0, -1.2, -6.0],
+            [3.0, -1.2, -8.0],
+            [-3.0, 1.2, -8.0],
+            [0.0, 1.2, -6.0],
+            [3.0, 1.2, -8.0],
+        ]),
         polygons: vec![vec![0, 1, 4, 3], vec![1, 2, 5, 4]],
         target: bounds([-2.2, -1.0, -12.0], [2.2, 1.0, -11.0]),
         crossed: None,
@@ -78,7 +85,12 @@ impl Stage {
         let mut world = Drawing::default();
         let point = |i: &u32| self.points[*i as usize];
         for polygon in &self.polygons {
-            world.push(Layer::Scene, Role::Scene, Subject::None, Mark::Area(polygon.iter().map(point).collect()));
+            world.push(
+                Layer::Scene,
+                Role::Scene,
+                Subject::None,
+                Mark::Area(polygon.iter().map(point).collect()),
+            );
             for (i, a) in polygon.iter().enumerate() {
                 let b = polygon[(i + 1) % polygon.len()];
                 let shared = self.polygons.iter().filter(|p| p.contains(a) && p.contains(&b)).count() > 1;
@@ -117,11 +129,21 @@ pub(super) fn joint_occlusion(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Visible, Swatch::Line, "box T, found visible"),
         entry(Role::Evidence, Swatch::Line, "line of edge e, which T crosses"),
     ];
-    let caption = "Three sets of occluders as seen from the viewpoint. In all three they hide the box T behind them, though none does alone. \
-                   (a) Connected occluders with a convex silhouette: the plane through the edge they share is ignored and T lies inside all \
-                   others, so it is found hidden. (b) Connected, but the silhouette is not convex: T crosses the line of edge e, so the test \
-                   fails. (c) Disconnected: no edge is ignored, and the test fails. Both failures are on the safe side: T is drawn.";
-    Ok(page(Paper::TwoColumns, "Joint occlusion in space, seen from the viewpoint", legend, caption, &content))
+    let caption = "Three sets of occluders as seen from the viewpoint. In all three they hide the box T \
+                   behind them, though none does alone. \
+                   (a) Connected occluders with a convex silhouette: the plane through the edge they share \
+                   is ignored and T lies inside all \
+                   others, so it is found hidden. (b) Connected, but the silhouette is not convex: T crosses \
+                   the line of edge e, so the test \
+                   fails. (c) Disconnected: no edge is ignored, and the test fails. Both failures are on the \
+                   safe side: T is drawn.";
+    Ok(page(
+        Paper::TwoColumns,
+        "Joint occlusion in space, seen from the viewpoint",
+        legend,
+        caption,
+        &content,
+    ))
 }
 
 /// A piece of a tangent plane: the edge moved along the plane, through the vertex and past it both ways.
@@ -139,10 +161,14 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
     let blockers = Blockers::<Solid>::new(&points, &[vec![0, 1, 2, 3]]);
     let target = bounds([-0.9, -0.8, -4.6], [0.8, 0.8, -3.0]);
     let planes = blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0));
-    let Some([supporting, separating]) = &planes[1] else { unreachable!("the edge's line does not meet the box") };
+    let Some([supporting, separating]) = &planes[1] else {
+        unreachable!("the edge's line does not meet the box")
+    };
     let mut world = Drawing::default();
     world.push(Layer::Scene, Role::Occluder, Subject::None, Mark::Area(points.to_vec()));
-    for (tangent, role, before, past) in [(separating, Role::Partial, 0.35, 1.15), (supporting, Role::Evidence, 0.35, 1.15)] {
+    for (tangent, role, before, past) in
+        [(separating, Role::Partial, 0.35, 1.15), (supporting, Role::Evidence, 0.35, 1.15)]
+    {
         let corners = sheet(tangent, before, past);
         world.push(Layer::Evidence, role, Subject::None, Mark::Area(corners.clone()));
         let arrow = (corners[2] + corners[3]) * 0.5;
@@ -157,7 +183,10 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
     let content = panels(
         COLUMN_PT,
         1,
-        &[Panel { label: "Seen from the side; the viewpoint is before the occluder.".into(), picture: Picture::Space(world, observer) }],
+        &[Panel {
+            label: "Seen from the side; the viewpoint is before the occluder.".into(),
+            picture: Picture::Space(world, observer),
+        }],
     );
     let legend = vec![
         entry(Role::Occluder, Swatch::Area, "occluder"),
@@ -167,8 +196,10 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Partial, Swatch::Area, "separating plane"),
         entry(Role::Partial, Swatch::Dot, "its tangent vertex"),
     ];
-    let caption = "The two planes through an edge E of a polygon that touch a box T, each at a tangent vertex (dot). The supporting plane has \
-                   the box and the polygon on one side, the separating plane on opposite sides. Arrows point to the inside, the polygon's side.";
+    let caption = "The two planes through an edge E of a polygon that touch a box T, each at a tangent \
+                   vertex (dot). The supporting plane has \
+                   the box and the polygon on one side, the separating plane on opposite sides. Arrows point \
+                   to the inside, the polygon's side.";
     Ok(page(Paper::Column, "Tangent planes through an edge", legend, caption, &content))
 }
 
@@ -191,20 +222,35 @@ pub(super) fn silhouettes(_: Tint) -> Result<Drawing, SceneError> {
         }
         for &i in &outline {
             let at = at(i) + at(i).normalize() * 0.24;
-            let mark = Mark::Text { at, text: i.to_string(), size_pt: LABEL_PT, anchor: Anchor::Middle, font: Font::Bold };
+            let mark = Mark::Text {
+                at,
+                text: i.to_string(),
+                size_pt: LABEL_PT,
+                anchor: Anchor::Middle,
+                font: Font::Bold,
+            };
             world.push(Layer::Labels, Role::Ink, Subject::None, mark);
         }
         let order = outline.iter().map(u8::to_string).collect::<Vec<_>>().join(" ");
         let seen = view(from, Vec3::ZERO, 3.9f32.atan2(from.length()).to_degrees() * 1.35, [360, 300]);
         Panel { label: format!("{place}: {order}"), picture: Picture::Space(world, seen) }
     };
-    let places =
-        [("before a face", Vec3::new(0.5, 0.35, 5.5)), ("beside an edge", Vec3::new(4.6, 0.35, 4.0)), ("off a corner", Vec3::new(3.8, 3.2, 4.2))];
+    let places = [
+        ("before a face", Vec3::new(0.5, 0.35, 5.5)),
+        ("beside an edge", Vec3::new(4.6, 0.35, 4.0)),
+        ("off a corner", Vec3::new(3.8, 3.2, 4.2)),
+    ];
     let content = panels(TWO_COLUMNS_PT, 3, &places.map(panel));
-    let legend = vec![entry(Role::Eye, Swatch::Line, "outline, directed"), entry(Role::Faint, Swatch::Line, "other edges of the box")];
-    let caption = "The outline of an axis-aligned box as seen from the origin depends only on where the origin lies against the box's three \
-                   slabs: below, inside or above on each axis. Of these 27 places 6 are before a face and give 4 corners, 12 beside an edge \
-                   and 8 off a corner give 6; inside there is none. So a table holds them all. Bit a of a corner's number says whether it \
+    let legend = vec![
+        entry(Role::Eye, Swatch::Line, "outline, directed"),
+        entry(Role::Faint, Swatch::Line, "other edges of the box"),
+    ];
+    let caption = "The outline of an axis-aligned box as seen from the origin depends only on where the \
+                   origin lies against the box's three \
+                   slabs: below, inside or above on each axis. Of these 27 places 6 are before a face and \
+                   give 4 corners, 12 beside an edge \
+                   and 8 off a corner give 6; inside there is none. So a table holds them all. Bit a of a \
+                   corner's number says whether it \
                    lies at the upper end of axis a.";
     Ok(page(Paper::TwoColumns, "Silhouettes of a box", legend, caption, &content))
 }
@@ -257,10 +303,16 @@ const CODE_PT: [f32; 2] = [6.5, 5.5];
 
 /// Where in a cell a code fits, nearest to its middle; `None` where the cell is too small.
 fn room(cell: &[DVec2], text: &str, size_pt: f32, unit: f32, lines: &[[Vec2; 2]]) -> Option<Vec2> {
-    let half = (Vec2::new(metrics::width_pt(text, Font::Mono, size_pt) * 0.5 + 1.0, size_pt * 0.45 + 0.5) * unit).as_dvec2();
+    let half = (Vec2::new(metrics::width_pt(text, Font::Mono, size_pt) * 0.5 + 1.0, size_pt * 0.45 + 0.5)
+        * unit)
+        .as_dvec2();
     let center = middle(cell);
     let [low, high] = cell.iter().fold([center; 2], |[a, b], p| [a.min(*p), b.max(*p)]);
-    let fits = |at: &DVec2| [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].iter().all(|c| holds(cell, *at + DVec2::from(*c) * half));
+    let fits = |at: &DVec2| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .iter()
+            .all(|c| holds(cell, *at + DVec2::from(*c) * half))
+    };
     let clear = |at: &DVec2| lines.iter().all(|[a, b]| !crosses(a.as_dvec2(), b.as_dvec2(), *at, half));
     let places = (0..=30).flat_map(|i| (0..=30).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 30.0));
     let places = places.map(|t| low + (high - low) * t).chain([center]).filter(fits).filter(clear);
@@ -281,7 +333,9 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
     let corner = |i: u8| projected.flat(target.corner(i as usize)).as_vec2();
     let all = coded_cells(&projected, &target, &wide);
     let e = Vec2::new(0.36, -0.05);
-    let [Some(touched), _] = tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target) else {
+    let [Some(touched), _] =
+        tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target)
+    else {
         unreachable!("the edge's projection lies beside the box")
     };
     let tangents = touched.map(|v| [e, corner(v) + (corner(v) - e) * 0.2]);
@@ -292,7 +346,9 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
             plan.area(Role::Scene, cell);
         }
         let text = format!("{code:06b}");
-        if let Some((at, size_pt)) = CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit, &tangents)?, size))) {
+        if let Some((at, size_pt)) =
+            CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit, &tangents)?, size)))
+        {
             plan.label(at, size_pt, Font::Mono, &text);
         }
     }
@@ -309,7 +365,11 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
     plan.dot(Role::Occluder, e, 3.0);
     plan.plate(e + Vec2::new(8.0, 0.0) * plan.unit, NAME_PT, Font::Bold, "e");
     let code = sides_of_outline(projected.from, projected.edge_to(e.as_dvec2()), &target);
-    let content = panels(COLUMN_PT, 1, &[plan.panel(format!("e: code {code:06b}, tangent vertices {} and {}", touched[0], touched[1]))]);
+    let content = panels(
+        COLUMN_PT,
+        1,
+        &[plan.panel(format!("e: code {code:06b}, tangent vertices {} and {}", touched[0], touched[1]))],
+    );
     let legend = vec![
         entry(Role::Eye, Swatch::Line, "silhouette, directed, extended (gray)"),
         entry(Role::Scene, Swatch::Area, "projection of the box"),
@@ -317,9 +377,12 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Evidence, Swatch::Line, "tangent from e"),
     ];
     let caption = format!(
-        "A box off whose corner the origin lies, projected from the origin. An occluder's edge that begins at the origin projects to a point e. \
-         The bits of its code are the signs of dot products with the six directed silhouette lines; the right-most bit is that of the line \
-         that begins at vertex {}, and so on around. All points of a region have the same tangent vertices, so a table gives them by the code.",
+        "A box off whose corner the origin lies, projected from the origin. An occluder's edge that begins \
+         at the origin projects to a point e. \
+         The bits of its code are the signs of dot products with the six directed silhouette lines; the \
+         right-most bit is that of the line \
+         that begins at vertex {}, and so on around. All points of a region have the same tangent vertices, \
+         so a table gives them by the code.",
         outline[0]
     );
     Ok(page(Paper::Column, "Codes of the regions around a box", legend, caption, &content))
@@ -345,7 +408,9 @@ mod tests {
         let first = points.len() as u32;
         points.extend(stage.target.corners());
         let faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
-        prims.extend(faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).map(|t| t.map(|i| i + first)));
+        prims.extend(
+            faces.iter().flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]]).map(|t| t.map(|i| i + first)),
+        );
         Scene::new(Parts::simple("stage", points, prims)).expect("a scene")
     }
 
@@ -371,17 +436,27 @@ mod tests {
     #[test]
     fn outlines_are_the_convex_hull_of_the_projected_box() {
         let target = the_box();
-        for (from, count) in [(Vec3::new(0.5, 0.35, 5.5), 4), (Vec3::new(4.6, 0.35, 4.0), 6), (Vec3::new(3.8, 3.2, 4.2), 6)] {
+        for (from, count) in
+            [(Vec3::new(0.5, 0.35, 5.5), 4), (Vec3::new(4.6, 0.35, 4.0), 6), (Vec3::new(3.8, 3.2, 4.2), 6)]
+        {
             let (outline, projected) = (outline_seen_from(from, &target), Projected::new(from));
             assert_eq!(outline.len(), count);
             let corners: Vec<DVec2> = target.corners().map(|c| projected.flat(c)).collect();
             let turns: Vec<bool> = (0..count)
                 .flat_map(|i| {
                     let (a, b) = (corners[outline[i] as usize], corners[outline[(i + 1) % count] as usize]);
-                    corners.iter().map(move |c| (b - a).perp_dot(*c - a)).filter(|t| t.abs() > 1e-9).map(|t| t > 0.0).collect::<Vec<_>>()
+                    corners
+                        .iter()
+                        .map(move |c| (b - a).perp_dot(*c - a))
+                        .filter(|t| t.abs() > 1e-9)
+                        .map(|t| t > 0.0)
+                        .collect::<Vec<_>>()
                 })
                 .collect();
-            assert!(turns.windows(2).all(|w| w[0] == w[1]), "all corners lie on one side of every line of the outline");
+            assert!(
+                turns.windows(2).all(|w| w[0] == w[1]),
+                "all corners lie on one side of every line of the outline"
+            );
         }
     }
 
@@ -398,8 +473,12 @@ mod tests {
         let mut number = || f64::from(rng.next_u32()) / f64::from(u32::MAX) - 0.5;
         for _ in 0..2000 {
             let q = frame.max * 2.0 * DVec2::new(number(), number());
-            let Some((code, cell)) = all.iter().find(|(_, c)| holds(c, q)) else { panic!("{q} is in no cell") };
-            if (0..cell.len()).any(|i| (cell[(i + 1) % cell.len()] - cell[i]).normalize().perp_dot(q - cell[i]) < 1e-4) {
+            let Some((code, cell)) = all.iter().find(|(_, c)| holds(c, q)) else {
+                panic!("{q} is in no cell")
+            };
+            if (0..cell.len())
+                .any(|i| (cell[(i + 1) % cell.len()] - cell[i]).normalize().perp_dot(q - cell[i]) < 1e-4)
+            {
                 continue;
             }
             assert_eq!(*code, sides_of_outline(projected.from, projected.edge_to(q), &target));
@@ -422,7 +501,9 @@ mod tests {
         let target = bounds([-0.9, -0.8, -4.6], [0.8, 0.8, -3.0]);
         let points = [[-1.3, -1.1, 0.0], [1.3, -1.1, 0.0], [1.3, 1.1, 0.0], [-1.3, 1.1, 0.0]].map(Vec3::from);
         let blockers = Blockers::<Solid>::new(&points, &[vec![0, 1, 2, 3]]);
-        for [supporting, separating] in blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0)).into_iter().flatten() {
+        for [supporting, separating] in
+            blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0)).into_iter().flatten()
+        {
             let least_and_most = |t: &Tangent<Vec3>, of: &[Vec3]| {
                 let d = of.iter().map(|p| t.normal.dot(*p - t.edge[0]));
                 d.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], h| [a.min(h), b.max(h)])
@@ -431,7 +512,10 @@ mod tests {
             for plane in [&supporting, &separating] {
                 let [low, high] = least_and_most(plane, &points);
                 assert!(low > -1e-5 && high > 0.1, "the occluder is inside: {low} {high}");
-                assert!(plane.normal.dot(plane.vertex - plane.edge[0]).abs() < 1e-5, "the vertex is on the plane");
+                assert!(
+                    plane.normal.dot(plane.vertex - plane.edge[0]).abs() < 1e-5,
+                    "the vertex is on the plane"
+                );
             }
             assert!(least_and_most(&supporting, &corners)[0] > -1e-5);
             assert!(least_and_most(&separating, &corners)[1] < 1e-5);

@@ -15,7 +15,8 @@ const SEED: u32 = 1;
 
 fn quadtree(scene: &Scene<Flat>, leaf_share: f32) -> BoxCells<Vec2> {
     let never = || false;
-    vertex_octree(scene, Fineness { leaf_share, ..Fineness::default() }, never).unwrap_or_else(|| unreachable!("nobody cancels a figure"))
+    vertex_octree(scene, Fineness { leaf_share, ..Fineness::default() }, never)
+        .unwrap_or_else(|| unreachable!("nobody cancels a figure"))
 }
 
 fn all<T: Tessellation<Flat>>(cells: &T) -> impl Iterator<Item = CellId> + use<T> {
@@ -32,10 +33,12 @@ fn segments(scene: &Scene<Flat>, role: Role, plan: &mut Plan) {
 pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example("bottleneck")?;
     let boxes = quadtree(&scene, LEAF_SHARE);
-    let simplices = SimplexCells::<Flat>::of_centers(&boxes, SEED, &|| false).unwrap_or_else(|| unreachable!("nobody cancels a figure"));
+    let simplices = SimplexCells::<Flat>::of_centers(&boxes, SEED, &|| false)
+        .unwrap_or_else(|| unreachable!("nobody cancels a figure"));
     let region = boxes.region();
     let air = Vec2::splat(region.size().x * 0.01);
-    let plan = || Plan::new(Aabb { min: region.min - air, max: region.max + air }, (TWO_COLUMNS_PT - 20.0) / 3.0);
+    let plan =
+        || Plan::new(Aabb { min: region.min - air, max: region.max + air }, (TWO_COLUMNS_PT - 20.0) / 3.0);
 
     let mut input = plan();
     segments(&scene, Role::Ink, &mut input);
@@ -43,7 +46,12 @@ pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
     let mut tree = plan();
     segments(&scene, Role::Scene, &mut tree);
     for cell in all(&boxes) {
-        tree.world.bounds(Layer::Nodes, Role::Visible, Subject::None, &Tessellation::<Flat>::bounds(&boxes, cell));
+        tree.world.bounds(
+            Layer::Nodes,
+            Role::Visible,
+            Subject::None,
+            &Tessellation::<Flat>::bounds(&boxes, cell),
+        );
     }
 
     let mut triangles = plan();
@@ -71,9 +79,12 @@ pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Visible, Swatch::Line, "cells: leaves of the quadtree (b), Delaunay triangles (c)"),
         entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random"),
     ];
-    let caption = "How space is divided into cells, small where much is: a quadtree (in space an octree) is built over the end points of the segments, \
-                   down to leaves shorter than 10 % of the longest side (the paper: 5 %). Either its leaves are the cells (b), or the triangles of the Delaunay triangulation of \
-                   their centers (c), which are moved at random first, as they lie on a lattice. The corners of the region are vertices too. Scene \
+    let caption = "How space is divided into cells, small where much is: a quadtree (in space an octree) is \
+                   built over the end points of the segments, \
+                   down to leaves shorter than 10 % of the longest side (the paper: 5 %). Either its leaves \
+                   are the cells (b), or the triangles of the Delaunay triangulation of \
+                   their centers (c), which are moved at random first, as they lie on a lattice. The corners \
+                   of the region are vertices too. Scene \
                    bottleneck.";
     Ok(page(Paper::TwoColumns, "An occupancy-based tessellation", legend, caption, &content))
 }
@@ -89,7 +100,13 @@ struct Family {
 fn family(scene: &Scene<Flat>) -> Option<Family> {
     let boxes = quadtree(scene, 0.1);
     let side = |c: CellId| Tessellation::<Flat>::bounds(&boxes, c).size().x;
-    let to_the_right = |c: CellId| Tessellation::<Flat>::neighbors(&boxes, c).iter().filter(|n| n.normal.x > 0.5).map(|n| n.cell).collect::<Vec<_>>();
+    let to_the_right = |c: CellId| {
+        Tessellation::<Flat>::neighbors(&boxes, c)
+            .iter()
+            .filter(|n| n.normal.x > 0.5)
+            .map(|n| n.cell)
+            .collect::<Vec<_>>()
+    };
     let a = all(&boxes).filter(|&c| {
         let right = to_the_right(c);
         right.len() == 2 && right.iter().all(|&n| side(n) < side(c))
@@ -118,10 +135,16 @@ fn around(scene: &Scene<Flat>, family: &Family, cell: CellId, frame: Aabb<Vec2>,
         let (x, y) = (bounds(cell), bounds(neighbor.cell));
         let through = (x.min.max(y.min) + x.max.min(y.max)) * 0.5;
         let reach = neighbor.normal * bounds(family.i).size().x * 0.34;
-        plan.world.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Arrow(through - reach, through + reach));
+        plan.world.push(
+            Layer::Evidence,
+            Role::Evidence,
+            Subject::None,
+            Mark::Arrow(through - reach, through + reach),
+        );
     }
     let mut names = vec![(family.a, 'A')];
-    let right = Tessellation::<Flat>::neighbors(boxes, family.a).iter().filter(|n| n.normal.x > 0.5).map(|n| n.cell);
+    let right =
+        Tessellation::<Flat>::neighbors(boxes, family.a).iter().filter(|n| n.normal.x > 0.5).map(|n| n.cell);
     names.extend(right.zip('I'..));
     for (c, name) in names {
         let at = bounds(c).center();
@@ -143,7 +166,13 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
         TWO_COLUMNS_PT,
         2,
         &[
-            around(&scene, &family, family.a, frame, &format!("A has {} neighbors, among them I and J", counts[0])),
+            around(
+                &scene,
+                &family,
+                family.a,
+                frame,
+                &format!("A has {} neighbors, among them I and J", counts[0]),
+            ),
             around(&scene, &family, family.i, frame, &format!("I has {} neighbors, among them A", counts[1])),
         ],
     );
@@ -153,9 +182,12 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Evidence, Swatch::Line, "normal of the shared side"),
         entry(Role::Faint, Swatch::Line, "segments of the scene"),
     ];
-    let caption = "Leaves of a quadtree are neighbors where they share a side or a part of one, whatever their levels; corners do not count. Going up to the \
-                   common ancestor and down again finds neighbors of the same size or larger only: from I to A, but not from A to I and J. Here both \
-                   sides of every dividing line are descended together, which gives all pairs, each in both directions. Scene bottleneck, leaf-size 10 %.";
+    let caption = "Leaves of a quadtree are neighbors where they share a side or a part of one, whatever \
+                   their levels; corners do not count. Going up to the \
+                   common ancestor and down again finds neighbors of the same size or larger only: from I to \
+                   A, but not from A to I and J. Here both \
+                   sides of every dividing line are descended together, which gives all pairs, each in both \
+                   directions. Scene bottleneck, leaf-size 10 %.";
     Ok(page(Paper::TwoColumns, "Neighbors across levels", legend, caption, &content))
 }
 
@@ -167,7 +199,9 @@ mod tests {
     fn neighbors_know_each_other_across_levels() {
         let scene = example("bottleneck").expect("a scene");
         let family = family(&scene).expect("such leaves");
-        let of = |c: CellId| Tessellation::<Flat>::neighbors(&family.boxes, c).iter().map(|n| n.cell).collect::<Vec<_>>();
+        let of = |c: CellId| {
+            Tessellation::<Flat>::neighbors(&family.boxes, c).iter().map(|n| n.cell).collect::<Vec<_>>()
+        };
         assert!(of(family.a).contains(&family.i) && of(family.i).contains(&family.a));
         let size = |c: CellId| Tessellation::<Flat>::bounds(&family.boxes, c).size().x;
         assert!((size(family.a) / size(family.i) - 2.0).abs() < 1e-4, "a level apart");

@@ -1,4 +1,5 @@
-//! Figures 13 and 14: the images of three orders with a budget of a tenth, and which of their pixels are wrong.
+//! Figures 13 and 14: the images of three orders with a budget of a tenth, and which of their pixels are
+//! wrong.
 
 use std::sync::Arc;
 
@@ -18,7 +19,9 @@ const SIDE: u32 = 240;
 
 /// Linear to sRGB bytes (IEC 61966-2-1), opaque.
 fn encoded(color: [f32; 3]) -> [u8; 4] {
-    let byte = |v: f32| (if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 } * 255.0 + 0.5) as u8;
+    let byte = |v: f32| {
+        (if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 } * 255.0 + 0.5) as u8
+    };
     [byte(color[0]), byte(color[1]), byte(color[2]), 255]
 }
 
@@ -43,7 +46,12 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
     for (name, tessellation) in ways {
         let drawn = match tessellation {
             None => list(&scene, &view, "centroid", &settings(&[("budget", "10%")])),
-            Some(t) => list(&scene, &view, METHOD, &settings(&[&[("budget", "10%"), ("tessellation", t)][..], &cells].concat())),
+            Some(t) => list(
+                &scene,
+                &view,
+                METHOD,
+                &settings(&[&[("budget", "10%"), ("tessellation", t)][..], &cells].concat()),
+            ),
         };
         let image = shade(&render(&*scene, &view, &drawn), &*scene, &view, paper);
         let same: Vec<bool> = exact.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a == b).collect();
@@ -52,18 +60,33 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
         drawn.iter().for_each(|p| kept[p.at()] = true);
         let found = 100.0 * seen.iter().filter(|p| kept[p.at()]).count() as f64 / seen.len() as f64;
         let missed = same.iter().flat_map(|&s| if s { right } else { wrong }).collect();
-        upper.push(Panel { label: format!("{name}: {found:.0} % of what is visible"), picture: picture(image) });
-        lower.push(Panel { label: format!("{name}: {share:.1} % of the pixels wrong"), picture: picture(missed) });
+        upper.push(Panel {
+            label: format!("{name}: {found:.0} % of what is visible"),
+            picture: picture(image),
+        });
+        lower.push(Panel {
+            label: format!("{name}: {share:.1} % of the pixels wrong"),
+            picture: picture(missed),
+        });
     }
     upper.extend(lower);
     let content = panels(TWO_COLUMNS_PT, 3, &upper);
     let legend = vec![entry(Role::Wrong, Swatch::Area, "wrong pixel; white ones are right")];
     let caption = format!(
-        "A seminar room of {} triangles with a budget of 10 %: above what each order draws (nothing where it is white), below where that differs from the image of the whole room, in \
-         which {} triangles are visible. Centroid: nearest first; octree and Delaunay: prioritized layers over these cells. The centroid order finds many \
-         triangles, those of near chairs, and misses large ones far away: few polygons, many pixels. Frame {FRAME} of the flight, {SIDE} × {SIDE} pixels.",
+        "A seminar room of {} triangles with a budget of 10 %: above what each order draws (nothing where it \
+         is white), below where that differs from the image of the whole room, in \
+         which {} triangles are visible. Centroid: nearest first; octree and Delaunay: prioritized layers \
+         over these cells. The centroid order finds many \
+         triangles, those of near chairs, and misses large ones far away: few polygons, many pixels. Frame \
+         {FRAME} of the flight, {SIDE} × {SIDE} pixels.",
         scene.live().len(),
         seen.len()
     );
-    Ok(page(Paper::TwoColumns, "What a tenth of the triangles shows, and what it misses", legend, caption, &content))
+    Ok(page(
+        Paper::TwoColumns,
+        "What a tenth of the triangles shows, and what it misses",
+        legend,
+        caption,
+        &content,
+    ))
 }

@@ -1,5 +1,6 @@
-//! Figure 3 in space: a car with an engine, the octree over its vertices, and the tetrahedra between the centers of its leaves,
-//! all cut open along the middle of the car, since a whole tessellation would hide itself.
+//! Figure 3 in space: a car with an engine, the octree over its vertices, and the tetrahedra between the
+//! centers of its leaves, all cut open along the middle of the car, since a whole tessellation would hide
+//! itself.
 
 use glam::Vec3;
 
@@ -18,7 +19,10 @@ const SEED: u32 = 1;
 
 /// The first of the generated cars.
 fn car() -> Result<Scene<Solid>, SceneError> {
-    let AnyScene::Solid(cars) = load("generate:cars?polygons=100000", &LoadOptions::default(), &Quiet)? else { unreachable!("cars are in space") };
+    let AnyScene::Solid(cars) = load("generate:cars?polygons=100000", &LoadOptions::default(), &Quiet)?
+    else {
+        unreachable!("cars are in space")
+    };
     let mut parts = (*cars).clone().into_parts();
     for (prim, object) in parts.prims.iter_mut().zip(&parts.prim_object) {
         if parts.objects[object.at()].group != "car_0" {
@@ -29,9 +33,16 @@ fn car() -> Result<Scene<Solid>, SceneError> {
 }
 
 /// The car without its near half, as the observer sees it, with lines and dots over it.
-fn panel(tint: Tint, car: &Scene<Solid>, observer: &View<Solid>, world: Drawing<Vec3>, label: String) -> Panel {
+fn panel(
+    tint: Tint,
+    car: &Scene<Solid>,
+    observer: &View<Solid>,
+    world: Drawing<Vec3>,
+    label: String,
+) -> Panel {
     let middle = car.bounds().center().z;
-    let far: Vec<PrimId> = car.live().iter().copied().filter(|&p| car.prim_bounds(p).center().z < middle).collect();
+    let far: Vec<PrimId> =
+        car.live().iter().copied().filter(|&p| car.prim_bounds(p).center().z < middle).collect();
     let rgba = shade(&render(car, observer, &far), car, observer, tint(Role::Paper));
     let pixels = Pixels { width: observer.width, height: observer.height, rgba: rgba.into() };
     Panel { label, picture: Picture::Over(pixels, world, *observer) }
@@ -54,7 +65,8 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
     let car = car()?;
     let never = || false;
     let cancelled = || -> ! { unreachable!("nobody cancels a figure") };
-    let boxes = vertex_octree(&car, Fineness { leaf_share: LEAF_SHARE, ..Fineness::default() }, never).unwrap_or_else(|| cancelled());
+    let boxes = vertex_octree(&car, Fineness { leaf_share: LEAF_SHARE, ..Fineness::default() }, never)
+        .unwrap_or_else(|| cancelled());
     let simplices = SimplexCells::<Solid>::of_centers(&boxes, SEED, &never).unwrap_or_else(|| cancelled());
     let bounds = car.bounds();
     // So far away that the picture is almost a plan.
@@ -73,17 +85,29 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
         TWO_COLUMNS_PT,
         2,
         &[
-            panel(tint, &car, &observer, Drawing::default(), format!("(a) a car of {} triangles", car.live().len())),
+            panel(
+                tint,
+                &car,
+                &observer,
+                Drawing::default(),
+                format!("(a) a car of {} triangles", car.live().len()),
+            ),
             panel(tint, &car, &observer, octree, format!("(b) octree: {leaves} leaves")),
             panel(tint, &car, &observer, centers, "(c) centers of leaves, near the cut".into()),
             panel(tint, &car, &observer, triangulation, format!("(d) {tetrahedra} tetrahedra")),
         ],
     );
-    let legend =
-        vec![entry(Role::Visible, Swatch::Line, "cells where they are cut"), entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random")];
-    let caption = "A car with an engine, cut open along its middle; the near half is left out. An octree is built over the vertices, down to leaves shorter \
-                   than 10 % of the car's length (the paper: 5 %); large leaves are empty. Either its leaves are the cells (b), or the centers of the \
-                   leaves, moved at random (c), are the vertices of a Delaunay triangulation, whose tetrahedra are the cells (d): small ones in the \
-                   body, large ones around it. Tetrahedra are cut in triangles and quadrangles. Scene generate:cars, one car.";
+    let legend = vec![
+        entry(Role::Visible, Swatch::Line, "cells where they are cut"),
+        entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random"),
+    ];
+    let caption = "A car with an engine, cut open along its middle; the near half is left out. An octree is \
+                   built over the vertices, down to leaves shorter \
+                   than 10 % of the car's length (the paper: 5 %); large leaves are empty. Either its leaves \
+                   are the cells (b), or the centers of the \
+                   leaves, moved at random (c), are the vertices of a Delaunay triangulation, whose \
+                   tetrahedra are the cells (d): small ones in the \
+                   body, large ones around it. Tetrahedra are cut in triangles and quadrangles. Scene \
+                   generate:cars, one car.";
     Ok(page(Paper::TwoColumns, "An occupancy-based tessellation of space", legend, caption, &content))
 }

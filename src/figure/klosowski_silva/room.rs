@@ -1,5 +1,5 @@
-//! Figures 1 and 2: the traversal frozen in a seminar room and seen from outside, with the cells that were projected and those
-//! that were not.
+//! Figures 1 and 2: the traversal frozen in a seminar room and seen from outside, with the cells that were
+//! projected and those that were not.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -44,7 +44,10 @@ fn seen_parts(observer: &View<Solid>, image: &Target, [a, b]: [Vec3; 2]) -> Vec<
         if clip.z < observer.eye.near {
             return false;
         }
-        let (x, y) = ((clip.x / clip.z * 0.5 + 0.5) * image.width as f32, (0.5 - clip.y / clip.z * 0.5) * image.height as f32);
+        let (x, y) = (
+            (clip.x / clip.z * 0.5 + 0.5) * image.width as f32,
+            (0.5 - clip.y / clip.z * 0.5) * image.height as f32,
+        );
         let inside = x >= 0.0 && y >= 0.0 && x < image.width as f32 && y < image.height as f32;
         inside && BEHIND / clip.z >= image.depth[y as usize * image.width as usize + x as usize]
     };
@@ -67,7 +70,9 @@ fn edges(film: &dyn Film<Solid>, cell: NodeId) -> Vec<[Vec3; 2]> {
     let mut to = Drawing::default();
     film.hierarchy().edges(cell).unwrap_or_else(|| {
         to.bounds(Layer::Nodes, Role::Ink, Subject::None, &film.hierarchy().bounds(cell));
-        let ends = to.items.iter().filter_map(|i| if let Mark::Line { points, .. } = &i.mark { Some(points.clone()) } else { None });
+        let ends = to.items.iter().filter_map(|i| {
+            if let Mark::Line { points, .. } = &i.mark { Some(points.clone()) } else { None }
+        });
         ends.flat_map(|p| p.windows(2).map(|w| [w[0], w[1]]).collect::<Vec<_>>()).collect()
     })
 }
@@ -79,8 +84,8 @@ fn key([a, b]: [Vec3; 2]) -> [[u32; 3]; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
 
-/// How far a cell may reach out of the room to be shown, sideways and up or down, m: the outermost ones reach the corners of
-/// a far larger cube.
+/// How far a cell may reach out of the room to be shown, sideways and up or down, m: the outermost ones reach
+/// the corners of a far larger cube.
 const OUTSIDE_M: [f32; 2] = [0.7, 1.75];
 
 /// Whether a cell does not reach far out of the room.
@@ -96,7 +101,12 @@ fn cells(film: &dyn Film<Solid>) -> [Vec<NodeId>; 2] {
     let (stamps, end) = (Stamps::new(film), film.events().len());
     let of = |verdict: Verdict| {
         let all = (1..film.hierarchy().node_count() as u32).map(NodeId);
-        all.filter(|&id| stamps.node(id, end) == State::Decided(verdict) && film.hierarchy().held(id) > 0 && is_inside(film, id)).collect()
+        all.filter(|&id| {
+            stamps.node(id, end) == State::Decided(verdict)
+                && film.hierarchy().held(id) > 0
+                && is_inside(film, id)
+        })
+        .collect()
     };
     [of(Verdict::Visible), of(Verdict::OverBudget)]
 }
@@ -105,7 +115,9 @@ fn cells(film: &dyn Film<Solid>) -> [Vec<NodeId>; 2] {
 fn drawn(film: &dyn Film<Solid>) -> Vec<PrimId> {
     let (stamps, end, scene) = (Stamps::new(film), film.events().len(), film.scene());
     let top = scene.bounds().min.y + scene.bounds().size().y * CEILING;
-    let of = |p: &PrimId| stamps.prim(*p, end) == State::Decided(Verdict::Visible) && scene.prim_bounds(*p).min.y < top;
+    let of = |p: &PrimId| {
+        stamps.prim(*p, end) == State::Decided(Verdict::Visible) && scene.prim_bounds(*p).min.y < top
+    };
     scene.live().iter().copied().filter(of).collect()
 }
 
@@ -139,17 +151,20 @@ fn snapshot(tint: Tint, film: &dyn Film<Solid>, name: &str) -> Panel {
         for edge in edges(film, cell) {
             if done.insert(key(edge)) {
                 let parts = seen_parts(&observer, &image, edge);
-                parts.into_iter().for_each(|part| world.line(Layer::Nodes, Role::Approximated, Subject::Node(cell), part));
+                parts
+                    .into_iter()
+                    .for_each(|part| world.line(Layer::Nodes, Role::Approximated, Subject::Node(cell), part));
             }
         }
     }
     eye(film, 3.0, &mut world);
-    let label = format!("{name}: {} of {} occupied cells in view wait", rest.len(), projected.len() + rest.len());
+    let label =
+        format!("{name}: {} of {} occupied cells in view wait", rest.len(), projected.len() + rest.len());
     panel(label, shade(&image, &**scene, &observer, tint(Role::Paper)), world, &observer)
 }
 
-/// Where the plane at a height along an axis cuts a cell, given by its edges, around the cut; less than three points where it
-/// does not.
+/// Where the plane at a height along an axis cuts a cell, given by its edges, around the cut; less than three
+/// points where it does not.
 pub fn cut(edges: &[[Vec3; 2]], axis: Vec3, height: f32) -> Vec<Vec3> {
     let mut points = Vec::new();
     for &[a, b] in edges {
@@ -201,7 +216,13 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
     let sight = View { width: 256, height: 256, ..scene.paths()[0].views[FRAME] };
     let run = |tessellation: &str, leaf_size: &str| {
         let cells = [("tessellation", tessellation), ("leaf-size", leaf_size)];
-        film(&scene, &sight, METHOD, &[&cells[..], &[("budget", "25%"), ("transfer", "aligned"), ("penalty", "100"), ("seed", "1")]].concat())
+        film(
+            &scene,
+            &sight,
+            METHOD,
+            &[&cells[..], &[("budget", "25%"), ("transfer", "aligned"), ("penalty", "100"), ("seed", "1")]]
+                .concat(),
+        )
     };
     let content = panels(
         TWO_COLUMNS_PT,
@@ -219,9 +240,13 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Line, "the Eye's view, as far as 3 m"),
     ];
     let caption = format!(
-        "A seminar room of {} triangles; the traversal has been stopped when a quarter of them was drawn, and is looked at from outside, the ceiling left \
-         out. Above: what was drawn, and the edges of occupied cells that still wait, as far as no drawn triangle hides them (leaf-size 14 %). Below: all \
-         cells in view where a horizontal plane cuts them (leaf-size 7 %). Cells near the Eye and empty ones come first; among the chairs many wait. Cells that reach far out of the room are not shown. Frame {FRAME} \
+        "A seminar room of {} triangles; the traversal has been stopped when a quarter of them was drawn, \
+         and is looked at from outside, the ceiling left \
+         out. Above: what was drawn, and the edges of occupied cells that still wait, as far as no drawn \
+         triangle hides them (leaf-size 14 %). Below: all \
+         cells in view where a horizontal plane cuts them (leaf-size 7 %). Cells near the Eye and empty ones \
+         come first; among the chairs many wait. Cells that reach far out of the room are not shown. Frame \
+         {FRAME} \
          of the flight.",
         scene.live().len()
     );
@@ -236,8 +261,11 @@ mod tests {
     fn a_cut_through_a_cube_runs_around_it() {
         let cube = crate::geometry::Aabb { min: Vec3::ZERO, max: Vec3::ONE };
         let corner = |i: usize| cube.corner(i);
-        let edges: Vec<[Vec3; 2]> =
-            (0..8usize).flat_map(|i| [1, 2, 4].into_iter().filter(move |b| i & b == 0).map(move |b| [corner(i), corner(i | b)])).collect();
+        let edges: Vec<[Vec3; 2]> = (0..8usize)
+            .flat_map(|i| {
+                [1, 2, 4].into_iter().filter(move |b| i & b == 0).map(move |b| [corner(i), corner(i | b)])
+            })
+            .collect();
         let points = cut(&edges, Vec3::Y, 0.25);
         assert!(points.len() == 4 && points.iter().all(|p| p.y == 0.25), "{points:?}");
         assert!((0..4).all(|i| points[i].distance(points[(i + 1) % 4]) == 1.0), "{points:?}");
@@ -255,6 +283,8 @@ mod tests {
         assert!(parts[0][0].x.abs() < 0.05 && parts[0][1].x == 1.0, "{parts:?}");
         let before = seen_parts(&observer, &image, [Vec3::new(-0.5, 0.0, -1.9), Vec3::new(0.5, 0.0, -1.9)]);
         assert_eq!(before, [[Vec3::new(-0.5, 0.0, -1.9), Vec3::new(0.5, 0.0, -1.9)]]);
-        assert!(seen_parts(&observer, &image, [Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, 0.0, 2.0)]).is_empty());
+        assert!(
+            seen_parts(&observer, &image, [Vec3::new(0.0, 0.0, 1.0), Vec3::new(0.0, 0.0, 2.0)]).is_empty()
+        );
     }
 }

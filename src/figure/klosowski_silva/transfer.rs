@@ -1,4 +1,5 @@
-//! Figure 6: a cell A was projected and hands its solidity on to B and C, of which C is not star-shaped; with the arithmetic.
+//! Figure 6: a cell A was projected and hands its solidity on to B and C, of which C is not star-shaped; with
+//! the arithmetic.
 
 use std::sync::Arc;
 
@@ -46,7 +47,14 @@ impl Transfer {
 /// The run of the figure.
 fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("bottleneck")?;
-    let pairs = [("tessellation", "delaunay"), ("leaf-size", "10"), ("budget", "100%"), ("transfer", "aligned"), ("penalty", "100"), ("seed", "1")];
+    let pairs = [
+        ("tessellation", "delaunay"),
+        ("leaf-size", "10"),
+        ("budget", "100%"),
+        ("transfer", "aligned"),
+        ("penalty", "100"),
+        ("seed", "1"),
+    ];
     Ok(film(&scene, &eye(&scene, 0), METHOD, &pairs))
 }
 
@@ -79,8 +87,9 @@ fn area(points: &[Vec2]) -> f32 {
     (0..points.len()).map(|i| points[i].perp_dot(points[(i + 1) % points.len()])).sum::<f32>().abs() * 0.5
 }
 
-/// B and C: a cell hands much of its solidity on to one neighbor, less to another one that is not star-shaped. Of all such pairs
-/// the one whose cells take most of a picture of the three, and whose arrows are well apart.
+/// B and C: a cell hands much of its solidity on to one neighbor, less to another one that is not
+/// star-shaped. Of all such pairs the one whose cells take most of a picture of the three, and whose arrows
+/// are well apart.
 fn pair(film: &dyn Film<Flat>) -> Option<[Transfer; 2]> {
     let near = |value: f64, wanted: f64| (1.0 - 2.5 * (value - wanted).abs()).max(0.02) as f32;
     let mut best: Option<(f32, [Transfer; 2])> = None;
@@ -88,13 +97,23 @@ fn pair(film: &dyn Film<Flat>) -> Option<[Transfer; 2]> {
         for (b, c) in [(0, 1), (1, 0)] {
             let (b, c) = (&group[b], &group[c]);
             let less = b.number("alignment") > c.number("alignment") && c.number("alignment") > 0.0;
-            if !(b.is_star_shaped() && !c.is_star_shaped() && less && b.number("from_solidity") > 0.05 && b.number("held") > 0.0) {
+            if !(b.is_star_shaped()
+                && !c.is_star_shaped()
+                && less
+                && b.number("from_solidity") > 0.05
+                && b.number("held") > 0.0)
+            {
                 continue;
             }
             let pair = [b.clone(), c.clone()];
             let size = frame(film, &pair).size();
-            let least = [b.from(), b.to(), c.to()].iter().map(|&n| area(&corners(film, n))).fold(f32::INFINITY, f32::min);
-            let score = least / (size.x * size.y) * near(b.number("alignment"), 0.87) * near(c.number("alignment"), 0.45);
+            let least = [b.from(), b.to(), c.to()]
+                .iter()
+                .map(|&n| area(&corners(film, n)))
+                .fold(f32::INFINITY, f32::min);
+            let score = least / (size.x * size.y)
+                * near(b.number("alignment"), 0.87)
+                * near(c.number("alignment"), 0.45);
             if best.as_ref().is_none_or(|(most, _)| score > *most) {
                 best = Some((score, pair));
             }
@@ -122,10 +141,14 @@ fn arithmetic(transfer: &Transfer, name: char) -> Vec<String> {
         n("transferred")
     );
     let star = if transfer.is_star_shaped() {
-        format!("     The ray from the center of {name} to the Eye leaves through the side that it shares with A: star-shaped, no penalty.")
+        format!(
+            "     The ray from the center of {name} to the Eye leaves through the side that it shares with \
+             A: star-shaped, no penalty."
+        )
     } else {
         format!(
-            "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, with the penalty of 1 = {:.2}.",
+            "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, \
+             with the penalty of 1 = {:.2}.",
             n("solidity")
         )
     };
@@ -148,21 +171,39 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
     let center = |n: NodeId| cell(n).iter().sum::<Vec2>() / 3.0;
     plan.world.push(Layer::Areas, Role::Visible, Subject::Node(a), Mark::Area(cell(a)));
     for transfer in pair {
-        plan.world.push(Layer::Areas, Role::Undecided, Subject::Node(transfer.to()), Mark::Area(cell(transfer.to())));
+        plan.world.push(
+            Layer::Areas,
+            Role::Undecided,
+            Subject::Node(transfer.to()),
+            Mark::Area(cell(transfer.to())),
+        );
     }
     for &prim in scene.live() {
-        plan.world.line(Layer::Scene, Role::Scene, Subject::Prim(prim), scene.prim_points(prim).collect::<Vec<_>>());
+        plan.world.line(
+            Layer::Scene,
+            Role::Scene,
+            Subject::Prim(prim),
+            scene.prim_points(prim).collect::<Vec<_>>(),
+        );
     }
     for (transfer, name) in pair.iter().zip(['B', 'C']) {
         let to = transfer.to();
         let [p, q] = shared(film, a, to);
         plan.world.line(Layer::Emphasis, Role::Current, Subject::None, [p, q]);
         // The ray of the test, from the center to the Eye.
-        plan.world.line(Layer::Evidence, if transfer.is_star_shaped() { Role::Eye } else { Role::Hidden }, Subject::None, [center(to), at]);
+        plan.world.line(
+            Layer::Evidence,
+            if transfer.is_star_shaped() { Role::Eye } else { Role::Hidden },
+            Subject::None,
+            [center(to), at],
+        );
         let from = (p + q) * 0.5;
         let tip = |vector: &str, length_pt: f32| from + transfer.vector(vector) * length_pt * plan.unit;
-        let [normal, sight] = ["normal", "view_direction"].map(|v| [tip(v, ARROW_PT), tip(v, ARROW_PT + 9.0)]);
-        for ([end, label], role, text) in [(normal, Role::Evidence, format!("n({name})")), (sight, Role::Eye, "v".to_owned())] {
+        let [normal, sight] =
+            ["normal", "view_direction"].map(|v| [tip(v, ARROW_PT), tip(v, ARROW_PT + 9.0)]);
+        for ([end, label], role, text) in
+            [(normal, Role::Evidence, format!("n({name})")), (sight, Role::Eye, "v".to_owned())]
+        {
             plan.world.push(Layer::Emphasis, role, Subject::None, Mark::Arrow(from, end));
             plan.plate(label, LABEL_PT, Font::Bold, &text);
         }
@@ -176,7 +217,8 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
     // Where the ray of B leaves the picture.
     let (start, frame) = (center(pair[0].to()), plan.frame);
     let is_inside = |t: f32| (start.lerp(at, t) - frame.center()).abs().cmple(frame.size() * 0.5).all();
-    let leaves = (0..1000).map(|k| k as f32 / 1000.0).take_while(|&t| is_inside(t)).last().unwrap_or_default();
+    let leaves =
+        (0..1000).map(|k| k as f32 / 1000.0).take_while(|&t| is_inside(t)).last().unwrap_or_default();
     plan.plate(start.lerp(at, leaves), LABEL_PT, Font::Regular, "to the Eye");
     plan
 }
@@ -185,7 +227,11 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
 pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
     let film = run()?;
     let pair = pair(&*film).unwrap_or_else(|| unreachable!("the scene has such a pair; a test says so"));
-    let mut content = panels(TWO_COLUMNS_PT, 1, &[draw(&*film, &pair).panel("A has been projected; B and C are in the front.")]);
+    let mut content = panels(
+        TWO_COLUMNS_PT,
+        1,
+        &[draw(&*film, &pair).panel("A has been projected; B and C are in the front.")],
+    );
     for line in pair.iter().zip(['B', 'C']).flat_map(|(t, name)| arithmetic(t, name)) {
         content.size_pt.y += 12.0;
         content.text(Layer::Labels, Role::Ink, vec2(0.0, content.size_pt.y), 8.0, Anchor::Start, line);
@@ -200,9 +246,12 @@ pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Hidden, Swatch::Line, "a ray that does not"),
     ];
     let caption = format!(
-        "After A has been projected, its solidity ρ(A) is handed on, the more the better the shared side's normal n agrees with the view direction v, from \
-         the Eye to the center of the cell; |A| counts the segments that meet A, ρ_max is the most of any cell. B lies straight behind A; C is reached \
-         sideways, so it gets less of ρ(A), but pays the penalty. Numbers of step {} of the run on scene bottleneck, Delaunay cells, leaf-size 10 %.",
+        "After A has been projected, its solidity ρ(A) is handed on, the more the better the shared side's \
+         normal n agrees with the view direction v, from \
+         the Eye to the center of the cell; |A| counts the segments that meet A, ρ_max is the most of any \
+         cell. B lies straight behind A; C is reached \
+         sideways, so it gets less of ρ(A), but pays the penalty. Numbers of step {} of the run on scene \
+         bottleneck, Delaunay cells, leaf-size 10 %.",
         pair[1].step
     );
     Ok(page(Paper::TwoColumns, "Solidity is handed on", legend, caption, &content))
@@ -225,7 +274,8 @@ mod tests {
             assert!((sum + penalty - n("solidity")).abs() < 1e-5);
             let (v, normal) = (t.vector("view_direction"), t.vector("normal"));
             assert!((f64::from(v.dot(normal)) - n("alignment")).abs() < 1e-5);
-            // The picture's normal is that of the shared side, away from A; its view direction goes to the center.
+            // The picture's normal is that of the shared side, away from A; its view direction goes to the
+            // center.
             let [p, q] = shared(&*film, t.from(), t.to());
             let center = |n: NodeId| corners(&*film, n).iter().sum::<Vec2>() / 3.0;
             assert!(normal.dot(q - p).abs() < 1e-4 && normal.dot(center(t.to()) - center(t.from())) > 0.0);

@@ -1,4 +1,5 @@
-//! Figure 7: the traversal at four moments, read from its film; and the front at any moment, for other figures.
+//! Figure 7: the traversal at four moments, read from its film; and the front at any moment, for other
+//! figures.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -52,7 +53,10 @@ impl Moment {
                 "CellSeeded" => _ = moment.front.insert(node(&fields, "node"), 0.0),
                 "SolidityTransferred" if number(&fields, "keeps") == Some(1.0) => {}
                 "SolidityTransferred" => {
-                    moment.front.insert(node(&fields, "node"), number(&fields, "solidity").unwrap_or_default() as f32);
+                    moment.front.insert(
+                        node(&fields, "node"),
+                        number(&fields, "solidity").unwrap_or_default() as f32,
+                    );
                 }
                 "CellProjected" if moment.projected.len() == cells => break,
                 "CellProjected" => {
@@ -73,12 +77,16 @@ impl Moment {
 pub fn corners(film: &dyn Film<Flat>, cell: NodeId) -> Vec<Vec2> {
     let bounds = film.hierarchy().bounds(cell);
     let edges = film.hierarchy().edges(cell);
-    edges.map_or_else(|| [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec(), |edges| edges.iter().map(|e| e[0]).collect())
+    edges.map_or_else(
+        || [0, 1, 3, 2].map(|i| bounds.corner(i)).to_vec(),
+        |edges| edges.iter().map(|e| e[0]).collect(),
+    )
 }
 
 /// The center of the circle in a triangle, or the middle of another polygon.
 fn middle(points: &[Vec2]) -> Vec2 {
-    let weight = |i: usize| if points.len() == 3 { (points[(i + 1) % 3] - points[(i + 2) % 3]).length() } else { 1.0 };
+    let weight =
+        |i: usize| if points.len() == 3 { (points[(i + 1) % 3] - points[(i + 2) % 3]).length() } else { 1.0 };
     let sum: f32 = (0..points.len()).map(weight).sum();
     (0..points.len()).map(|i| points[i] * weight(i)).sum::<Vec2>() / sum.max(f32::MIN_POSITIVE)
 }
@@ -104,7 +112,14 @@ const MOMENTS: [usize; 4] = [1, 10, 26, 46];
 /// The run of the figure.
 fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("bottleneck")?;
-    let pairs = [("tessellation", "delaunay"), ("leaf-size", "13"), ("budget", "70"), ("transfer", "aligned"), ("penalty", "100"), ("seed", "1")];
+    let pairs = [
+        ("tessellation", "delaunay"),
+        ("leaf-size", "13"),
+        ("budget", "70"),
+        ("transfer", "aligned"),
+        ("penalty", "100"),
+        ("seed", "1"),
+    ];
     Ok(film(&scene, &eye(&scene, 0), METHOD, &pairs))
 }
 
@@ -146,7 +161,11 @@ fn moment(film: &dyn Film<Flat>, letter: char, cells: usize) -> Panel {
         write(&mut plan, &corners(film, id), &text, font);
     }
     plan.dot(Role::Eye, at, 3.5);
-    let label = format!("({letter}) {cells} cell{} projected; {} of 70 segments left", if cells == 1 { "" } else { "s" }, moment.left);
+    let label = format!(
+        "({letter}) {cells} cell{} projected; {} of 70 segments left",
+        if cells == 1 { "" } else { "s" },
+        moment.left
+    );
     plan.panel(label)
 }
 
@@ -163,7 +182,8 @@ fn write(plan: &mut Plan, cell: &[Vec2], text: &str, font: Font) {
 fn sides_of_view(film: &dyn Film<Flat>, plan: &mut Plan) {
     let eye = &film.view().eye;
     for side in [-0.5, 0.5] {
-        let end = eye.position + Vec2::from_angle(eye.fov * side).rotate(eye.forward()) * plan.frame.diagonal();
+        let end =
+            eye.position + Vec2::from_angle(eye.fov * side).rotate(eye.forward()) * plan.frame.diagonal();
         plan.world.line(Layer::Frustum, Role::Eye, Subject::Eye, [eye.position, end]);
     }
 }
@@ -173,7 +193,14 @@ fn strip(to: &mut Drawing) {
     const WIDE: f32 = 30.0;
     const HIGH: f32 = 10.0;
     let top = to.size_pt.y + 6.0;
-    to.text(Layer::Labels, Role::Ink, vec2(0.0, top + 8.0), 8.0, Anchor::Start, "solidity of a cell of the front, at least:");
+    to.text(
+        Layer::Labels,
+        Role::Ink,
+        vec2(0.0, top + 8.0),
+        8.0,
+        Anchor::Start,
+        "solidity of a cell of the front, at least:",
+    );
     for level in 0..=SHADES {
         let min = vec2(160.0 + WIDE * level as f32, top);
         let corners = [min, min + vec2(WIDE, 0.0), min + vec2(WIDE, HIGH), min + vec2(0.0, HIGH)];
@@ -189,7 +216,8 @@ fn strip(to: &mut Drawing) {
 /// Figure 7.
 pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
     let film = run()?;
-    let all: Vec<Panel> = MOMENTS.into_iter().zip('a'..).map(|(cells, letter)| moment(&*film, letter, cells)).collect();
+    let all: Vec<Panel> =
+        MOMENTS.into_iter().zip('a'..).map(|(cells, letter)| moment(&*film, letter, cells)).collect();
     let mut content = panels(TWO_COLUMNS_PT, 2, &all);
     strip(&mut content);
     let legend = vec![
@@ -200,10 +228,14 @@ pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Scene, Swatch::Line, "segment not drawn"),
         entry(Role::Eye, Swatch::Line, "the Eye and its view"),
     ];
-    let caption = "The front grows from the cell of the Eye (a), always over its cell of least solidity (b). Between two thickets is a bottleneck: cells \
-                   in and behind the thickets have gathered solidity and wait (c), while the front goes on through the gap and spreads behind it (d). \
-                   So what is seen through the gap is drawn before what lies deep in the thickets. Cells that are reached sideways, not through the \
-                   face that the Eye sees them by, pay a penalty. Scene bottleneck, Delaunay cells, leaf-size 13 %, budget 70 segments.";
+    let caption = "The front grows from the cell of the Eye (a), always over its cell of least solidity (b). \
+                   Between two thickets is a bottleneck: cells \
+                   in and behind the thickets have gathered solidity and wait (c), while the front goes on \
+                   through the gap and spreads behind it (d). \
+                   So what is seen through the gap is drawn before what lies deep in the thickets. Cells \
+                   that are reached sideways, not through the \
+                   face that the Eye sees them by, pay a penalty. Scene bottleneck, Delaunay cells, \
+                   leaf-size 13 %, budget 70 segments.";
     Ok(page(Paper::TwoColumns, "The traversal, past a bottleneck", legend, caption, &content))
 }
 
@@ -238,6 +270,8 @@ mod tests {
     fn numbers_lie_in_their_cells() {
         let cell = [vec2(0.0, 0.0), vec2(4.0, 0.0), vec2(0.0, 3.0)];
         assert!((middle(&cell) - vec2(1.0, 1.0)).length() < 1e-6, "the circle in it has radius 1");
-        assert!(holds(&cell, vec2(1.0, 1.0), vec2(0.7, 0.7)) && !holds(&cell, vec2(1.0, 1.0), vec2(1.5, 0.2)));
+        assert!(
+            holds(&cell, vec2(1.0, 1.0), vec2(0.7, 0.7)) && !holds(&cell, vec2(1.0, 1.0), vec2(1.5, 0.2))
+        );
     }
 }

@@ -1,10 +1,11 @@
-//! Incremental construction: walk to the new point, dig out what its arrival refutes, fill the cavity with a star.
+//! Incremental construction: walk to the new point, dig out what its arrival refutes, fill the cavity with a
+//! star.
 //!
-//! Bowyer and Watson 1981; the space outside the convex hull is filled with tetrahedra that share a vertex at infinity,
-//! so that no case is special. A point that lies exactly on a sphere does not refute it: each point is lifted by an
-//! infinitesimal amount, far larger than those of all earlier points (Devillers and Teillaud, "Perturbations and Vertex
-//! Removal in a 3D Delaunay Triangulation", SODA 2003), so the result is that of points in general position, and no
-//! tetrahedron is flat.
+//! Bowyer and Watson 1981; the space outside the convex hull is filled with tetrahedra that share a vertex at
+//! infinity, so that no case is special. A point that lies exactly on a sphere does not refute it: each point
+//! is lifted by an infinitesimal amount, far larger than those of all earlier points (Devillers and Teillaud,
+//! "Perturbations and Vertex Removal in a 3D Delaunay Triangulation", SODA 2003), so the result is that of
+//! points in general position, and no tetrahedron is flat.
 
 use super::sign::Signs;
 use super::{FACES, NONE};
@@ -14,7 +15,8 @@ const INFINITY: u32 = u32::MAX;
 /// Asked about cancellation every so many points.
 const PATIENCE: u32 = 4096;
 
-/// A tetrahedron while it is built. It is positive: vertex 3 lies where the first three are seen counter-clockwise.
+/// A tetrahedron while it is built. It is positive: vertex 3 lies where the first three are seen
+/// counter-clockwise.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 pub struct Cell {
@@ -121,7 +123,10 @@ impl Builder {
         self.cells.push(inner);
         for face in 0..4 {
             let [p, q, r] = inner.face(face);
-            self.cells.push(Cell { vertices: [p, r, q, INFINITY], across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, Side::new(0, face)] });
+            self.cells.push(Cell {
+                vertices: [p, r, q, INFINITY],
+                across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, Side::new(0, face)],
+            });
         }
         self.marks.resize(5, 0);
         self.edges.clear(12);
@@ -133,7 +138,8 @@ impl Builder {
     fn locate(&self, vertex: u32) -> u32 {
         let start = &self.cells[self.last as usize];
         let (mut at, mut from) = (start.infinite().map_or(self.last, |i| start.across[i].cell()), 4);
-        // This ends: in a Delaunay triangulation the cells along such a walk come nearer and nearer (Edelsbrunner 1990).
+        // This ends: in a Delaunay triangulation the cells along such a walk come nearer and nearer
+        // (Edelsbrunner 1990).
         loop {
             let cell = &self.cells[at as usize];
             if cell.infinite().is_some() {
@@ -150,7 +156,8 @@ impl Builder {
     fn refutes(&self, vertex: u32, cell: u32) -> bool {
         let cell = &self.cells[cell as usize];
         let Some(infinite) = cell.infinite() else { return self.signs.insphere(cell.vertices, vertex) > 0.0 };
-        // The sphere of an infinite cell is the half-space beyond its face, and in the face's plane the circle around it.
+        // The sphere of an infinite cell is the half-space beyond its face, and in the face's plane the
+        // circle around it.
         let side = self.signs.orient(cell.face(infinite), vertex);
         if side != 0.0 {
             return side > 0.0;
@@ -206,7 +213,10 @@ impl Builder {
         for i in 0..self.walls.len() {
             let wall = self.walls[i];
             let [p, q, r] = self.cells[wall.cell() as usize].face(wall.face());
-            let cell = Cell { vertices: [p, r, q, vertex], across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, wall] };
+            let cell = Cell {
+                vertices: [p, r, q, vertex],
+                across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, wall],
+            };
             let at = match self.unused.pop() {
                 Some(at) => {
                     self.cells[at as usize] = cell;
@@ -227,7 +237,8 @@ impl Builder {
         }
     }
 
-    /// Joins the first three faces of a new cell to those of other new cells, which share an edge of a wall with it.
+    /// Joins the first three faces of a new cell to those of other new cells, which share an edge of a wall
+    /// with it.
     #[inline]
     fn link(&mut self, at: u32) {
         let [p, q, r, _] = self.cells[at as usize].vertices;

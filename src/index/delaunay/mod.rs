@@ -1,10 +1,11 @@
 //! Delaunay triangulation of points in space, with adjacency.
 //!
-//! Klosowski and Silva 2000, Section 4.3, tessellate space by it. Points are inserted one by one ([`build`]) in an order
-//! that makes the walk to each short ([`order`]); every decision is exact ([`sign`]). Degenerate input is no special case:
-//! points on one sphere are told apart by a symbolic perturbation, a point that is there already is left out and named, and
-//! points in one plane have no tetrahedra. In the plane the crate `spade` does the same.
-//! Cost: expected O(n log n) for points as scenes have them, 32 bytes a tetrahedron, about 6.7 tetrahedra a point.
+//! Klosowski and Silva 2000, Section 4.3, tessellate space by it. Points are inserted one by one ([`build`])
+//! in an order that makes the walk to each short ([`order`]); every decision is exact ([`sign`]). Degenerate
+//! input is no special case: points on one sphere are told apart by a symbolic perturbation, a point that is
+//! there already is left out and named, and points in one plane have no tetrahedra. In the plane the crate
+//! `spade` does the same. Cost: expected O(n log n) for points as scenes have them, 32 bytes a tetrahedron,
+//! about 6.7 tetrahedra a point.
 
 mod build;
 mod order;

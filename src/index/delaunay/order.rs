@@ -1,8 +1,9 @@
 //! The order in which points are inserted: random rounds, along a space-filling curve within each.
 //!
-//! Amenta, Choi and Rote, "Incremental Constructions con BRIO", SoCG 2003: a biased randomized order keeps the expected
-//! cost of random insertion, and within a round the points may come in any order; along a Hilbert curve (Skilling,
-//! "Programming the Hilbert Curve", 2004) each is found a few tetrahedra away from the last. Cost: O(n log n).
+//! Amenta, Choi and Rote, "Incremental Constructions con BRIO", SoCG 2003: a biased randomized order keeps
+//! the expected cost of random insertion, and within a round the points may come in any order; along a
+//! Hilbert curve (Skilling, "Programming the Hilbert Curve", 2004) each is found a few tetrahedra away from
+//! the last. Cost: O(n log n).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -51,7 +52,10 @@ fn along_hilbert(mut cell: [u32; 3]) -> u64 {
     // Gray code.
     cell[1] ^= cell[0];
     cell[2] ^= cell[1];
-    let flips = (1..BITS).rev().filter(|bit| cell[2] >> bit & 1 == 1).fold(0, |flips, bit| flips ^ ((1u32 << bit) - 1));
+    let flips = (1..BITS)
+        .rev()
+        .filter(|bit| cell[2] >> bit & 1 == 1)
+        .fold(0, |flips, bit| flips ^ ((1u32 << bit) - 1));
     let [x, y, z] = cell.map(|v| spread(v ^ flips));
     x << 2 | y << 1 | z
 }
@@ -86,7 +90,8 @@ mod tests {
 
     #[test]
     fn every_point_comes_once_and_early_rounds_are_small() {
-        let points: Vec<_> = (0..5000).map(|i| DVec3::new(f64::from(i % 17), f64::from(i % 31), f64::from(i))).collect();
+        let points: Vec<_> =
+            (0..5000).map(|i| DVec3::new(f64::from(i % 17), f64::from(i % 31), f64::from(i))).collect();
         let mut order = insertion_order(&points);
         let spread = |part: &[u32]| part.iter().max().expect("some") - part.iter().min().expect("some");
         assert!(spread(&order[..100]) > 4000, "the first round is a sample of all");

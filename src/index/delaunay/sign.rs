@@ -1,9 +1,10 @@
 //! The two signs that the triangulation hangs on: fast where a bound on the rounding allows, exact elsewhere.
 //!
-//! Devillers and Pion, "Efficient Exact Geometric Predicates for Delaunay Triangulations", ALENEX 2003: a semi-static
-//! filter compares the determinant with a constant times the largest coordinates. What it leaves open is settled by
-//! integers if all points lie on a common grid (voxels, centers of octree cells), where ties are the rule, and by
-//! Shewchuk's expansions otherwise. Points are `f32` widened to `f64`: a product of five coordinates lies between
+//! Devillers and Pion, "Efficient Exact Geometric Predicates for Delaunay Triangulations", ALENEX 2003: a
+//! semi-static filter compares the determinant with a constant times the largest coordinates. What it leaves
+//! open is settled by integers if all points lie on a common grid (voxels, centers of octree cells), where
+//! ties are the rule, and by Shewchuk's expansions otherwise. Points are `f32` widened to `f64`: a product of
+//! five coordinates lies between
 //! 2⁻⁷⁴⁵ and 2⁶⁵⁰, so nothing under- or overflows.
 
 use glam::DVec3;
@@ -42,14 +43,19 @@ impl Signs {
         self.points[vertex as usize]
     }
 
-    /// Positive if `d` lies on the side of the plane from which `a`, `b`, `c` are seen counter-clockwise; 0 if on it.
+    /// Positive if `d` lies on the side of the plane from which `a`, `b`, `c` are seen counter-clockwise; 0
+    /// if on it.
     #[inline]
     pub fn orient(&self, [a, b, c]: [u32; 3], d: u32) -> f64 {
         let origin = self.point(d);
         let [p, q, r] = [a, b, c].map(|v| self.point(v) - origin);
         let det = -p.dot(q.cross(r));
         let most = p.abs().max(q.abs()).max(r.abs());
-        if det.abs() > ORIENT_ERROR * most.x * most.y * most.z { det } else { self.orient_exactly([a, b, c, d]) }
+        if det.abs() > ORIENT_ERROR * most.x * most.y * most.z {
+            det
+        } else {
+            self.orient_exactly([a, b, c, d])
+        }
     }
     #[cold]
     fn orient_exactly(&self, vertices: [u32; 4]) -> f64 {
@@ -66,12 +72,14 @@ impl Signs {
         let center = self.point(e);
         let [p, q, r, s] = tetrahedron.map(|v| self.point(v) - center);
         let minor = |a: DVec3, b: DVec3| a.x * b.y - b.x * a.y;
-        let (pq, pr, ps, qr, qs, rs) = (minor(p, q), minor(p, r), minor(p, s), minor(q, r), minor(q, s), minor(r, s));
+        let (pq, pr, ps, qr, qs, rs) =
+            (minor(p, q), minor(p, r), minor(p, s), minor(q, r), minor(q, s), minor(r, s));
         let pqr = p.z * qr - q.z * pr + r.z * pq;
         let pqs = p.z * qs - q.z * ps + s.z * pq;
         let prs = p.z * rs - r.z * ps + s.z * pr;
         let qrs = q.z * rs - r.z * qs + s.z * qr;
-        let det = (p.length_squared() * qrs - q.length_squared() * prs) + (r.length_squared() * pqs - s.length_squared() * pqr);
+        let det = (p.length_squared() * qrs - q.length_squared() * prs)
+            + (r.length_squared() * pqs - s.length_squared() * pqr);
         let most = p.abs().max(q.abs()).max(r.abs()).max(s.abs());
         let longest = most.max_element();
         let error = INSPHERE_ERROR * most.x * most.y * most.z * longest * longest;
@@ -97,7 +105,10 @@ impl Signs {
 fn grid(points: &[DVec3]) -> Option<f64> {
     let coordinates = points.iter().flat_map(|p| p.to_array()).filter(|v| *v != 0.0);
     // The exponent of the last bit set. No `f32` is subnormal as an `f64`.
-    let last_bit = |v: f64| ((v.to_bits() >> 52 & 0x7ff) as i32) - 1075 + (v.to_bits() & ((1 << 52) - 1) | 1 << 52).trailing_zeros() as i32;
+    let last_bit = |v: f64| {
+        ((v.to_bits() >> 52 & 0x7ff) as i32) - 1075
+            + (v.to_bits() & ((1 << 52) - 1) | 1 << 52).trailing_zeros() as i32
+    };
     let exponent = coordinates.map(last_bit).min()?;
     let scale = f64::from_bits(((1023 - exponent) as u64) << 52);
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -122,7 +133,9 @@ mod tests {
                 match case % 4 {
                     0 => f64::from(v % 4) - 2.0,
                     1 => f64::from(v >> 8) * 0.125,
-                    2 => f64::from((v & 0xffff) as f32 * (f64::from((v >> 16) as i32 % 200 - 100).exp2() as f32)),
+                    2 => f64::from(
+                        (v & 0xffff) as f32 * (f64::from((v >> 16) as i32 % 200 - 100).exp2() as f32),
+                    ),
                     _ => f64::from(v as f32 * 1.0e-9),
                 }
             };
@@ -135,7 +148,11 @@ mod tests {
             if orient == 0.0 {
                 continue;
             }
-            let (order, want) = if orient > 0.0 { ([0, 1, 2, 3], insphere(a, b, c, d, e)) } else { ([0, 2, 1, 3], insphere(a, c, b, d, e)) };
+            let (order, want) = if orient > 0.0 {
+                ([0, 1, 2, 3], insphere(a, b, c, d, e))
+            } else {
+                ([0, 2, 1, 3], insphere(a, c, b, d, e))
+            };
             assert_eq!(sign(signs.insphere(order, 4)), sign(want), "case {case}");
             ties += u32::from(want == 0.0);
             inside += u32::from(want > 0.0);
@@ -150,7 +167,11 @@ mod tests {
     fn the_sphere_through_a_unit_tetrahedron() {
         let points = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 1, 1], [2, 2, 2], [3, 3, 3]];
         let signs = Signs::new(points.map(|p| glam::IVec3::from(p).as_dvec3()).to_vec());
-        assert!(signs.orient([0, 1, 2], 3) > 0.0 && signs.orient([0, 2, 1], 3) < 0.0 && signs.orient([0, 1, 2], 2) == 0.0);
+        assert!(
+            signs.orient([0, 1, 2], 3) > 0.0
+                && signs.orient([0, 2, 1], 3) < 0.0
+                && signs.orient([0, 1, 2], 2) == 0.0
+        );
         assert!(signs.insphere([0, 1, 2, 3], 4) > 0.0, "its center is inside");
         assert!(signs.insphere([0, 1, 2, 3], 5) == 0.0, "the far corner of the cube is on it");
         assert!(signs.insphere([0, 1, 2, 3], 6) < 0.0);

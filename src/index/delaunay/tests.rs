@@ -17,8 +17,9 @@ fn corners(d: &Delaunay, t: usize) -> [DVec3; 4] {
     d.tetrahedra[t].vertices.map(|v| d.points[v as usize].as_dvec3())
 }
 
-/// Everything that is promised: positive cells, faces that match, no point in the sphere of a cell beyond a face of it
-/// (which is enough for all spheres to be empty), a convex boundary, and every point in use or named as a duplicate.
+/// Everything that is promised: positive cells, faces that match, no point in the sphere of a cell beyond a
+/// face of it (which is enough for all spheres to be empty), a convex boundary, and every point in use or
+/// named as a duplicate.
 fn fault(d: &Delaunay) -> Option<String> {
     let mut used = vec![false; d.points.len()];
     for (t, cell) in d.tetrahedra.iter().enumerate() {
@@ -34,7 +35,9 @@ fn fault(d: &Delaunay) -> Option<String> {
             match cell.neighbor(face) {
                 Some(n) => {
                     let other = &d.tetrahedra[n as usize];
-                    let Some(back) = (0..4).find(|k| other.neighbor(*k) == Some(t as u32)) else { return Some(format!("{n} does not know {t}")) };
+                    let Some(back) = (0..4).find(|k| other.neighbor(*k) == Some(t as u32)) else {
+                        return Some(format!("{n} does not know {t}"));
+                    };
                     let mut there = other.face(back);
                     there.sort_unstable();
                     if here != there {
@@ -67,15 +70,16 @@ fn volume(d: &Delaunay) -> f64 {
     (0..d.tetrahedra.len()).map(one).sum()
 }
 
-/// Volume of the convex hull of points no four of which are coplanar on it: of every plane through three that has all
-/// others on one side.
+/// Volume of the convex hull of points no four of which are coplanar on it: of every plane through three that
+/// has all others on one side.
 fn hull_volume(points: &[DVec3]) -> f64 {
     let (n, mut sum) = (points.len(), 0.0);
     for i in 0..n {
         for j in i + 1..n {
             for k in j + 1..n {
                 let [a, b, c] = [i, j, k].map(|v| points[v]);
-                let sides: Vec<f64> = (0..n).filter(|v| ![i, j, k].contains(v)).map(|v| orient3d(a, b, c, points[v])).collect();
+                let sides: Vec<f64> =
+                    (0..n).filter(|v| ![i, j, k].contains(v)).map(|v| orient3d(a, b, c, points[v])).collect();
                 if sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0) {
                     sum += (a - points[0]).dot((b - points[0]).cross(c - points[0])).abs() / 6.0;
                 }
@@ -112,7 +116,8 @@ fn random_points_are_triangulated_and_fill_their_hull() {
         let n = 4 + random.below(28) as usize;
         let d = triangulate((0..n).map(|_| random.point()).collect());
         assert_eq!(fault(&d), None, "case {case}");
-        let (filled, hull) = (volume(&d), hull_volume(&d.points.iter().map(|p| p.as_dvec3()).collect::<Vec<_>>()));
+        let (filled, hull) =
+            (volume(&d), hull_volume(&d.points.iter().map(|p| p.as_dvec3()).collect::<Vec<_>>()));
         assert!((filled - hull).abs() < 1e-12, "case {case}: {filled} of {hull}");
     }
     let d = triangulate((0..3000).map(|_| random.point()).collect());
@@ -124,7 +129,9 @@ fn random_points_are_triangulated_and_fill_their_hull() {
 fn no_point_lies_in_any_sphere() {
     let mut random = Random::new(2);
     for case in 0..20 {
-        let d = triangulate((0..60).map(|_| if case % 2 == 0 { random.point() } else { random.grid_point([4; 3]) }).collect());
+        let d = triangulate(
+            (0..60).map(|_| if case % 2 == 0 { random.point() } else { random.grid_point([4; 3]) }).collect(),
+        );
         for t in 0..d.tetrahedra.len() {
             let [a, b, c, e] = corners(&d, t);
             assert!(d.points.iter().all(|p| insphere(a, b, c, e, p.as_dvec3()) <= 0.0), "case {case}");
@@ -151,7 +158,8 @@ fn small_sets_on_small_grids_have_ties_of_every_kind() {
 fn whole_grids_fill_their_box() {
     for [x, y, z] in [[2, 2, 2], [3, 4, 5], [12, 12, 12], [30, 2, 9]] {
         for scale in [1.0, 0.1] {
-            let number = |i: u32| Vec3::new((i % x) as f32, (i / x % y) as f32, (i / (x * y)) as f32) * scale + 7.0;
+            let number =
+                |i: u32| Vec3::new((i % x) as f32, (i / x % y) as f32, (i / (x * y)) as f32) * scale + 7.0;
             let d = triangulate((0..x * y * z).map(number).collect());
             assert_eq!((fault(&d), d.duplicates.len()), (None, 0));
             let want = f64::from((x - 1) * (y - 1) * (z - 1)) * f64::from(scale).powi(3);
@@ -178,7 +186,11 @@ fn sets_without_volume_have_no_cells() {
     let line = |i: u32| Vec3::new(i as f32, 2.0 * i as f32, -(i as f32));
     let plane = |i: u32| Vec3::new(i as f32, (i * i % 7) as f32, 3.0);
     for n in [0, 1, 2, 3, 4, 50] {
-        for d in [triangulate((0..n).map(line).collect()), triangulate((0..n).map(plane).collect()), triangulate(vec![Vec3::ONE; n as usize])] {
+        for d in [
+            triangulate((0..n).map(line).collect()),
+            triangulate((0..n).map(plane).collect()),
+            triangulate(vec![Vec3::ONE; n as usize]),
+        ] {
             assert_eq!((fault(&d), d.tetrahedra.len()), (None, 0));
         }
     }
@@ -239,7 +251,8 @@ fn flip(d: &mut Delaunay) {
             let (near, far) = (cell.vertices[face], other.vertices[back]);
             let ring = cell.face(face);
             let made = [0, 1, 2].map(|k| [ring[k], ring[(k + 1) % 3], far, near]);
-            let positive = |v: &[u32; 4]| orient3d(point(d, v[0]), point(d, v[1]), point(d, v[2]), point(d, v[3])) > 0.0;
+            let positive =
+                |v: &[u32; 4]| orient3d(point(d, v[0]), point(d, v[1]), point(d, v[2]), point(d, v[3])) > 0.0;
             if made.iter().all(positive) {
                 d.tetrahedra[t].vertices = made[0];
                 d.tetrahedra[n as usize].vertices = made[1];

@@ -1,8 +1,9 @@
 //! Which primitives meet which cells.
 //!
-//! Klosowski and Silva 2000, Sections 3.1 and 4.1: a cell lists every primitive that is in it or meets its boundary, so a
-//! primitive may be in several lists and must be drawn only once. Here a list has two parts: primitives of this cell alone,
-//! which need no mark, and shared ones by a number under which they are marked.
+//! Klosowski and Silva 2000, Sections 3.1 and 4.1: a cell lists every primitive that is in it or meets its
+//! boundary, so a primitive may be in several lists and must be drawn only once. Here a list has two parts:
+//! primitives of this cell alone, which need no mark, and shared ones by a number under which they are
+//! marked.
 
 use super::{Cellular, Tessellation};
 use crate::geometry::{CellId, PrimId};
@@ -25,7 +26,11 @@ pub struct Assignment {
 
 impl Assignment {
     /// Assigns the live primitives of a scene. `None` when cancelled.
-    pub fn new<S: Cellular>(scene: &Scene<S>, cells: &dyn Tessellation<S>, progress: &dyn Progress) -> Option<Self> {
+    pub fn new<S: Cellular>(
+        scene: &Scene<S>,
+        cells: &dyn Tessellation<S>,
+        progress: &dyn Progress,
+    ) -> Option<Self> {
         let (mut own, mut shared, mut numbered) = (Vec::new(), Vec::new(), Vec::new());
         let (mut met, mut corners) = (Vec::new(), Vec::with_capacity(S::CORNERS));
         let mut near = CellId(0);
@@ -102,12 +107,25 @@ impl Assignment {
 
     /// The four tables, for [`Assignment::of_tables`].
     pub fn tables(&self) -> [Vec<u32>; 4] {
-        [self.prims.iter().map(|p| p.0).collect(), self.own_starts.clone(), self.shared.clone(), self.shared_starts.clone()]
+        [
+            self.prims.iter().map(|p| p.0).collect(),
+            self.own_starts.clone(),
+            self.shared.clone(),
+            self.shared_starts.clone(),
+        ]
     }
-    /// The assignment of some tables; `None` if they do not fit the number of cells and the live primitives of the scene.
-    pub fn of_tables<S: Cellular>([prims, own_starts, shared, shared_starts]: [Vec<u32>; 4], cells: usize, scene: &Scene<S>) -> Option<Self> {
+    /// The assignment of some tables; `None` if they do not fit the number of cells and the live primitives
+    /// of the scene.
+    pub fn of_tables<S: Cellular>(
+        [prims, own_starts, shared, shared_starts]: [Vec<u32>; 4],
+        cells: usize,
+        scene: &Scene<S>,
+    ) -> Option<Self> {
         let ascending = |starts: &[u32], end: usize| {
-            starts.len() == cells + 1 && starts[0] == 0 && starts.windows(2).all(|w| w[0] <= w[1]) && starts[cells] as usize <= end
+            starts.len() == cells + 1
+                && starts[0] == 0
+                && starts.windows(2).all(|w| w[0] <= w[1])
+                && starts[cells] as usize <= end
         };
         let prims: Vec<PrimId> = prims.into_iter().map(PrimId).collect();
         let mut sorted = prims.clone();

@@ -1,8 +1,8 @@
 //! Cells that are boxes: the leaves of a binary tree that divides a box by axis-parallel planes.
 //!
-//! An octree is such a tree too: its nodes are divided along each axis in turn. Neighbors across levels of any difference
-//! are found by descending both sides of every dividing plane together (in place of the paper's walk up and down the octree,
-//! Section 4.3 and Figure 9): O(pairs of neighbors + nodes).
+//! An octree is such a tree too: its nodes are divided along each axis in turn. Neighbors across levels of
+//! any difference are found by descending both sides of every dividing plane together (in place of the
+//! paper's walk up and down the octree, Section 4.3 and Figure 9): O(pairs of neighbors + nodes).
 
 use super::{Adjacency, Cellular, Exit, Neighbor, Tessellation};
 use crate::geometry::{Aabb, CellId, Vector};
@@ -41,8 +41,14 @@ pub struct BoxCells<V> {
 pub(super) type Divide<'a, V> = dyn FnMut(&Aabb<V>, u32, &mut [V]) -> Option<(usize, f32)> + 'a;
 
 impl<V: Vector> BoxCells<V> {
-    /// Divides a box as `divide` says, which is asked with box, level and the points in the box. `None` when cancelled.
-    pub(super) fn build(region: Aabb<V>, points: &mut [V], divide: &mut Divide<'_, V>, cancelled: impl Fn() -> bool) -> Option<Self> {
+    /// Divides a box as `divide` says, which is asked with box, level and the points in the box. `None` when
+    /// cancelled.
+    pub(super) fn build(
+        region: Aabb<V>,
+        points: &mut [V],
+        divide: &mut Divide<'_, V>,
+        cancelled: impl Fn() -> bool,
+    ) -> Option<Self> {
         let leaf = Node { bounds: region, split: 0.0, axis: Node::<V>::LEAF, link: 0 };
         let (mut nodes, mut leaves) = (vec![leaf], Vec::new());
         let mut open = vec![(0u32, 0u32, points)];
@@ -51,8 +57,12 @@ impl<V: Vector> BoxCells<V> {
                 return None;
             }
             let bounds = nodes[at as usize].bounds;
-            let inside = |(axis, split): &(usize, f32)| bounds.min.get(*axis) < *split && *split < bounds.max.get(*axis);
-            let Some((axis, split)) = (level < MAX_LEVEL).then(|| divide(&bounds, level, points)).flatten().filter(inside) else {
+            let inside = |(axis, split): &(usize, f32)| {
+                bounds.min.get(*axis) < *split && *split < bounds.max.get(*axis)
+            };
+            let Some((axis, split)) =
+                (level < MAX_LEVEL).then(|| divide(&bounds, level, points)).flatten().filter(inside)
+            else {
                 nodes[at as usize].link = leaves.len() as u32;
                 leaves.push(at);
                 continue;
@@ -63,7 +73,8 @@ impl<V: Vector> BoxCells<V> {
             let above = Aabb { min: V::from_fn(|a| cut(true, a, bounds.min.get(a))), max: bounds.max };
             nodes.push(Node { bounds: below, ..leaf });
             nodes.push(Node { bounds: above, ..leaf });
-            (nodes[at as usize].axis, nodes[at as usize].split, nodes[at as usize].link) = (axis as u8, split, first);
+            (nodes[at as usize].axis, nodes[at as usize].split, nodes[at as usize].link) =
+                (axis as u8, split, first);
             let middle = partition(points, |p| p.get(axis) < split);
             let (low, high) = points.split_at_mut(middle);
             open.push((first + 1, level + 1, high));
@@ -87,7 +98,8 @@ impl<V: Vector> BoxCells<V> {
     fn cell(&self, cell: CellId) -> &Aabb<V> {
         &self.nodes[self.leaves[cell.at()] as usize].bounds
     }
-    /// The tree as numbers, for [`BoxCells::of_tables`]: the region, then axis and split of each node, leaves with [`u32::MAX`].
+    /// The tree as numbers, for [`BoxCells::of_tables`]: the region, then axis and split of each node, leaves
+    /// with [`u32::MAX`].
     pub fn tables(&self) -> (Aabb<V>, Vec<(u32, f32)>) {
         let node = |n: &Node<V>| (if n.is_leaf() { u32::MAX } else { n.axis.into() }, n.split);
         (self.region(), self.in_order().into_iter().map(|at| node(&self.nodes[at as usize])).collect())
@@ -107,7 +119,9 @@ impl<V: Vector> BoxCells<V> {
     /// The tree of [`BoxCells::tables`]; `None` if they are not one's.
     pub fn of_tables(region: Aabb<V>, table: &[(u32, f32)]) -> Option<Self> {
         let mut rows = table.iter();
-        let mut short = !region.min.is_finite() || !region.max.is_finite() || (0..V::AXES).any(|a| region.min.get(a) >= region.max.get(a));
+        let mut short = !region.min.is_finite()
+            || !region.max.is_finite()
+            || (0..V::AXES).any(|a| region.min.get(a) >= region.max.get(a));
         let mut next = |bounds: &Aabb<V>, _: u32, _: &mut [V]| {
             let Some((axis, split)) = rows.next() else {
                 short = true;
@@ -138,10 +152,18 @@ fn partition<V: Copy>(points: &mut [V], fits: impl Fn(V) -> bool) -> usize {
 }
 
 /// Pairs the leaves of two subtrees, the first below and the second above a plane that both touch.
-fn join<V: Vector>(nodes: &[Node<V>], below: u32, above: u32, axis: usize, pairs: &mut Vec<(CellId, Neighbor<V>)>) {
+fn join<V: Vector>(
+    nodes: &[Node<V>],
+    below: u32,
+    above: u32,
+    axis: usize,
+    pairs: &mut Vec<(CellId, Neighbor<V>)>,
+) {
     let (b, a) = (&nodes[below as usize], &nodes[above as usize]);
     // They must share more than an edge.
-    let shares = |k: usize| b.bounds.min.get(k).max(a.bounds.min.get(k)) < b.bounds.max.get(k).min(a.bounds.max.get(k));
+    let shares = |k: usize| {
+        b.bounds.min.get(k).max(a.bounds.min.get(k)) < b.bounds.max.get(k).min(a.bounds.max.get(k))
+    };
     if !(0..V::AXES).all(|k| k == axis || shares(k)) {
         return;
     }
@@ -201,11 +223,19 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
             return Exit::Ends;
         }
         let leads_into = |next: &Aabb<S::Vector>, a: usize| {
-            let faces = if way.get(a) > 0.0 { cell.max.get(a) == next.min.get(a) } else { cell.min.get(a) == next.max.get(a) };
-            let reaches = |k: usize| (next.min.get(k)..=next.max.get(k)).contains(&(center.get(k) + way.get(k) * first));
+            let faces = if way.get(a) > 0.0 {
+                cell.max.get(a) == next.min.get(a)
+            } else {
+                cell.min.get(a) == next.max.get(a)
+            };
+            let reaches = |k: usize| {
+                (next.min.get(k)..=next.max.get(k)).contains(&(center.get(k) + way.get(k) * first))
+            };
             faces && axes.clone().all(|k| k == a || reaches(k))
         };
-        let through = |n: &&Neighbor<S::Vector>| axes.clone().any(|a| at(a) == first && leads_into(self.cell(n.cell), a));
+        let through = |n: &&Neighbor<S::Vector>| {
+            axes.clone().any(|a| at(a) == first && leads_into(self.cell(n.cell), a))
+        };
         self.adjacency.of(from).iter().find(through).map_or(Exit::Out, |n| Exit::Into(n.cell))
     }
     fn meeting(&self, prim: &[S::Vector], _: CellId, to: &mut Vec<CellId>) {

@@ -1,10 +1,11 @@
 //! Space divided into convex cells, so that one can walk from cell to cell.
 //!
-//! Klosowski and Silva 2000, Sections 3.1 and 4.3: large cells where little is, small ones where much is, in three ways: the
-//! leaves of an octree over the scene's vertices ([`vertex_octree`]), the Delaunay triangulation of their perturbed centers
-//! ([`SimplexCells`]), and the leaves of a kD-tree, which the paper names ([`vertex_kd_tree`]). Quadtree and triangles in
-//! flatland. Primitives are assigned to every cell that they meet ([`Assignment`]).
-//! Cells are closed, cover the scene's bounds and overlap in their boundaries only.
+//! Klosowski and Silva 2000, Sections 3.1 and 4.3: large cells where little is, small ones where much is, in
+//! three ways: the leaves of an octree over the scene's vertices ([`vertex_octree`]), the Delaunay
+//! triangulation of their perturbed centers ([`SimplexCells`]), and the leaves of a kD-tree, which the paper
+//! names ([`vertex_kd_tree`]). Quadtree and triangles in flatland. Primitives are assigned to every cell that
+//! they meet ([`Assignment`]). Cells are closed, cover the scene's bounds and overlap in their boundaries
+//! only.
 
 mod assignment;
 mod boxes;
@@ -59,10 +60,11 @@ pub trait Tessellation<S: Space>: Send + Sync {
     fn neighbors(&self, cell: CellId) -> &[Neighbor<S::Vector>];
     /// A cell that contains a point, searched from the cell `near`; `None` outside of all.
     fn locate(&self, point: S::Vector, near: CellId) -> Option<CellId>;
-    /// How the straight way from the center of a cell to a point leaves the cell. Through an edge it leaves into one of the
-    /// neighbors there, always the same.
+    /// How the straight way from the center of a cell to a point leaves the cell. Through an edge it leaves
+    /// into one of the neighbors there, always the same.
     fn exit(&self, from: CellId, point: S::Vector) -> Exit;
-    /// Adds the cells that a primitive meets, at least one, searched from the cell `near`. The primitive lies in the region.
+    /// Adds the cells that a primitive meets, at least one, searched from the cell `near`. The primitive lies
+    /// in the region.
     fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>);
     /// The edges of a cell; those of a triangle run around it.
     fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]>;
@@ -119,7 +121,8 @@ fn vertices<S: Space>(scene: &Scene<S>) -> Vec<S::Vector> {
     scene.points().iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| *p).collect()
 }
 
-/// The cube (square in flatland) around the scene that tessellations fill, a little larger than its longest side.
+/// The cube (square in flatland) around the scene that tessellations fill, a little larger than its longest
+/// side.
 fn region<S: Space>(scene: &Scene<S>) -> Aabb<S::Vector> {
     /// So much larger that its sides stay apart from the scene's by more than rounding.
     const SLACK: f32 = 1.0 / 1024.0;

@@ -1,8 +1,8 @@
 //! Cells that are simplices: the Delaunay triangulation of perturbed cell centers.
 //!
-//! Klosowski and Silva 2000, Section 4.3. The centers of an octree's leaves lie on a lattice; they are moved at random, by a
-//! seed. Departure: the corners of the region are added, so that the cells cover the whole scene and not only the convex
-//! hull of the centers; what reaches beyond that hull would belong to no cell.
+//! Klosowski and Silva 2000, Section 4.3. The centers of an octree's leaves lie on a lattice; they are moved
+//! at random, by a seed. Departure: the corners of the region are added, so that the cells cover the whole
+//! scene and not only the convex hull of the centers; what reaches beyond that hull would belong to no cell.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -15,7 +15,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// A center is moved by at most this share of its cell's size along each axis.
 const JITTER: f32 = 0.125;
 /// The vertices of the face opposite each vertex, so that the cell's inside is in front of the face.
-const FACES: [[[usize; 3]; 4]; 2] = [[[1, 2, 0], [2, 0, 0], [0, 1, 0], [0, 0, 0]], [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]]];
+const FACES: [[[usize; 3]; 4]; 2] =
+    [[[1, 2, 0], [2, 0, 0], [0, 1, 0], [0, 0, 0]], [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]]];
 
 /// A triangle (the first three entries) or a tetrahedron, positively oriented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,20 +46,25 @@ impl<S: Cellular> SimplexCells<S> {
         let mut points: Vec<S::Vector> = boxes.region().corners().collect();
         for cell in (0..Tessellation::<S>::count(boxes) as u32).map(CellId) {
             let size = Tessellation::<S>::bounds(boxes, cell).size();
-            points.push(Tessellation::<S>::center(boxes, cell) + S::Vector::from_fn(|a| size.get(a) * share()));
+            points
+                .push(Tessellation::<S>::center(boxes, cell) + S::Vector::from_fn(|a| size.get(a) * share()));
         }
         let cells = S::triangulate(&points, cancelled)?;
         Some(Self::of(points, cells))
     }
     fn of(points: Vec<S::Vector>, cells: Vec<Simplex>) -> Self {
-        let mut made = Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
+        let mut made =
+            Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
         let mut pairs = Vec::with_capacity(made.cells.len() * Self::CORNERS);
         for (cell, simplex) in made.cells.iter().enumerate() {
             for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
                 // Face normals point inside.
                 let normal = -S::normal(&made.face(simplex, face)[..S::CORNERS]);
                 let unit = normal * (1.0 / normal.length().max(f32::MIN_POSITIVE));
-                pairs.push((CellId(cell as u32), Neighbor { cell: CellId(simplex.neighbors[face]), normal: unit }));
+                pairs.push((
+                    CellId(cell as u32),
+                    Neighbor { cell: CellId(simplex.neighbors[face]), normal: unit },
+                ));
             }
         }
         made.adjacency = Adjacency::new(made.cells.len(), pairs);
@@ -68,22 +74,27 @@ impl<S: Cellular> SimplexCells<S> {
     pub fn tables(&self) -> (&[S::Vector], &[Simplex]) {
         (&self.points, &self.cells)
     }
-    /// The cells of [`SimplexCells::tables`]; `None` if they are not a triangulation's: numbers out of range, a cell that is
-    /// not positive, faces that do not match.
+    /// The cells of [`SimplexCells::tables`]; `None` if they are not a triangulation's: numbers out of range,
+    /// a cell that is not positive, faces that do not match.
     pub fn of_tables(points: Vec<S::Vector>, cells: Vec<Simplex>) -> Option<Self> {
         let in_range = |c: &Simplex| {
             let corners = (0..Self::CORNERS).all(|i| (c.vertices[i] as usize) < points.len());
-            corners && (0..Self::CORNERS).all(|i| c.neighbors[i] == NONE || (c.neighbors[i] as usize) < cells.len())
+            corners
+                && (0..Self::CORNERS)
+                    .all(|i| c.neighbors[i] == NONE || (c.neighbors[i] as usize) < cells.len())
         };
         if cells.is_empty() || !points.iter().all(|p| p.is_finite()) || !cells.iter().all(in_range) {
             return None;
         }
         let made = Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
-        let sound = made.cells.iter().enumerate().all(|(cell, c)| made.is_positive(c) && (0..Self::CORNERS).all(|f| made.matches(cell as u32, c, f)));
+        let sound = made.cells.iter().enumerate().all(|(cell, c)| {
+            made.is_positive(c) && (0..Self::CORNERS).all(|f| made.matches(cell as u32, c, f))
+        });
         sound.then(|| Self::of(made.points, made.cells))
     }
     fn is_positive(&self, cell: &Simplex) -> bool {
-        let [face, last] = [self.face(cell, Self::CORNERS - 1), [self.points[cell.vertices[Self::CORNERS - 1] as usize]; 3]];
+        let [face, last] =
+            [self.face(cell, Self::CORNERS - 1), [self.points[cell.vertices[Self::CORNERS - 1] as usize]; 3]];
         S::side(&face[..S::CORNERS], last[0]) > 0.0
     }
     /// Whether the neighbor across a face has that face too, and knows its neighbor.
@@ -91,7 +102,8 @@ impl<S: Cellular> SimplexCells<S> {
         let Some(other) = self.cells.get(simplex.neighbors[face] as usize) else { return true };
         let Some(back) = (0..Self::CORNERS).find(|k| other.neighbors[*k] == cell) else { return false };
         let others = |s: &Simplex, without: usize| {
-            let mut list: Vec<u32> = (0..Self::CORNERS).filter(|k| *k != without).map(|k| s.vertices[k]).collect();
+            let mut list: Vec<u32> =
+                (0..Self::CORNERS).filter(|k| *k != without).map(|k| s.vertices[k]).collect();
             list.sort_unstable();
             list
         };
@@ -139,13 +151,15 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
     fn neighbors(&self, cell: CellId) -> &[Neighbor<S::Vector>] {
         self.adjacency.of(cell)
     }
-    /// Walks through faces that have the point beyond them. This ends in a Delaunay triangulation; others come from damaged
-    /// files only, and there the number of steps ends it.
+    /// Walks through faces that have the point beyond them. This ends in a Delaunay triangulation; others
+    /// come from damaged files only, and there the number of steps ends it.
     fn locate(&self, point: S::Vector, near: CellId) -> Option<CellId> {
         let mut at = near;
         for _ in 0..=self.cells.len() {
             let simplex = &self.cells[at.at()];
-            let Some(face) = (0..Self::CORNERS).find(|face| self.side(simplex, *face, point) < 0.0) else { return Some(at) };
+            let Some(face) = (0..Self::CORNERS).find(|face| self.side(simplex, *face, point) < 0.0) else {
+                return Some(at);
+            };
             if simplex.neighbors[face] == NONE {
                 return None;
             }
@@ -199,6 +213,8 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
         (0..4).flat_map(|i| (i + 1..4).map(move |k| [corners[i], corners[k]])).collect()
     }
     fn bytes(&self) -> usize {
-        self.points.len() * size_of::<S::Vector>() + self.cells.len() * size_of::<Simplex>() + self.adjacency.bytes()
+        self.points.len() * size_of::<S::Vector>()
+            + self.cells.len() * size_of::<Simplex>()
+            + self.adjacency.bytes()
     }
 }

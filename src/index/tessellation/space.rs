@@ -13,7 +13,8 @@ pub trait Cellular: Space {
     fn meets_box(prim: &[Self::Vector], bounds: &Aabb<Self::Vector>) -> bool;
     /// Whether a primitive meets a simplex, of which the first `AXES + 1` corners count.
     fn meets_simplex(prim: &[Self::Vector], simplex: &[Self::Vector; 4]) -> bool;
-    /// The Delaunay triangulation of finite points; no simplex if they do not span the space. `None` when cancelled.
+    /// The Delaunay triangulation of finite points; no simplex if they do not span the space. `None` when
+    /// cancelled.
     fn triangulate(points: &[Self::Vector], cancelled: &dyn Fn() -> bool) -> Option<Vec<Simplex>>;
 }
 
@@ -27,11 +28,14 @@ impl Cellular for Flat {
         geometry::segment_meets_triangle([prim[0], prim[1]], [*a, *b, *c])
     }
     fn triangulate(points: &[Vec2], _: &dyn Fn() -> bool) -> Option<Vec<Simplex>> {
-        // The crate refuses numbers whose squares vanish; they are as good as 0 beside any cell that has an area.
+        // The crate refuses numbers whose squares vanish; they are as good as 0 beside any cell that has an
+        // area.
         let flushed = |v: f32| if v.abs() < f32::MIN_POSITIVE { 0.0 } else { f64::from(v) };
         let list = points.iter().map(|p| Point2::new(flushed(p.x), flushed(p.y))).collect();
         // It can refuse nothing else: all points are finite.
-        let Ok(made) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(list) else { return Some(Vec::new()) };
+        let Ok(made) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(list) else {
+            return Some(Vec::new());
+        };
         let mut numbers = vec![NONE; made.num_all_faces()];
         made.inner_faces().enumerate().for_each(|(number, face)| numbers[face.fix().index()] = number as u32);
         let simplex = |edges: [spade::handles::DirectedEdgeHandle<'_, Point2<f64>, (), (), ()>; 3]| {
@@ -39,7 +43,8 @@ impl Cellular for Flat {
             for i in 0..3 {
                 // Edges run counter-clockwise; the next but one starts at the vertex opposite.
                 vertices[i] = edges[i].from().fix().index() as u32;
-                neighbors[(i + 2) % 3] = edges[i].rev().face().as_inner().map_or(NONE, |f| numbers[f.fix().index()]);
+                neighbors[(i + 2) % 3] =
+                    edges[i].rev().face().as_inner().map_or(NONE, |f| numbers[f.fix().index()]);
             }
             Simplex { vertices, neighbors }
         };
@@ -58,8 +63,10 @@ impl Cellular for Solid {
     }
     fn triangulate(points: &[Vec3], cancelled: &dyn Fn() -> bool) -> Option<Vec<Simplex>> {
         let made = Delaunay::new(points.to_vec(), cancelled)?;
-        let simplex =
-            |t: &crate::index::Tetrahedron| Simplex { vertices: t.vertices, neighbors: [0, 1, 2, 3].map(|i| t.neighbor(i).unwrap_or(NONE)) };
+        let simplex = |t: &crate::index::Tetrahedron| Simplex {
+            vertices: t.vertices,
+            neighbors: [0, 1, 2, 3].map(|i| t.neighbor(i).unwrap_or(NONE)),
+        };
         Some(made.tetrahedra().iter().map(simplex).collect())
     }
 }

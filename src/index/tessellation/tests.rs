@@ -4,7 +4,9 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use std::sync::Arc;
 
-use super::{Assignment, BoxCells, Cellular, Exit, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree};
+use super::{
+    Assignment, BoxCells, Cellular, Exit, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree,
+};
 use crate::geometry::{Aabb, CellId, Flat, PrimId, Solid, Space, Vector};
 use crate::scene::{Quiet, Scene, samples};
 
@@ -20,10 +22,17 @@ fn simplices<S: Cellular>(scene: &Scene<S>, seed: u32) -> SimplexCells<S> {
 /// Each kind for a scene, with a name.
 fn kinds<S: Cellular>(scene: &Scene<S>) -> [(&'static str, Box<dyn Tessellation<S>>); 3] {
     let kd_tree = vertex_kd_tree(scene, FINE, || false).expect("not cancelled");
-    [("octree", Box::new(octree(scene))), ("Delaunay", Box::new(simplices(scene, 1))), ("kD-tree", Box::new(kd_tree))]
+    [
+        ("octree", Box::new(octree(scene))),
+        ("Delaunay", Box::new(simplices(scene, 1))),
+        ("kD-tree", Box::new(kd_tree)),
+    ]
 }
 
-fn each(mut flat: impl FnMut(&Scene<Flat>, &str, &dyn Tessellation<Flat>), mut solid: impl FnMut(&Scene<Solid>, &str, &dyn Tessellation<Solid>)) {
+fn each(
+    mut flat: impl FnMut(&Scene<Flat>, &str, &dyn Tessellation<Flat>),
+    mut solid: impl FnMut(&Scene<Solid>, &str, &dyn Tessellation<Solid>),
+) {
     for seed in 0..4 {
         let scene = samples::soup::<Flat>(seed, 120);
         kinds(&scene).iter().for_each(|(name, cells)| flat(&scene, name, &**cells));
@@ -63,7 +72,10 @@ fn tiles<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S>)
     }
     assert_eq!(cells.locate(scene.bounds().max + scene.bounds().size(), CellId(0)), None, "{name}");
     for cell in all(cells.count()) {
-        assert!(cells.contains(cell, cells.center(cell)) && cells.bounds(cell).contains(cells.center(cell)), "{name}");
+        assert!(
+            cells.contains(cell, cells.center(cell)) && cells.bounds(cell).contains(cells.center(cell)),
+            "{name}"
+        );
         let ends = cells.edges(cell).into_iter().flatten();
         assert_eq!(Aabb::of(ends), cells.bounds(cell), "{name}: the edges span the cell");
     }
@@ -80,7 +92,11 @@ fn has_neighbors<S: Cellular>(_: &Scene<S>, name: &str, cells: &dyn Tessellation
         let around = cells.neighbors(cell);
         assert!(!around.is_empty() && around.windows(2).all(|w| w[0].cell < w[1].cell), "{name}");
         for there in around {
-            let back = cells.neighbors(there.cell).iter().find(|n| n.cell == cell).expect("neighbors know each other");
+            let back = cells
+                .neighbors(there.cell)
+                .iter()
+                .find(|n| n.cell == cell)
+                .expect("neighbors know each other");
             assert!((back.normal + there.normal).length() < 1e-4, "{name}");
             assert!((there.normal.length() - 1.0).abs() < 1e-5 && there.cell != cell);
             let across = cells.center(there.cell) - cells.center(cell);
@@ -107,7 +123,9 @@ fn all_box_neighbors<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tess
         volume += (0..S::Vector::AXES).map(|a| f64::from(b.size().get(a))).product::<f64>();
         let touches = |n: &CellId| {
             let o = cells.bounds(*n);
-            let shared = (0..S::Vector::AXES).filter(|a| b.min.get(*a).max(o.min.get(*a)) < b.max.get(*a).min(o.max.get(*a))).count();
+            let shared = (0..S::Vector::AXES)
+                .filter(|a| b.min.get(*a).max(o.min.get(*a)) < b.max.get(*a).min(o.max.get(*a)))
+                .count();
             *n != c && b.touches(&o) && shared == S::Vector::AXES - 1
         };
         let want: Vec<CellId> = all(cells.count()).filter(touches).collect();
@@ -132,8 +150,11 @@ fn simplices_share_whole_faces_and_fill_the_region() {
             let corners = cells.corners(CellId(c as u32));
             volume += S::side(&corners[..S::CORNERS], corners[S::CORNERS]) / factor;
             for (n, other) in cells.tables().1.iter().enumerate() {
-                let common = (0..=S::CORNERS).filter(|i| other.vertices[..=S::CORNERS].contains(&simplex.vertices[*i])).count();
-                let known = Tessellation::<S>::neighbors(&cells, CellId(c as u32)).iter().any(|x| x.cell.at() == n);
+                let common = (0..=S::CORNERS)
+                    .filter(|i| other.vertices[..=S::CORNERS].contains(&simplex.vertices[*i]))
+                    .count();
+                let known =
+                    Tessellation::<S>::neighbors(&cells, CellId(c as u32)).iter().any(|x| x.cell.at() == n);
                 assert_eq!(known, c != n && common == S::CORNERS);
             }
         }
@@ -144,7 +165,8 @@ fn simplices_share_whole_faces_and_fill_the_region() {
     check(&samples::soup::<Solid>(2, 40), 6.0);
 }
 
-/// The way from a cell's center to a point leaves through one face, and right behind it lies the neighbor that is named.
+/// The way from a cell's center to a point leaves through one face, and right behind it lies the neighbor
+/// that is named.
 fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S>) {
     let mut random = Random(Pcg32::new(5, 1));
     let mut left = 0;
@@ -162,7 +184,8 @@ fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S
             let middle = 0.5 * (inside + outside);
             *if cells.contains(cell, center + way * middle) { &mut inside } else { &mut outside } = middle;
         }
-        let behind = cells.locate(center + way * (outside + 1e-5), cell).expect("the way stays in the region");
+        let behind =
+            cells.locate(center + way * (outside + 1e-5), cell).expect("the way stays in the region");
         if cells.neighbors(cell).iter().any(|n| n.cell == behind) {
             assert_eq!(exit, Exit::Into(behind), "{name}");
             left += 1;
@@ -170,7 +193,10 @@ fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S
     }
     assert!(left > 250, "{name}: {left}");
     let beyond = scene.bounds().center() + scene.bounds().size() * 100.0;
-    assert!(all(cells.count()).any(|c| cells.exit(c, beyond) == Exit::Out), "{name}: a way leads out of the region");
+    assert!(
+        all(cells.count()).any(|c| cells.exit(c, beyond) == Exit::Out),
+        "{name}: a way leads out of the region"
+    );
 }
 
 #[test]
@@ -178,7 +204,12 @@ fn a_cell_is_left_into_the_neighbor_behind_its_face() {
     each(is_left, is_left);
 }
 
-fn is_assigned<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S>, meets: &dyn Fn(&[S::Vector], CellId) -> bool) {
+fn is_assigned<S: Cellular>(
+    scene: &Scene<S>,
+    name: &str,
+    cells: &dyn Tessellation<S>,
+    meets: &dyn Fn(&[S::Vector], CellId) -> bool,
+) {
     let made = Assignment::new(scene, cells, &Quiet).expect("not cancelled");
     let mut references = 0;
     for cell in all(cells.count()) {
@@ -210,7 +241,9 @@ fn primitives_are_assigned_to_the_cells_they_meet() {
         let (boxes, cells) = (octree(&scene), simplices(&scene, 4));
         is_assigned(&scene, "octree", &boxes, &|p, c| S::meets_box(p, &Tessellation::<S>::bounds(&boxes, c)));
         let kd_tree = vertex_kd_tree(&scene, FINE, || false).expect("not cancelled");
-        is_assigned(&scene, "kD-tree", &kd_tree, &|p, c| S::meets_box(p, &Tessellation::<S>::bounds(&kd_tree, c)));
+        is_assigned(&scene, "kD-tree", &kd_tree, &|p, c| {
+            S::meets_box(p, &Tessellation::<S>::bounds(&kd_tree, c))
+        });
         is_assigned(&scene, "Delaunay", &cells, &|p, c| S::meets_simplex(p, &cells.corners(c)));
     }
     (0..3).for_each(|seed| check(samples::soup::<Flat>(seed, 120)));
@@ -221,10 +254,16 @@ fn primitives_are_assigned_to_the_cells_they_meet() {
 fn no_leaf_is_divided_below_the_share() {
     let scene = samples::soup::<Solid>(9, 3000);
     for (share, levels) in [(0.05, 5), (0.3, 2), (1.1, 0)] {
-        let cells = vertex_octree(&scene, Fineness { leaf_share: share, leaf_vertices: 0 }, || false).expect("not cancelled");
+        let cells = vertex_octree(&scene, Fineness { leaf_share: share, leaf_vertices: 0 }, || false)
+            .expect("not cancelled");
         let whole = super::region(&*scene).size().get(0);
-        let least = all(Tessellation::<Solid>::count(&cells)).map(|c| Tessellation::<Solid>::bounds(&cells, c).size().get(0)).fold(whole, f32::min);
-        assert!((whole / least - f32::exp2(levels as f32)).abs() < 0.01 * whole / least, "{share}: {whole} to {least}");
+        let least = all(Tessellation::<Solid>::count(&cells))
+            .map(|c| Tessellation::<Solid>::bounds(&cells, c).size().get(0))
+            .fold(whole, f32::min);
+        assert!(
+            (whole / least - f32::exp2(levels as f32)).abs() < 0.01 * whole / least,
+            "{share}: {whole} to {least}"
+        );
     }
 }
 
@@ -241,7 +280,8 @@ fn a_scene_of_one_place_has_cells_too() {
     use crate::scene::Parts;
     for place in [0.0, 1e-30, 5.0, -3e7] {
         let p = glam::Vec3::splat(place);
-        let scene = Scene::<Solid>::new(Parts::simple("point", vec![p, p, p], vec![[0, 1, 2]])).expect("a scene");
+        let scene =
+            Scene::<Solid>::new(Parts::simple("point", vec![p, p, p], vec![[0, 1, 2]])).expect("a scene");
         for (name, cells) in kinds(&scene) {
             let made = Assignment::new(&scene, &*cells, &Quiet).expect("not cancelled");
             assert!(made.references() > 0 && cells.locate(p, CellId(0)).is_some(), "{name} at {place}");
@@ -271,7 +311,10 @@ fn tables_make_the_same_cells_and_damaged_ones_none() {
         let cells = simplices(scene, 1);
         let (points, list) = cells.tables();
         let again = SimplexCells::<S>::of_tables(points.to_vec(), list.to_vec()).expect("sound");
-        assert_eq!((again.tables(), &again.adjacency.neighbors), (cells.tables(), &cells.adjacency.neighbors));
+        assert_eq!(
+            (again.tables(), &again.adjacency.neighbors),
+            (cells.tables(), &cells.adjacency.neighbors)
+        );
         for (at, number) in [(0, u32::MAX - 1), (1, list[3].vertices[0]), (2, 0)] {
             let mut bad = list.to_vec();
             bad[3].vertices[at] = number;

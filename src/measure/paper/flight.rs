@@ -30,5 +30,11 @@ pub fn whole_path<S: World>(scene: &Scene<S>, setup: &Setup) -> ViewPath<S> {
 
 /// What was measured.
 pub fn about<S: World>(scene: &Scene<S>, path: &ViewPath<S>) -> Measured {
-    Measured { name: scene.name().into(), source: scene.source().into(), prims: scene.live().len(), prim: S::PRIM, path: path.name.clone() }
+    Measured {
+        name: scene.name().into(),
+        source: scene.source().into(),
+        prims: scene.live().len(),
+        prim: S::PRIM,
+        path: path.name.clone(),
+    }
 }

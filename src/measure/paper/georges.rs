@@ -1,13 +1,17 @@
-//! Georges 1995, Section 5.2: the box model and the model with a hidden dense body, as times of frames along the scene's own
-//! path with obscuration culling and without; and the known weakness of depth at samples, aliasing, against resolution.
+//! Georges 1995, Section 5.2: the box model and the model with a hidden dense body, as times of frames along
+//! the scene's own path with obscuration culling and without; and the known weakness of depth at samples,
+//! aliasing, against resolution.
 //!
-//! A frame of `hierarchical-z` ends with the image drawn, so its time is all of the frame; the others are culled, then drawn.
+//! A frame of `hierarchical-z` ends with the image drawn, so its time is all of the frame; the others are
+//! culled, then drawn.
 
 use std::sync::Arc;
 
 use super::flight::{about, path};
 use super::walk::{ROUNDS, stop_or_go};
-use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part};
+use super::{
+    CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part,
+};
 use crate::culling::{Run, Settings};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{View, ViewPath};
@@ -20,17 +24,24 @@ use crate::truth::Truth;
 
 pub const METHOD: &str = "hierarchical-z";
 
-fn ready<S: World>(key: &str, scene: &Arc<Scene<S>>, settings: &Settings, progress: &dyn Progress) -> Result<Box<dyn Run<S>>, PaperError> {
+fn ready<S: World>(
+    key: &str,
+    scene: &Arc<Scene<S>>,
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<Box<dyn Run<S>>, PaperError> {
     let entry = method::<S>(key);
     let known = entry.knobs(&Settings::default())?;
     let fits = |k: &String| key == METHOD || known.iter().any(|(knob, _)| knob.name == k);
-    let settings = Settings(settings.0.iter().filter(|(k, _)| fits(k)).map(|(k, v)| (k.clone(), v.clone())).collect());
+    let settings =
+        Settings(settings.0.iter().filter(|(k, _)| fits(k)).map(|(k, v)| (k.clone(), v.clone())).collect());
     entry.ready(scene, &settings, progress)?.ok_or(PaperError::Cancelled)
 }
 
 /// What was measured along a path.
 struct Flight {
-    /// Of each frame and way the median of the rounds, ms: everything drawn, frustum culling, obscuration culling.
+    /// Of each frame and way the median of the rounds, ms: everything drawn, frustum culling, obscuration
+    /// culling.
     times: Vec<[f64; 3]>,
     drawn: Vec<[usize; 3]>,
     missed: usize,
@@ -38,12 +49,23 @@ struct Flight {
 }
 
 /// Flies along a path in rounds, the three ways in turn at each frame.
-fn fly<S: World>(scene: &Arc<Scene<S>>, path: &ViewPath<S>, setup: &Setup, progress: &dyn Progress) -> Result<Flight, PaperError> {
+fn fly<S: World>(
+    scene: &Arc<Scene<S>>,
+    path: &ViewPath<S>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<Flight, PaperError> {
     let mut runs = Vec::new();
     for (i, key) in ["z-buffer", "frustum", METHOD].into_iter().enumerate() {
-        runs.push(ready(key, scene, &setup.settings, &part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32))?);
+        runs.push(ready(
+            key,
+            scene,
+            &setup.settings,
+            &part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32),
+        )?);
     }
-    let mut truth = Truth::new(scene, setup.settings.0.get("backface-culling").is_some_and(|v| v == "true"), 1, [1.0; 3]);
+    let mut truth =
+        Truth::new(scene, setup.settings.0.get("backface-culling").is_some_and(|v| v == "true"), 1, [1.0; 3]);
     let mut targets = [(); 3].map(|()| Target::default());
     let n = path.views.len();
     let mut rounds = vec![[const { Vec::new() }; 3]; n];
@@ -71,7 +93,13 @@ fn fly<S: World>(scene: &Arc<Scene<S>>, path: &ViewPath<S>, setup: &Setup, progr
 }
 
 /// A frame from the view to the finished image.
-fn frame<S: World>(scene: &Scene<S>, run: &mut dyn Run<S>, view: &View<S>, draws: bool, target: &mut Target) -> Vec<crate::geometry::PrimId> {
+fn frame<S: World>(
+    scene: &Scene<S>,
+    run: &mut dyn Run<S>,
+    view: &View<S>,
+    draws: bool,
+    target: &mut Target,
+) -> Vec<crate::geometry::PrimId> {
     let list = run.cull(view);
     if draws {
         target.clear(view);
@@ -101,7 +129,11 @@ pub const BOX: Sweep = Sweep {
     plots: box_plots,
 };
 
-fn box_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn box_rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let flight = fly(scene, &path, setup, progress)?;
     let name = about(scene, &path).name;
@@ -114,15 +146,28 @@ fn box_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progr
         let drawn = [0, 2].map(|way| mean(&|k| flight.drawn[k][way] as f64));
         let numbers = [drawn[0], drawn[1], all, frustum, culled, culled / frustum];
         let text = ["measured".into(), name.as_str().into(), situation.into()];
-        text.into_iter().chain(numbers.map(Cell::from)).chain([flight.missed.into(), flight.checked.into()]).collect()
+        text.into_iter()
+            .chain(numbers.map(Cell::from))
+            .chain([flight.missed.into(), flight.checked.into()])
+            .collect()
     };
     Ok((vec![row("all in sight", 0..some), row("behind the box", n - some..n)], about(scene, &path)))
 }
 
 fn box_paper() -> Vec<Vec<Cell>> {
     let row = |situation: &str, fps: f64| {
-        let mut row: Vec<Cell> = vec!["paper, Pixel-Planes 5".into(), "box and objects".into(), situation.into()];
-        row.extend([Cell::Missing, Cell::Missing, Cell::Missing, Cell::Missing, fps.into(), Cell::Missing, Cell::Missing, Cell::Missing]);
+        let mut row: Vec<Cell> =
+            vec!["paper, Pixel-Planes 5".into(), "box and objects".into(), situation.into()];
+        row.extend([
+            Cell::Missing,
+            Cell::Missing,
+            Cell::Missing,
+            Cell::Missing,
+            fps.into(),
+            Cell::Missing,
+            Cell::Missing,
+            Cell::Missing,
+        ]);
         row
     };
     // "About 2-3 frames/second", then "near the monitor refresh rate", which was 60 or 72 Hz.
@@ -133,14 +178,21 @@ fn box_plots(table: &Table) -> Vec<Plot> {
     let mut plots = Vec::new();
     for (name, rows) in by_scene(table) {
         let series = |key: &str, label: &str, role: Role| {
-            let points = rows.iter().enumerate().filter_map(|(i, &r)| Some((i as f64, table.number(r, key)?))).collect();
+            let points = rows
+                .iter()
+                .enumerate()
+                .filter_map(|(i, &r)| Some((i as f64, table.number(r, key)?)))
+                .collect();
             Series::new(label, role, points)
         };
         plots.push(Plot {
             title: name,
             x_label: String::new(),
             y_label: "frames a second".into(),
-            shape: Shape::Bars { groups: vec!["all in sight".into(), "behind the box".into()], stacked: false },
+            shape: Shape::Bars {
+                groups: vec!["all in sight".into(), "behind the box".into()],
+                stacked: false,
+            },
             series: vec![
                 series("all_fps", "everything drawn", Role::Occluder),
                 series("frustum_fps", "view-frustum culling", Role::Outside),
@@ -173,7 +225,11 @@ pub const FLIGHT: Sweep = Sweep {
     plots: flight_plots,
 };
 
-fn flight_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn flight_rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let flight = fly(scene, &path, setup, progress)?;
     let n = path.views.len() as f64;
@@ -182,7 +238,11 @@ fn flight_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Pr
     let each = median(flight.times.iter().map(|t| 100.0 * (t[1] / t[2] - 1.0)).collect());
     let numbers = [n, drawn(1), drawn(2), mean(0), mean(1), mean(2), 100.0 * (mean(1) / mean(2) - 1.0), each];
     let text: [Cell; 2] = ["measured".into(), about(scene, &path).name.as_str().into()];
-    let row = text.into_iter().chain(numbers.map(Cell::from)).chain([flight.missed.into(), flight.checked.into()]).collect();
+    let row = text
+        .into_iter()
+        .chain(numbers.map(Cell::from))
+        .chain([flight.missed.into(), flight.checked.into()])
+        .collect();
     Ok((vec![row], about(scene, &path)))
 }
 
@@ -199,7 +259,11 @@ fn flight_paper() -> Vec<Vec<Cell>> {
 fn flight_plots(table: &Table) -> Vec<Plot> {
     let scenes = by_scene(table);
     let bars = |key: &str, label: &str, role: Role| {
-        let points = scenes.iter().enumerate().filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?))).collect();
+        let points = scenes
+            .iter()
+            .enumerate()
+            .filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?)))
+            .collect();
         Series::new(label, role, points)
     };
     vec![Plot {
@@ -239,10 +303,18 @@ pub const ALIASING: Sweep = Sweep {
     plots: aliasing_plots,
 };
 
-fn aliasing_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn aliasing_rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, &Setup { frames: ALIASING_VIEWS, ..setup.clone() });
     let mut run = ready(METHOD, scene, &setup.settings, &part(progress, 0.0, 0.1))?;
-    let sized = |view: &View<S>, side: u32| View { width: side, height: if S::CORNERS == 2 { 1 } else { side }, ..*view };
+    let sized = |view: &View<S>, side: u32| View {
+        width: side,
+        height: if S::CORNERS == 2 { 1 } else { side },
+        ..*view
+    };
     let mut rows = Vec::new();
     let mut sums = vec![[0.0; 3]; SIDES.len()];
     let (mut missed, n) = (vec![0; SIDES.len()], path.views.len());
@@ -265,7 +337,8 @@ fn aliasing_rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn 
         }
     }
     for (i, side) in SIDES.iter().enumerate() {
-        let mut row: Vec<Cell> = vec!["measured".into(), about(scene, &path).name.as_str().into(), f64::from(*side).into()];
+        let mut row: Vec<Cell> =
+            vec!["measured".into(), about(scene, &path).name.as_str().into(), f64::from(*side).into()];
         row.extend(sums[i].map(Cell::from));
         row.extend([missed[i].into(), n.into()]);
         rows.push(row);
@@ -283,10 +356,20 @@ fn aliasing_plots(table: &Table) -> Vec<Plot> {
             .into_iter()
             .enumerate()
             .map(|(i, (name, rows))| {
-                let points = rows.iter().filter_map(|&r| Some((table.number(r, "side_px")?, table.number(r, key)?))).collect();
-                Series::new(name, [Role::Visible, Role::Hidden, Role::Occluder, Role::Approximated][i % 4], points)
+                let points = rows
+                    .iter()
+                    .filter_map(|&r| Some((table.number(r, "side_px")?, table.number(r, key)?)))
+                    .collect();
+                Series::new(
+                    name,
+                    [Role::Visible, Role::Hidden, Role::Occluder, Role::Approximated][i % 4],
+                    points,
+                )
             })
             .collect(),
     };
-    vec![plot("lost_percent", "triangles lost, % of those seen at 2048²"), plot("lost_area_percent", "area lost, % of the image")]
+    vec![
+        plot("lost_percent", "triangles lost, % of those seen at 2048²"),
+        plot("lost_area_percent", "area lost, % of the image"),
+    ]
 }

@@ -1,14 +1,17 @@
-//! The tables and tests of the papers, measured on any scene beside the papers' own figures: Coorg and Teller, "Real-Time
-//! Occlusion Culling for Models with Large Occluders", I3D 1997, <https://doi.org/10.1145/253284.253312>, Section 4; Georges,
-//! "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Section 5.2; Klosowski and Silva, "The
-//! Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG 6(2), 2000,
-//! <https://doi.org/10.1109/2945.856993>, Section 5.
+//! The tables and tests of the papers, measured on any scene beside the papers' own figures: Coorg and
+//! Teller, "Real-Time Occlusion Culling for Models with Large Occluders", I3D 1997,
+//! <https://doi.org/10.1145/253284.253312>, Section 4; Georges, "Obscuration Culling on Parallel Graphics
+//! Architectures", UNC TR95-017, 1995, Section 5.2; Klosowski and Silva, "The Prioritized-Layered Projection
+//! Algorithm for Visible Set Estimation", IEEE TVCG 6(2), 2000, <https://doi.org/10.1109/2945.856993>,
+//! Section 5.
 //!
-//! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the scene's path
-//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's
-//! models and machines are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the
-//! answers of a method that promises to draw all that is visible are checked: the triangles that an item buffer shows and the
-//! method did not draw are counted (0 expected).
+//! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the
+//! scene's path
+//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a
+//! frame where the method remembers. The paper's models and machines are not ours, so shares and ratios
+//! compare and milliseconds do not. Whatever is measured, the answers of a method that promises to draw all
+//! that is visible are checked: the triangles that an item buffer shows and the method did not draw are
+//! counted (0 expected).
 
 mod flight;
 mod georges;
@@ -112,7 +115,9 @@ pub struct Report {
 impl Report {
     /// Scenes and parameters in a few sentences, for under a chart.
     pub fn caption(&self) -> String {
-        let scene = |m: &Measured| format!("{} ({} {}s, path {})", m.name, grouped(m.prims as f64, 0), m.prim, m.path);
+        let scene = |m: &Measured| {
+            format!("{} ({} {}s, path {})", m.name, grouped(m.prims as f64, 0), m.prim, m.path)
+        };
         let scenes = self.scenes.iter().map(scene).collect::<Vec<_>>().join(", ");
         let params = self.params.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
         format!("{scenes}; {params}; {} frames. {}", self.frames, self.notes.join(" "))
@@ -135,14 +140,24 @@ impl Report {
         let rows = self.table.rows.iter().filter(|r| !is_frame(r)).cloned().collect();
         let table = Table { columns: self.table.columns.clone(), rows };
         if left_out > 0 {
-            lines.push(format!("{left_out} rows of single frames are in the formats csv and json, and in the charts."));
+            lines.push(format!(
+                "{left_out} rows of single frames are in the formats csv and json, and in the charts."
+            ));
         }
         format!("{}\n\n{}\n{}\n", self.title, table.text(), lines.join("\n"))
     }
     /// Everything, with every digit.
     pub fn json(&self) -> Json {
-        let columns = self.table.columns.iter().map(|c| json!({"key": c.key, "title": c.title, "unit": c.unit})).collect::<Vec<_>>();
-        let scenes = self.scenes.iter().map(|m| json!({"name": m.name, "source": m.source, "primitives": m.prims, "path": m.path}));
+        let columns = self
+            .table
+            .columns
+            .iter()
+            .map(|c| json!({"key": c.key, "title": c.title, "unit": c.unit}))
+            .collect::<Vec<_>>();
+        let scenes = self
+            .scenes
+            .iter()
+            .map(|m| json!({"name": m.name, "source": m.source, "primitives": m.prims, "path": m.path}));
         let params = self.params.iter().map(|(k, v)| ((*k).to_owned(), json!(v))).collect::<Map<_, _>>();
         json!({
             "cullscope": env!("CARGO_PKG_VERSION"),
@@ -198,7 +213,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: WALKED,
         doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Table 2: time to cull and to draw",
-        summary: "Milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion culling",
+        summary: "Milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion \
+                  culling",
         notes: &[TIMES, "We draw with a software rasterizer, the paper with graphics hardware of its time."],
         varies: &[],
         sweep: &table_2::SWEEP,
@@ -209,8 +225,13 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: WALKED,
         doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Table 3: time in visibility against speed",
-        summary: "Time to cull a frame against the speed of the walker, with and without planes kept from frame to frame",
-        notes: &[TIMES, "Ours is all of culling, view-frustum tests and gathering included; the paper leaves out the view-frustum tests."],
+        summary: "Time to cull a frame against the speed of the walker, with and without planes kept from \
+                  frame to frame",
+        notes: &[
+            TIMES,
+            "Ours is all of culling, view-frustum tests and gathering included; the paper leaves out the \
+             view-frustum tests.",
+        ],
         varies: &["cache"],
         sweep: &table_3::SWEEP,
     },
@@ -221,7 +242,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
         doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Section 4.1: nodes tested for occlusion",
         summary: "kD-tree nodes tested for occlusion a frame, and their share of those in the view frustum",
-        notes: &["Low and high are the quartiles over the frames; for the paper, the ends of the range that it states for both models."],
+        notes: &[
+            "Low and high are the quartiles over the frames; for the paper, the ends of the range that it \
+             states for both models.",
+        ],
         varies: &[],
         sweep: &nodes::SWEEP,
     },
@@ -231,8 +255,13 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: WALKED,
         doi: COORG_TELLER,
         title: "Coorg and Teller 1997, Section 5: how many occluders",
-        summary: "Polygons drawn and time to cull against the number of occluders, fixed or by their marginal gain",
-        notes: &[TIMES, "The paper has 32 occluders and states no figures for others; by marginal gain at most 64 are taken."],
+        summary: "Polygons drawn and time to cull against the number of occluders, fixed or by their \
+                  marginal gain",
+        notes: &[
+            TIMES,
+            "The paper has 32 occluders and states no figures for others; by marginal gain at most 64 are \
+             taken.",
+        ],
         varies: &["occluders", "marginal-gain"],
         sweep: &occluders::SWEEP,
     },
@@ -242,8 +271,13 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: &["generate:box-and-objects"],
         doi: GEORGES,
         title: "Georges 1995, Section 5.2: a box that hides a row of objects",
-        summary: "Frames a second with the objects in sight and behind the box, with obscuration culling and without",
-        notes: &[FRAMES, "The paper's system has one processor; its rate behind the box is that of the monitor, about 60 a second."],
+        summary: "Frames a second with the objects in sight and behind the box, with obscuration culling and \
+                  without",
+        notes: &[
+            FRAMES,
+            "The paper's system has one processor; its rate behind the box is that of the monitor, about 60 \
+             a second.",
+        ],
         varies: &[],
         sweep: &georges::BOX,
     },
@@ -253,8 +287,13 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: &["generate:machine-room", "generate:building", "generate:city"],
         doi: GEORGES,
         title: "Georges 1995, Section 5.2: a hidden dense body",
-        summary: "Time of a frame along a flight, with obscuration culling and without; the paper gains 20 to 30 percent",
-        notes: &[FRAMES, "The paper's 20 to 30 percent are for frames in which the dense body is in the view frustum and hidden."],
+        summary: "Time of a frame along a flight, with obscuration culling and without; the paper gains 20 \
+                  to 30 percent",
+        notes: &[
+            FRAMES,
+            "The paper's 20 to 30 percent are for frames in which the dense body is in the view frustum and \
+             hidden.",
+        ],
         varies: &[],
         sweep: &georges::FLIGHT,
     },
@@ -265,7 +304,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
         doi: GEORGES,
         title: "What samples miss: aliasing of the z-buffer against resolution",
         summary: "Triangles that a fine image shows and obscuration culling at a coarse one does not draw",
-        notes: &["Fine: 2048 × 2048. What falls between the samples of the coarse image is not drawn; at its own resolution nothing is missed."],
+        notes: &[
+            "Fine: 2048 × 2048. What falls between the samples of the coarse image is not drawn; at its own \
+             resolution nothing is missed.",
+        ],
         varies: &[],
         sweep: &georges::ALIASING,
     },
@@ -275,8 +317,12 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: LARGE,
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Table 1: visible coverage ratio",
-        summary: "Share of the visible triangles that a budget finds, by cells and by centroid, and the worst frame's wrong pixels",
-        notes: &[COVERED, "The paper's most wrong pixels are stated without a budget; they are shown at the largest."],
+        summary: "Share of the visible triangles that a budget finds, by cells and by centroid, and the \
+                  worst frame's wrong pixels",
+        notes: &[
+            COVERED,
+            "The paper's most wrong pixels are stated without a budget; they are shown at the largest.",
+        ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::TABLE_1,
     },
@@ -286,11 +332,13 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: LARGE,
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Figures 10 and 11: what budgets find, frame by frame",
-        summary: "Visible triangles found and time of a frame at budgets of 1, 2, 5 and 10 percent, frame by frame",
+        summary: "Visible triangles found and time of a frame at budgets of 1, 2, 5 and 10 percent, frame by \
+                  frame",
         notes: &[
             COVERED,
             FRAMES,
-            "The paper's frames are 4 times faster at 5 percent (City) and 10 times at 1 percent (5 Car Body/Engine) than with everything drawn.",
+            "The paper's frames are 4 times faster at 5 percent (City) and 10 times at 1 percent (5 Car \
+             Body/Engine) than with everything drawn.",
         ],
         varies: &["budget"],
         sweep: &klosowski_silva::FRAMES,
@@ -301,8 +349,14 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Figures 12 and 15: cells and centroid compared",
-        summary: "Visible triangles found, wrong pixels and time of a frame by Delaunay, octree, kD-tree and centroid, frame by frame",
-        notes: &[COVERED, FRAMES, "The paper's centroid order has 7 to 40 percent of the pixels wrong; its Delaunay cells find over 90 percent."],
+        summary: "Visible triangles found, wrong pixels and time of a frame by Delaunay, octree, kD-tree and \
+                  centroid, frame by frame",
+        notes: &[
+            COVERED,
+            FRAMES,
+            "The paper's centroid order has 7 to 40 percent of the pixels wrong; its Delaunay cells find \
+             over 90 percent.",
+        ],
         varies: &["tessellation"],
         sweep: &klosowski_silva::COMPARISON,
     },
@@ -312,11 +366,15 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Section 7: is the visible set stable?",
-        summary: "What pops between views a step apart: triangles and pixels that change though the exact image does not",
+        summary: "What pops between views a step apart: triangles and pixels that change though the exact \
+                  image does not",
         notes: &[
-            "Between two views a walker's step apart (4.7 cm), means over the pairs. A triangle pops that is visible in both views and drawn in one of \
-             them; a pixel pops that shows the same triangle in both exact images and is right in one view and wrong in the other. A set changes \
-             by its share of those that are in either view's set and not in both. The paper says that nothing major pops, without figures.",
+            "Between two views a walker's step apart (4.7 cm), means over the pairs. A triangle pops that is \
+             visible in both views and drawn in one of \
+             them; a pixel pops that shows the same triangle in both exact images and is right in one view \
+             and wrong in the other. A set changes \
+             by its share of those that are in either view's set and not in both. The paper says that \
+             nothing major pops, without figures.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::STABILITY,
@@ -329,8 +387,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
         title: "Klosowski and Silva 2000, Section 5.1: preprocess",
         summary: "Time of the preprocess by stage, cells, references a triangle, and memory",
         notes: &[
-            "Medians of three builds in turn, one thread. A reference takes 4 bytes; cells are all the rest of the index, neighbors and normals included; the \
-             scene is all that we keep of it. Overhead: cells and references against the scene; in the paper, against its triangles.",
+            "Medians of three builds in turn, one thread. A reference takes 4 bytes; cells are all the rest \
+             of the index, neighbors and normals included; the \
+             scene is all that we keep of it. Overhead: cells and references against the scene; in the \
+             paper, against its triangles.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::PREPROCESS,
@@ -341,10 +401,12 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: LARGE,
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Section 5.2.3: overhead over view-frustum culling",
-        summary: "Time of the traversal beside view-frustum culling, by cells and budget, alone and as a share of a frame",
+        summary: "Time of the traversal beside view-frustum culling, by cells and budget, alone and as a \
+                  share of a frame",
         notes: &[
             FRAMES,
-            "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all that was kept is drawn. At 100 percent all that is in \
+            "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all \
+             that was kept is drawn. At 100 percent all that is in \
              view is drawn, triangle by triangle.",
         ],
         varies: &["tessellation", "budget"],
@@ -356,7 +418,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: LARGE,
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Section 6: extensions",
-        summary: "What each extension finds and costs: other solidities, several seeds, a wanted quality, queries for the rest",
+        summary: "What each extension finds and costs: other solidities, several seeds, a wanted quality, \
+                  queries for the rest",
         notes: &[COVERED, "With a quality or queries the budget is where they begin."],
         varies: &["budget", "transfer", "update", "occupancy", "seeds", "quality", "queries"],
         sweep: &klosowski_silva::EXTENSIONS,
@@ -367,7 +430,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
         scenes: LARGE,
         doi: KLOSOWSKI_SILVA,
         title: "Klosowski and Silva 2000, Section 3: time-critical frames",
-        summary: "How long frames take that end at a deadline, on an idle and on a loaded machine, and how far they overshoot",
+        summary: "How long frames take that end at a deadline, on an idle and on a loaded machine, and how \
+                  far they overshoot",
         notes: &["Loaded: two more busy threads for each core. A frame is culled and drawn on one thread."],
         varies: &["budget"],
         sweep: &klosowski_silva::DEADLINE,
@@ -381,18 +445,21 @@ const KLOSOWSKI_SILVA: &str = "10.1109/2945.856993";
 /// What Klosowski and Silva's large models are likened to.
 const LARGE: &[&str] = &["generate:city?polygons=500000", "generate:cars"];
 /// How what is found was measured.
-const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each frame the share of it that was drawn, then the \
+const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each \
+                       frame the share of it that was drawn, then the \
                        mean over the frames. A pixel is wrong if its color differs from the exact image's.";
 /// What Coorg and Teller's models are likened to.
 const WALKED: &[&str] = &["generate:building", "generate:city"];
 /// How times of whole frames were taken.
-const FRAMES: &str = "Wall-clock times on one thread from the view to the finished image, interleaved; of each frame the median of three flights \
+const FRAMES: &str = "Wall-clock times on one thread from the view to the finished image, interleaved; of \
+                      each frame the median of three flights \
                       along the scene's own path.";
 
 /// Columns of a terminal that running text takes.
 const TEXT_COLUMNS: usize = 100;
 /// How times were taken.
-const TIMES: &str = "Wall-clock times on one thread, interleaved; of each frame the median of three rounds, then the mean over the frames of a \
+const TIMES: &str = "Wall-clock times on one thread, interleaved; of each frame the median of three rounds, \
+                     then the mean over the frames of a \
                      walk, at walking speed where no other is named.";
 
 impl Experiment {
@@ -413,7 +480,12 @@ impl Experiment {
     ///
     /// # Errors
     /// A parameter that does not fit; or it was cancelled.
-    pub fn run(&self, scenes: &[AnyScene], setup: &Setup, progress: &dyn Progress) -> Result<Report, PaperError> {
+    pub fn run(
+        &self,
+        scenes: &[AnyScene],
+        setup: &Setup,
+        progress: &dyn Progress,
+    ) -> Result<Report, PaperError> {
         self.check(&setup.settings)?;
         let setup = Setup { frames: setup.frames.max(1), ..setup.clone() };
         let mut table = Table::new(self.sweep.columns);
@@ -429,7 +501,9 @@ impl Experiment {
             if measured.iter().any(|m: &Measured| m.name == about.name) {
                 about.name += &format!(", {}", grouped(about.prims as f64, 0));
                 let at = table.columns.iter().position(|c| c.key == SCENE.key);
-                rows.iter_mut().filter_map(|r| r.get_mut(at?)).for_each(|cell| *cell = about.name.as_str().into());
+                rows.iter_mut()
+                    .filter_map(|r| r.get_mut(at?))
+                    .for_each(|cell| *cell = about.name.as_str().into());
             }
             table.rows.extend(rows);
             measured.push(about);
@@ -440,7 +514,17 @@ impl Experiment {
         let fixed = knobs.iter().filter(|(k, _)| !self.varies.contains(&k.name));
         let params = fixed.map(|(k, v): &(_, KnobValue)| (k.name, v.to_string())).collect();
         let (name, title, notes) = (self.name, self.title, self.notes.to_vec());
-        Ok(Report { name, title, table, plots, scenes: measured, doi: self.doi, params, frames: setup.frames, notes })
+        Ok(Report {
+            name,
+            title,
+            table,
+            plots,
+            scenes: measured,
+            doi: self.doi,
+            params,
+            frames: setup.frames,
+            notes,
+        })
     }
 }
 

@@ -1,10 +1,12 @@
-//! Section 4.1: how many nodes of the kD-tree are tested for occlusion in a frame, and what share of the nodes in the view
-//! frustum that is: what spatial coherence saves.
+//! Section 4.1: how many nodes of the kD-tree are tested for occlusion in a frame, and what share of the
+//! nodes in the view frustum that is: what spatial coherence saves.
 
 use std::sync::Arc;
 
 use super::walk::Both;
-use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use super::{
+    CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::culling::{Event, Run, Verdict};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{Frustum, FrustumTest, NodeId, View};
@@ -42,11 +44,17 @@ const PAPER: [[f64; 2]; 2] = [[27.0, 35.0], [30.0, 40.0]];
 /// Nodes whose box is not outside the frustum, whoever asks.
 fn in_frustum<S: World>(run: &dyn Run<S>, view: &View<S>) -> usize {
     let (frustum, tree) = (view.frustum(), run.hierarchy());
-    let inside = |n: &u32| !matches!(frustum.test(&tree.bounds(NodeId(*n)), Frustum::<S::Vector>::ALL), FrustumTest::Outside(_));
+    let inside = |n: &u32| {
+        !matches!(frustum.test(&tree.bounds(NodeId(*n)), Frustum::<S::Vector>::ALL), FrustumTest::Outside(_))
+    };
     (0..tree.node_count() as u32).filter(inside).count()
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.4)?;
     let views = site.spread();
     // By frame: entered by frustum culling, entered, in the frustum, tested.
@@ -59,7 +67,12 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             outside += usize::from(matches!(event, Event::DecidedNode(_, Verdict::Outside)));
         }
         let before = frustum.count(view).1.nodes_entered as f64;
-        counts.push([before, entered as f64, in_frustum(&*occlusion, view) as f64, (entered - outside) as f64]);
+        counts.push([
+            before,
+            entered as f64,
+            in_frustum(&*occlusion, view) as f64,
+            (entered - outside) as f64,
+        ]);
         recording.list.prims
     })?;
     let about = site.about();
@@ -87,7 +100,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         checked.missed as f64,
         checked.views as f64,
     ];
-    let row = ["measured".into(), about.name.as_str().into()].into_iter().chain(numbers.map(Cell::from)).collect();
+    let row =
+        ["measured".into(), about.name.as_str().into()].into_iter().chain(numbers.map(Cell::from)).collect();
     Ok((vec![row], about))
 }
 
@@ -96,9 +110,12 @@ fn paper() -> Vec<Vec<Cell>> {
     row[0] = "paper".into();
     row[1] = "Soda, City".into();
     let [nodes, percent] = PAPER;
-    for (key, value) in
-        [("tested_low_nodes", nodes[0]), ("tested_high_nodes", nodes[1]), ("tested_low_percent", percent[0]), ("tested_high_percent", percent[1])]
-    {
+    for (key, value) in [
+        ("tested_low_nodes", nodes[0]),
+        ("tested_high_nodes", nodes[1]),
+        ("tested_low_percent", percent[0]),
+        ("tested_high_percent", percent[1]),
+    ] {
         if let Some(at) = SWEEP.columns.iter().position(|c| c.key == key) {
             row[at] = value.into();
         }
@@ -109,9 +126,16 @@ fn paper() -> Vec<Vec<Cell>> {
 fn plots(table: &Table) -> Vec<Plot> {
     let scenes = by_scene(table);
     let panel = |y_label: &str, key: &str, range: [f64; 2], more: Option<(&str, &str)>| {
-        let ours = |key: &str| scenes.iter().enumerate().filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?))).collect();
+        let ours = |key: &str| {
+            scenes
+                .iter()
+                .enumerate()
+                .filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?)))
+                .collect()
+        };
         let after = scenes.len();
-        let groups = scenes.iter().map(|s| s.0.clone()).chain(["paper,\nlow".into(), "paper,\nhigh".into()]).collect();
+        let groups =
+            scenes.iter().map(|s| s.0.clone()).chain(["paper,\nlow".into(), "paper,\nhigh".into()]).collect();
         let mut series = vec![
             Series::new("tested for occlusion, mean", Role::Visible, ours(key)),
             Series::new(
@@ -121,10 +145,21 @@ fn plots(table: &Table) -> Vec<Plot> {
             ),
         ];
         series.extend(more.map(|(label, key)| Series::new(label, Role::Scene, ours(key))));
-        Plot { title: String::new(), x_label: String::new(), y_label: y_label.into(), shape: Shape::Bars { groups, stacked: false }, series }
+        Plot {
+            title: String::new(),
+            x_label: String::new(),
+            y_label: y_label.into(),
+            shape: Shape::Bars { groups, stacked: false },
+            series,
+        }
     };
     vec![
-        panel("kD-tree nodes a frame", "tested_nodes", PAPER[0], Some(("in the view frustum, mean", "in_frustum_nodes"))),
+        panel(
+            "kD-tree nodes a frame",
+            "tested_nodes",
+            PAPER[0],
+            Some(("in the view frustum, mean", "in_frustum_nodes")),
+        ),
         panel("% of the nodes in the view frustum", "tested_percent", PAPER[1], None),
     ]
 }

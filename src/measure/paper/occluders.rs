@@ -1,5 +1,6 @@
-//! What the paper leaves open in Section 5: how many occluders. Polygons drawn and time to cull against a fixed number
-//! (k of the paper), and against the least marginal gain that an occluder must bring to be taken.
+//! What the paper leaves open in Section 5: how many occluders. Polygons drawn and time to cull against a
+//! fixed number (k of the paper), and against the least marginal gain that an occluder must bring to be
+//! taken.
 
 use std::sync::Arc;
 
@@ -57,7 +58,11 @@ struct Tried<S: World> {
     value: u32,
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let mut site = Site::new(scene, setup);
     let mut frustum = site.frustum(&part(progress, 0.0, 0.02))?;
     let stretches = site.stretches(WALKING_STEP_M);
@@ -68,7 +73,11 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let mut tried = Vec::with_capacity(ALL);
     for (i, (parameter, value)) in values().enumerate() {
         let text = value.to_string();
-        let settings = if parameter == NUMBER { [(NUMBER, &*text), (GAIN, "0")] } else { [(NUMBER, MOST), (GAIN, &*text)] };
+        let settings = if parameter == NUMBER {
+            [(NUMBER, &*text), (GAIN, "0")]
+        } else {
+            [(NUMBER, MOST), (GAIN, &*text)]
+        };
         let step = part(progress, 0.02 + i as f32 * 0.02, 0.04 + i as f32 * 0.02);
         let (run, build_ms) = timed(|| site.occlusion(&settings, &step));
         tried.push(Tried { run: run?, build_ms, parameter, value });
@@ -86,15 +95,29 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             list.prims
         })?;
         let percent = 100.0 * drawn as f64 / all;
-        let numbers = [f64::from(one.value), active as f64 / views.len() as f64, before, percent, cull_ms, one.build_ms].map(Cell::from);
+        let numbers = [
+            f64::from(one.value),
+            active as f64 / views.len() as f64,
+            before,
+            percent,
+            cull_ms,
+            one.build_ms,
+        ]
+        .map(Cell::from);
         let names = [about.name.as_str().into(), one.parameter.into()];
-        rows.push(names.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect());
+        rows.push(
+            names.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect(),
+        );
     }
     Ok((rows, about))
 }
 
 /// All of them, frame by frame in turn.
-fn time<S: World>(tried: &mut [Tried<S>], stretches: Vec<Stretch<S>>, progress: &dyn Progress) -> Result<[f64; ALL], PaperError> {
+fn time<S: World>(
+    tried: &mut [Tried<S>],
+    stretches: Vec<Stretch<S>>,
+    progress: &dyn Progress,
+) -> Result<[f64; ALL], PaperError> {
     times(stretches, progress, |moment| {
         let mut all = [0.0; ALL];
         for (time, one) in all.iter_mut().zip(tried.iter_mut()) {
@@ -122,20 +145,42 @@ fn plots(table: &Table) -> Vec<Plot> {
     let scenes = by_scene(table);
     let named = |row: usize, name: &str| table.rows[row].contains(&Cell::Text(name.into()));
     // Up to three scenes are told apart; more repeat.
-    let roles = [(Role::Visible, Role::Partial), (Role::Eye, Role::Evidence), (Role::Occluder, Role::Outside)];
+    let roles =
+        [(Role::Visible, Role::Partial), (Role::Eye, Role::Evidence), (Role::Occluder, Role::Outside)];
     let line = |rows: &[usize], parameter: &str, x: &str, y: &str| -> Vec<(f64, f64)> {
-        rows.iter().filter(|&&r| named(r, parameter)).filter_map(|&r| Some((table.number(r, x)?, table.number(r, y)?))).collect()
+        rows.iter()
+            .filter(|&&r| named(r, parameter))
+            .filter_map(|&r| Some((table.number(r, x)?, table.number(r, y)?)))
+            .collect()
     };
     let mut by_number = Vec::new();
     let mut by_time = Vec::new();
     for (i, (name, rows)) in scenes.iter().enumerate() {
         let (fixed, gain) = roles[i % roles.len()];
-        by_number.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, NUMBER, "value", "occlusion_percent")));
-        by_time.push(Series::new(format!("{name}, fixed number"), fixed, line(rows, NUMBER, "cull_ms", "occlusion_percent")));
-        by_time.push(Series::new(format!("{name}, by marginal gain"), gain, line(rows, GAIN, "cull_ms", "occlusion_percent")));
+        by_number.push(Series::new(
+            format!("{name}, fixed number"),
+            fixed,
+            line(rows, NUMBER, "value", "occlusion_percent"),
+        ));
+        by_time.push(Series::new(
+            format!("{name}, fixed number"),
+            fixed,
+            line(rows, NUMBER, "cull_ms", "occlusion_percent"),
+        ));
+        by_time.push(Series::new(
+            format!("{name}, by marginal gain"),
+            gain,
+            line(rows, GAIN, "cull_ms", "occlusion_percent"),
+        ));
     }
     let quoted = [Role::Hidden, Role::Approximated];
-    by_number.extend(PAPER.1.iter().zip(quoted).map(|(p, role)| Series::new(format!("paper, {}", p.0), role, vec![(PAPER.0, p.1)])));
+    by_number.extend(
+        PAPER
+            .1
+            .iter()
+            .zip(quoted)
+            .map(|(p, role)| Series::new(format!("paper, {}", p.0), role, vec![(PAPER.0, p.1)])),
+    );
     let plot = |x_label: &str, shape: Shape, series: Vec<Series>| Plot {
         title: String::new(),
         x_label: x_label.into(),

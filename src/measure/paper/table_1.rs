@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::walk::Both;
-use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use super::{
+    CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::table::{Cell, Table};
 use crate::scene::{Progress, Scene};
@@ -28,7 +30,11 @@ pub const SWEEP: Sweep = Sweep {
 /// Scene, polygons, percent after frustum culling, percent after occlusion culling.
 const PAPER: [(&str, f64, f64, f64); 2] = [("Soda", 134_832.0, 19.7, 2.6), ("City", 108_841.0, 36.9, 5.6)];
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.4)?;
     let views = site.spread();
     let mut drawn = [0; 2];
@@ -57,16 +63,33 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
 fn paper() -> Vec<Vec<Cell>> {
     let row = |(scene, polygons, frustum, occlusion): (&str, f64, f64, f64)| {
         let ratio = frustum / occlusion;
-        vec!["paper".into(), scene.into(), polygons.into(), frustum.into(), occlusion.into(), ratio.into(), Cell::Missing, Cell::Missing]
+        vec![
+            "paper".into(),
+            scene.into(),
+            polygons.into(),
+            frustum.into(),
+            occlusion.into(),
+            ratio.into(),
+            Cell::Missing,
+            Cell::Missing,
+        ]
     };
     PAPER.map(row).to_vec()
 }
 
 fn plots(table: &Table) -> Vec<Plot> {
     let scenes = by_scene(table);
-    let ours = |key: &str| scenes.iter().enumerate().filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?))).collect();
+    let ours = |key: &str| {
+        scenes
+            .iter()
+            .enumerate()
+            .filter_map(|(i, (_, rows))| Some((i as f64, table.number(rows[0], key)?)))
+            .collect()
+    };
     let after = scenes.len();
-    let theirs = |of: fn(&(&str, f64, f64, f64)) -> f64| PAPER.iter().enumerate().map(|(i, p)| ((after + i) as f64, of(p))).collect();
+    let theirs = |of: fn(&(&str, f64, f64, f64)) -> f64| {
+        PAPER.iter().enumerate().map(|(i, p)| ((after + i) as f64, of(p))).collect()
+    };
     let names = scenes.iter().map(|s| s.0.clone());
     let groups = names.chain(PAPER.iter().map(|p| format!("{}\n(paper)", p.0))).collect();
     vec![Plot {

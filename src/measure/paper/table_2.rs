@@ -1,9 +1,12 @@
-//! Table 2's form: milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion culling.
+//! Table 2's form: milliseconds to cull and to draw a frame, with view-frustum culling and with occlusion
+//! culling.
 
 use std::sync::Arc;
 
 use super::walk::{Both, Moment, times};
-use super::{CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use super::{
+    CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{View, WALKING_STEP_M};
@@ -46,7 +49,11 @@ fn row(source: &str, scene: &str, [frustum_cull, frustum_draw, cull, draw]: [f64
     [source.into(), scene.into()].into_iter().chain(numbers.map(Cell::from)).collect()
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let Both { mut site, mut frustum, mut occlusion } = Both::new(scene, setup, progress, 0.2)?;
     let stretches = site.stretches(WALKING_STEP_M);
     let walked: Vec<View<S>> = stretches.iter().flat_map(|s| s.frames.iter().copied()).collect();
@@ -88,8 +95,16 @@ fn paper() -> Vec<Vec<Cell>> {
 
 /// Two bars for each scene, culling below and drawing above.
 fn panel(title: &str, scenes: &[(String, [f64; 4])], roles: [Role; 2], word: &str) -> Plot {
-    let groups = scenes.iter().flat_map(|(name, _)| [format!("{name}\nfrustum"), format!("{name}\nocclusion")]).collect();
-    let bars = |of: [usize; 2]| scenes.iter().enumerate().flat_map(move |(i, (_, t))| [(2.0 * i as f64, t[of[0]]), (2.0 * i as f64 + 1.0, t[of[1]])]);
+    let groups = scenes
+        .iter()
+        .flat_map(|(name, _)| [format!("{name}\nfrustum"), format!("{name}\nocclusion")])
+        .collect();
+    let bars = |of: [usize; 2]| {
+        scenes
+            .iter()
+            .enumerate()
+            .flat_map(move |(i, (_, t))| [(2.0 * i as f64, t[of[0]]), (2.0 * i as f64 + 1.0, t[of[1]])])
+    };
     Plot {
         title: title.into(),
         x_label: String::new(),
@@ -106,7 +121,9 @@ fn plots(table: &Table) -> Vec<Plot> {
     let keys = ["frustum_cull_ms", "frustum_draw_ms", "occlusion_cull_ms", "occlusion_draw_ms"];
     let of = |row: usize| keys.map(|k| table.number(row, k).unwrap_or(0.0));
     let ours: Vec<_> = by_scene(table).into_iter().map(|(name, rows)| (name, of(rows[0]))).collect();
-    let theirs = |machine: &str| PAPER.iter().filter(|p| p.0 == machine).map(|p| (p.1.to_owned(), p.2)).collect::<Vec<_>>();
+    let theirs = |machine: &str| {
+        PAPER.iter().filter(|p| p.0 == machine).map(|p| (p.1.to_owned(), p.2)).collect::<Vec<_>>()
+    };
     let quoted = [Role::Approximated, Role::Hidden];
     vec![
         panel("measured, software rasterizer", &ours, [Role::Occluder, Role::Visible], ""),

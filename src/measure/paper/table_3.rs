@@ -1,7 +1,7 @@
 //! Table 3: time in visibility processing against the speed of the walker: what temporal coherence saves.
 //!
-//! The paper's caption calls the speeds multiples of the slowest one, which is walking speed; but its slowest is 0.25.
-//! Here 1 is walking speed, as in Tables 1 and 2.
+//! The paper's caption calls the speeds multiples of the slowest one, which is walking speed; but its slowest
+//! is 0.25. Here 1 is walking speed, as in Tables 1 and 2.
 
 use std::sync::Arc;
 
@@ -50,12 +50,17 @@ const PAPER: [(f64, [f64; 2]); 7] = [
 /// Where in [`PAPER`] walking speed stands.
 const WALKING: usize = 2;
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let mut site = Site::new(scene, setup);
     let mut frustum = site.frustum(&part(progress, 0.0, 0.04))?;
     let mut kept = site.occlusion(&[("cache", "true")], &part(progress, 0.04, 0.1))?;
     let mut fresh = site.occlusion(&[("cache", "false")], &part(progress, 0.1, 0.16))?;
-    let walks: Vec<Vec<Stretch<S>>> = PAPER.iter().map(|(speed, _)| site.stretches(WALKING_STEP_M * *speed as f32)).collect();
+    let walks: Vec<Vec<Stretch<S>>> =
+        PAPER.iter().map(|(speed, _)| site.stretches(WALKING_STEP_M * *speed as f32)).collect();
     let all = times_of(&walks, &part(progress, 0.16, 0.86), |moment| {
         let Moment::Frame(view) = moment else {
             kept.forget();
@@ -83,15 +88,23 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         let ours = [*speed, kept, fresh, frustum, kept / fresh, kept / walking, fresh / walking];
         let numbers = ours.into_iter().chain([theirs[0], ratio(0), theirs[1], ratio(1)]).map(Cell::from);
         let name = [Cell::from(about.name.as_str())];
-        rows.push(name.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect());
+        rows.push(
+            name.into_iter().chain(numbers).chain([checked.missed.into(), checked.views.into()]).collect(),
+        );
     }
     Ok((rows, about))
 }
 
 fn plots(table: &Table) -> Vec<Plot> {
     let panel = |(name, rows): (String, Vec<usize>)| {
-        let ours = |key: &str| rows.iter().filter_map(|&r| Some((table.number(r, "speed_ratio")?, table.number(r, key)?))).collect();
-        let theirs = |scene: usize| PAPER.iter().map(|(speed, t)| (*speed, t[scene] / PAPER[WALKING].1[scene])).collect();
+        let ours = |key: &str| {
+            rows.iter()
+                .filter_map(|&r| Some((table.number(r, "speed_ratio")?, table.number(r, key)?)))
+                .collect()
+        };
+        let theirs = |scene: usize| {
+            PAPER.iter().map(|(speed, t)| (*speed, t[scene] / PAPER[WALKING].1[scene])).collect()
+        };
         Plot {
             title: name,
             x_label: "speed, multiples of walking".into(),

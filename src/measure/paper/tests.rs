@@ -14,7 +14,10 @@ fn setup(frames: usize) -> Setup {
 }
 
 fn run(name: &str, scene: &AnyScene, setup: &Setup) -> Report {
-    let report = Experiment::named(name).expect("a name").run(std::slice::from_ref(scene), setup, &Quiet).expect("a report");
+    let report = Experiment::named(name)
+        .expect("a name")
+        .run(std::slice::from_ref(scene), setup, &Quiet)
+        .expect("a report");
     for row in 0..report.table.rows.len() {
         assert_eq!(report.table.rows[row].len(), report.table.columns.len());
         if let Some(missed) = report.table.number(row, "missed_triangles") {
@@ -45,12 +48,18 @@ fn table_1_is_what_the_draw_lists_say() {
         percent.push(100.0 * shares.sum::<f64>() / 12.0);
     }
     let ours = ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
-    assert!((ours[0] - percent[0]).abs() < 1e-9 && (ours[1] - percent[1]).abs() < 1e-9, "{ours:?} for {percent:?}");
+    assert!(
+        (ours[0] - percent[0]).abs() < 1e-9 && (ours[1] - percent[1]).abs() < 1e-9,
+        "{ours:?} for {percent:?}"
+    );
     assert!(ours[0] > ours[1] && ours[1] > 0.0 && ours[0] < 100.0, "{ours:?}");
     let ratio = report.table.number(0, "reduction_ratio").expect("a number");
     assert!((ratio - percent[0] / percent[1]).abs() < 1e-9);
     // The paper's rows, as printed there.
-    let paper = [1, 2].map(|r| ["polygons", "frustum_percent", "occlusion_percent"].map(|k| report.table.number(r, k).expect("a number")));
+    let paper = [1, 2].map(|r| {
+        ["polygons", "frustum_percent", "occlusion_percent"]
+            .map(|k| report.table.number(r, k).expect("a number"))
+    });
     assert_eq!(paper, [[134_832.0, 19.7, 2.6], [108_841.0, 36.9, 5.6]]);
 }
 
@@ -93,12 +102,18 @@ fn every_experiment_fills_its_table() {
                 assert_eq!(report.table.number(6, "paper_soda_ms"), Some(56.0));
             }
             "coorg-teller-nodes" => {
-                assert!(number("tested_nodes") <= number("in_frustum_nodes") && number("in_frustum_nodes") <= number("tree_nodes"));
+                assert!(
+                    number("tested_nodes") <= number("in_frustum_nodes")
+                        && number("in_frustum_nodes") <= number("tree_nodes")
+                );
                 assert!(number("tested_nodes") <= number("entered_nodes") && number("tested_nodes") >= 1.0);
             }
             "coorg-teller-occluders" => {
                 // One occluder culls less than 64, and never more than 64 are active.
-                assert!(number("occlusion_percent") >= report.table.number(6, "occlusion_percent").expect("a number"));
+                assert!(
+                    number("occlusion_percent")
+                        >= report.table.number(6, "occlusion_percent").expect("a number")
+                );
                 assert!(number("active_occluders") <= 1.0);
             }
             _ => {}
@@ -110,16 +125,20 @@ fn every_experiment_fills_its_table() {
 fn flatland_has_tables_too() {
     let scene = AnyScene::Flat(crate::scene::example("freedoom_e1m1").expect("a built-in scene"));
     let report = run("coorg-teller-table-1", &scene, &setup(6));
-    let [frustum, occlusion] = ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
+    let [frustum, occlusion] =
+        ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
     assert!(frustum >= occlusion && occlusion > 0.0);
 }
 
 #[test]
 fn stretches_begin_at_the_same_places_whatever_the_speed() {
-    let AnyScene::Solid(scene) = small("generate:building?polygons=3000") else { panic!("a building is in space") };
+    let AnyScene::Solid(scene) = small("generate:building?polygons=3000") else {
+        panic!("a building is in space")
+    };
     let setup = setup(16);
     let site = walk::Site::new(&scene, &setup);
-    let begins = |step: f32| site.stretches(step).iter().map(|s| s.frames[0].eye.position).collect::<Vec<_>>();
+    let begins =
+        |step: f32| site.stretches(step).iter().map(|s| s.frames[0].eye.position).collect::<Vec<_>>();
     let (slow, fast) = (begins(0.01), begins(0.1));
     assert_eq!((slow.len(), fast.len()), (8, 8));
     assert!(slow.iter().zip(&fast).all(|(a, b)| a.distance(*b) < 0.25), "{slow:?} {fast:?}");
@@ -142,8 +161,15 @@ fn wrong_parameters_and_cancelling_are_told() {
     }
     let scene = [small("generate:building?polygons=3000")];
     for experiment in EXPERIMENTS {
-        assert!(matches!(experiment.run(&scene, &setup(4), &Stop), Err(PaperError::Cancelled)), "{}", experiment.name);
+        assert!(
+            matches!(experiment.run(&scene, &setup(4), &Stop), Err(PaperError::Cancelled)),
+            "{}",
+            experiment.name
+        );
         let settings = Settings(BTreeMap::from([("occluder".into(), "3".into())]));
-        assert!(matches!(experiment.run(&scene, &Setup { settings, ..setup(4) }, &Quiet), Err(PaperError::Setting(_))));
+        assert!(matches!(
+            experiment.run(&scene, &Setup { settings, ..setup(4) }, &Quiet),
+            Err(PaperError::Setting(_))
+        ));
     }
 }

@@ -1,5 +1,5 @@
-//! The walk of an experiment: what is ready to run on a scene, views spread along its path, stretches of frames at a
-//! speed, and the timing of those.
+//! The walk of an experiment: what is ready to run on a scene, views spread along its path, stretches of
+//! frames at a speed, and the timing of those.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use crate::truth::Truth;
 
 /// Stretches that a long walk is measured on, evenly spaced.
 const STRETCHES: usize = 8;
-/// Frames before each stretch that are culled and not measured, so that what is kept from frame to frame is there.
+/// Frames before each stretch that are culled and not measured, so that what is kept from frame to frame is
+/// there.
 const WARM: usize = 8;
 /// Rounds whose median is the time of a frame.
 pub const ROUNDS: usize = 3;
@@ -54,7 +55,12 @@ pub struct Both<'a, S: World> {
 
 impl<'a, S: World> Both<'a, S> {
     /// Builds what both need; it is `done` of `progress` then.
-    pub fn new(scene: &'a Arc<Scene<S>>, setup: &'a Setup, progress: &dyn Progress, done: f32) -> Result<Self, PaperError> {
+    pub fn new(
+        scene: &'a Arc<Scene<S>>,
+        setup: &'a Setup,
+        progress: &dyn Progress,
+        done: f32,
+    ) -> Result<Self, PaperError> {
         let site = Site::new(scene, setup);
         let frustum = site.frustum(&part(progress, 0.0, 0.25 * done))?;
         let occlusion = site.occlusion(&[], &part(progress, 0.25 * done, done))?;
@@ -80,11 +86,21 @@ impl<'a, S: World> Site<'a, S> {
 
     pub fn about(&self) -> Measured {
         let (scene, path) = (self.scene, self.path.name.clone());
-        Measured { name: scene.name().into(), source: scene.source().into(), prims: scene.live().len(), prim: S::PRIM, path }
+        Measured {
+            name: scene.name().into(),
+            source: scene.source().into(),
+            prims: scene.live().len(),
+            prim: S::PRIM,
+            path,
+        }
     }
 
     /// The method with the experiment's parameters and these on top.
-    pub fn occlusion(&self, on_top: &[(&str, &str)], progress: &dyn Progress) -> Result<Box<dyn Run<S>>, PaperError> {
+    pub fn occlusion(
+        &self,
+        on_top: &[(&str, &str)],
+        progress: &dyn Progress,
+    ) -> Result<Box<dyn Run<S>>, PaperError> {
         let mut settings = self.setup.settings.clone();
         settings.0.extend(on_top.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())));
         let run = method::<S>(METHOD).ready(self.scene, &settings, progress)?;
@@ -94,7 +110,15 @@ impl<'a, S: World> Site<'a, S> {
     pub fn frustum(&self, progress: &dyn Progress) -> Result<Box<dyn Run<S>>, PaperError> {
         let known = method::<S>(BASELINE).knobs(&Settings::default())?;
         let fits = |key: &String| known.iter().any(|(k, _)| k.name == key);
-        let settings = Settings(self.setup.settings.0.iter().filter(|(k, _)| fits(k)).map(|(k, v)| (k.clone(), v.clone())).collect());
+        let settings = Settings(
+            self.setup
+                .settings
+                .0
+                .iter()
+                .filter(|(k, _)| fits(k))
+                .map(|(k, v)| (k.clone(), v.clone()))
+                .collect(),
+        );
         let run = method::<S>(BASELINE).ready(self.scene, &settings, progress)?;
         run.ok_or(PaperError::Cancelled)
     }
@@ -105,8 +129,8 @@ impl<'a, S: World> Site<'a, S> {
         self.path.walked(self.length / n as f32, n).views
     }
 
-    /// A walk around the path at `step` a frame: all of it, or stretches of it if it is longer than what is to be
-    /// measured. They begin at the same places whatever the step.
+    /// A walk around the path at `step` a frame: all of it, or stretches of it if it is longer than what is
+    /// to be measured. They begin at the same places whatever the step.
     pub fn stretches(&self, step: f32) -> Vec<Stretch<S>> {
         let total = (f64::from(self.length) / f64::from(step)).ceil().clamp(1.0, MOST_FRAMES) as usize;
         let walk = self.path.walked(step, total).views;
@@ -122,7 +146,12 @@ impl<'a, S: World> Site<'a, S> {
     }
 
     /// Compares answers to some of these views with the truth; the method walks all of them.
-    pub fn check(&mut self, run: &mut dyn Run<S>, views: &[View<S>], progress: &dyn Progress) -> Result<Checked, PaperError> {
+    pub fn check(
+        &mut self,
+        run: &mut dyn Run<S>,
+        views: &[View<S>],
+        progress: &dyn Progress,
+    ) -> Result<Checked, PaperError> {
         self.each(views, progress, "comparing with the truth", |view| run.cull(view).prims)
     }
     /// Asks for the answer to each view, which is `what` is done, and compares some of them with the truth.
@@ -183,17 +212,22 @@ pub fn times<S: World, const N: usize>(
     times_of(&[stretches], progress, frame).map(|all| all[0])
 }
 
-/// Times `N` things a frame over the stretches of several walks, stretch by stretch in turn, in rounds: `frame` is told
-/// when a stretch begins, then asked for each of its frames. For each walk and thing the mean over the frames of the
-/// median of its rounds, ms.
+/// Times `N` things a frame over the stretches of several walks, stretch by stretch in turn, in rounds:
+/// `frame` is told when a stretch begins, then asked for each of its frames. For each walk and thing the mean
+/// over the frames of the median of its rounds, ms.
 pub fn times_of<S: World, const N: usize>(
     walks: &[Vec<Stretch<S>>],
     progress: &dyn Progress,
     mut frame: impl FnMut(Moment<'_, S>) -> [f64; N],
 ) -> Result<Vec<[f64; N]>, PaperError> {
     let mut sums = vec![([0.0; N], 0); walks.len()];
-    let (most, all) = (walks.iter().map(Vec::len).max().unwrap_or(0), walks.iter().map(Vec::len).sum::<usize>().max(1) as f32);
-    let turns = (0..most).flat_map(|i| walks.iter().enumerate().filter_map(move |(w, stretches)| Some((w, stretches.get(i)?))));
+    let (most, all) = (
+        walks.iter().map(Vec::len).max().unwrap_or(0),
+        walks.iter().map(Vec::len).sum::<usize>().max(1) as f32,
+    );
+    let turns = (0..most).flat_map(|i| {
+        walks.iter().enumerate().filter_map(move |(w, stretches)| Some((w, stretches.get(i)?)))
+    });
     for (turn, (w, stretch)) in turns.enumerate() {
         let part = Part { whole: progress, start: turn as f32 / all, length: 1.0 / all };
         let mut rounds = vec![Vec::with_capacity(ROUNDS); stretch.frames.len()];

@@ -27,7 +27,8 @@ fn triangle(dice: &mut Dice, kind: u32, before: [Vec3; 3]) -> [Vec3; 3] {
         11 => [middle, middle * 0.5, middle * 0.25],
         // On the grid's corners, for ties.
         12 => [(); 3].map(|()| at_px(64, f64::from(dice.below(65)), f64::from(dice.below(65)), 4.0)),
-        13 => [(); 3].map(|()| at_px(64, f64::from(dice.below(129)) * 0.5, f64::from(dice.below(129)) * 0.5, 4.0)),
+        13 => [(); 3]
+            .map(|()| at_px(64, f64::from(dice.below(129)) * 0.5, f64::from(dice.below(129)) * 0.5, 4.0)),
         // Coplanar with another: equal depths.
         14 => before,
         _ => [(); 3].map(|()| dice.point(8.0).with_z(-3.0)),
@@ -52,7 +53,14 @@ fn random_view(dice: &mut Dice) -> View<Solid> {
     } else {
         let position = dice.point(3.0);
         let target = position + dice.point(1.0) + Vec3::X * 2.0;
-        Eye { position, target, up: dice.point(1.0), fov: dice.between(0.02, 3.0), near, far: near + dice.between(1.0, 1e4) }
+        Eye {
+            position,
+            target,
+            up: dice.point(1.0),
+            fov: dice.between(0.02, 3.0),
+            near,
+            far: near + dice.between(1.0, 1e4),
+        }
     };
     View { eye, width, height }
 }
@@ -87,7 +95,10 @@ fn segments_equal_the_reference() {
         let count = 40;
         let reach = [0.5, 5.0, 1e5][dice.below(3) as usize];
         let points: Vec<Vec2> = (0..count * 2).map(|_| dice.point(reach).truncate()).collect();
-        let scene: Scene<Flat> = scene_of(points, (0..count).map(|s| [2 * s, (2 * s + 1 + dice.below(2)) % (2 * count)]).collect());
+        let scene: Scene<Flat> = scene_of(
+            points,
+            (0..count).map(|s| [2 * s, (2 * s + 1 + dice.below(2)) % (2 * count)]).collect(),
+        );
         let position = dice.point(1.0).truncate();
         let target = position + Vec2::new(1.5, 0.0) + dice.point(1.0).truncate();
         let eye = Eye { position, target, up: Vec2::Y, fov: dice.between(0.1, 3.0), near: 0.01, far: 40.0 };

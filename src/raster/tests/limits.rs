@@ -23,10 +23,13 @@ fn widest_and_highest_images() {
 #[test]
 fn extreme_depths_stay_finite_and_equal() {
     let dice = &mut Dice::new(22);
-    for (near, far, reach) in [(1e-38, 1e38, 1e-37), (1e-30, 1e30, 1e20), (1e-3, f32::MAX, 1e37), (f32::MIN_POSITIVE, 1.0, 1e-37)] {
+    for (near, far, reach) in
+        [(1e-38, 1e38, 1e-37), (1e-30, 1e30, 1e20), (1e-3, f32::MAX, 1e37), (f32::MIN_POSITIVE, 1.0, 1e-37)]
+    {
         let triangles: Vec<[Vec3; 3]> = (0..30).map(|_| [(); 3].map(|()| dice.point(reach))).collect();
         let scene = soup(&triangles);
-        let image = assert_equal(&scene, &straight_view(24, near, far), scene.live(), false, &format!("near {near}"));
+        let image =
+            assert_equal(&scene, &straight_view(24, near, far), scene.live(), false, &format!("near {near}"));
         assert!(image.depth.iter().all(|d| d.is_finite()), "near {near}: a depth is not finite");
     }
 }
@@ -48,11 +51,19 @@ fn a_target_can_be_used_again() {
     let dice = &mut Dice::new(23);
     let mut target = Target::default();
     for round in 0..12 {
-        let triangles: Vec<[Vec3; 3]> = (0..1 + round * 40 % 90).map(|_| [(); 3].map(|()| dice.point(5.0))).collect();
+        let triangles: Vec<[Vec3; 3]> =
+            (0..1 + round * 40 % 90).map(|_| [(); 3].map(|()| dice.point(5.0))).collect();
         let scene = soup(&triangles);
-        let view = View { width: 1 + dice.below(90), height: 1 + dice.below(90), ..straight_view(1, 0.1, 50.0) };
+        let view =
+            View { width: 1 + dice.below(90), height: 1 + dice.below(90), ..straight_view(1, 0.1, 50.0) };
         target.clear(&view);
-        Solid::draw(&mut target, &scene, &view, scene.live(), &Options { threads: 1 + round % 3, ..Options::default() });
+        Solid::draw(
+            &mut target,
+            &scene,
+            &view,
+            scene.live(),
+            &Options { threads: 1 + round % 3, ..Options::default() },
+        );
         assert_eq!(target, render(&scene, &view, scene.live()));
     }
 }
@@ -71,7 +82,14 @@ fn shading_by_angle_and_choice() {
     assert_eq!(at(&pixels, 0, 0), [255; 4]);
     let (bright, dim) = (at(&pixels, 4, 12), at(&pixels, 12, 12));
     assert!(bright[0] > dim[0] && dim[0] > 80 && bright[0] < 189 && bright[3] == 255, "{bright:?} {dim:?}");
-    let by_state = shade_with(&image, &scene, &view, [0.0; 3], |p| if p.0 == 0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] });
+    let by_state =
+        shade_with(
+            &image,
+            &scene,
+            &view,
+            [0.0; 3],
+            |p| if p.0 == 0 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] },
+        );
     let (a, b) = (at(&by_state, 4, 12), at(&by_state, 12, 12));
     assert!(a[0] > 200 && a[1] == 0 && b[1] > 80 && b[0] == 0 && at(&by_state, 0, 0) == [0, 0, 0, 255]);
 }

@@ -82,11 +82,18 @@ pub(super) fn at_px(size: u32, x: f64, y: f64, w: f64) -> Vec3 {
 /// Every way to draw: instruction sets and threads.
 pub(super) fn all_options(backface_culling: bool) -> Vec<Options> {
     let isas = [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().filter(|&i| i <= Isa::detect());
-    isas.flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa, window: None })).collect()
+    isas.flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa, window: None }))
+        .collect()
 }
 
 /// Asserts that every way to draw gives the reference's bytes, and returns the image.
-pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId], backface_culling: bool, what: &str) -> Target {
+pub(super) fn assert_equal<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    prims: &[PrimId],
+    backface_culling: bool,
+    what: &str,
+) -> Target {
     let mut expected = Target::new(view);
     S::draw_reference(&mut expected, scene, view, prims, &Options { backface_culling, ..Options::default() });
     for options in all_options(backface_culling) {
@@ -96,9 +103,9 @@ pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims:
         if options.isa == Isa::detect() {
             sifted_is_the_same(scene, view, prims, &options, &target, what);
         }
-        if let Some(i) =
-            (0..target.item.len()).find(|&i| target.item[i] != expected.item[i] || target.depth[i].to_bits() != expected.depth[i].to_bits())
-        {
+        if let Some(i) = (0..target.item.len()).find(|&i| {
+            target.item[i] != expected.item[i] || target.depth[i].to_bits() != expected.depth[i].to_bits()
+        }) {
             let (x, y) = (i % view.width as usize, i / view.width as usize);
             panic!(
                 "{what}, {options:?}: pixel ({x}, {y}) shows {} at {}, expected {} at {}",
@@ -108,13 +115,24 @@ pub(super) fn assert_equal<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims:
         let mut depths = Target::default();
         depths.clear_depths(view);
         S::draw(&mut depths, scene, view, prims, &options);
-        assert!(depths.item.is_empty() && depths.depth == expected.depth, "{what}, {options:?}: depths alone");
+        assert!(
+            depths.item.is_empty() && depths.depth == expected.depth,
+            "{what}, {options:?}: depths alone"
+        );
     }
     expected
 }
 
-/// Asserts that sifting, in several goes, gives the same image, leaves out nothing that shows, and keeps the pyramid's promises.
-fn sifted_is_the_same<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId], options: &Options, plain: &Target, what: &str) {
+/// Asserts that sifting, in several goes, gives the same image, leaves out nothing that shows, and keeps the
+/// pyramid's promises.
+fn sifted_is_the_same<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    prims: &[PrimId],
+    options: &Options,
+    plain: &Target,
+    what: &str,
+) {
     let (mut target, mut pyramid, mut hidden) = (Target::new(view), Pyramid::default(), Vec::new());
     pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     for (go, part) in prims.chunks(prims.len().div_ceil(5).max(1)).enumerate() {
@@ -122,12 +140,26 @@ fn sifted_is_the_same<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[Pr
             let (mut alone, before) = (Target::new(view), Target::new(view));
             S::draw(&mut alone, scene, view, &[prim], options);
             let Some(Extent { pixels, nearest }) = S::extent(scene, view, prim, options) else { continue };
-            for (i, &depth) in alone.depth.iter().enumerate().filter(|(i, _)| alone.item[*i] != before.item[*i]) {
+            for (i, &depth) in
+                alone.depth.iter().enumerate().filter(|(i, _)| alone.item[*i] != before.item[*i])
+            {
                 let (x, y) = (i as u32 % view.width, i as u32 / view.width);
-                assert!((pixels.x0..pixels.x1).contains(&x) && (pixels.y0..pixels.y1).contains(&y) && depth <= nearest, "{what}: extent of {prim}");
+                assert!(
+                    (pixels.x0..pixels.x1).contains(&x)
+                        && (pixels.y0..pixels.y1).contains(&y)
+                        && depth <= nearest,
+                    "{what}: extent of {prim}"
+                );
             }
         }
-        S::sift(&mut target, Sieve { pyramid: &mut pyramid, hidden: &mut hidden }, scene, view, part, options);
+        S::sift(
+            &mut target,
+            Sieve { pyramid: &mut pyramid, hidden: &mut hidden },
+            scene,
+            view,
+            part,
+            options,
+        );
         pyramid.assert_well_formed(&target.depth);
         match go % 2 {
             0 => pyramid.refresh_all(&target.depth),

@@ -31,11 +31,27 @@ fn figure_1_of_georges_1995() {
 #[test]
 fn any_size_has_a_pyramid() {
     let mut dice = Dice::new(5);
-    for (width, height) in [(1, 1), (2, 1), (1, 7), (3, 3), (5, 1), (16, 16), (17, 16), (33, 47), (64, 1), (100, 1), (257, 3), (50, 200)] {
+    for (width, height) in [
+        (1, 1),
+        (2, 1),
+        (1, 7),
+        (3, 3),
+        (5, 1),
+        (16, 16),
+        (17, 16),
+        (33, 47),
+        (64, 1),
+        (100, 1),
+        (257, 3),
+        (50, 200),
+    ] {
         let depth: Vec<f32> = (0..width * height).map(|_| dice.between(0.1, 1.0)).collect();
         let pyramid = pyramid_of(width, height, &depth);
         assert_eq!(pyramid.size(pyramid.root()), (1, 1), "{width}×{height}");
-        assert!(pyramid.root() == 0 || pyramid.size(pyramid.root() - 1) != (1, 1), "{width}×{height}: no level too many");
+        assert!(
+            pyramid.root() == 0 || pyramid.size(pyramid.root() - 1) != (1, 1),
+            "{width}×{height}: no level too many"
+        );
         pyramid.assert_well_formed(&depth);
     }
 }
@@ -52,14 +68,18 @@ fn cells_cover_their_rectangles() {
         let one = pyramid.finest_over(r);
         assert!(holds(one.pixels(100, 70)), "{one:?} holds {r:?}");
         if one.level > 0 {
-            let finer = cell(one.level - 1, (r.x0 >> (one.level - 1)) as u16, (r.y0 >> (one.level - 1)) as u16);
+            let finer =
+                cell(one.level - 1, (r.x0 >> (one.level - 1)) as u16, (r.y0 >> (one.level - 1)) as u16);
             assert!(!holds(finer.pixels(100, 70)), "{one:?} is the finest over {r:?}");
         }
         let (first, last) = pyramid.cover(r);
         assert!(last.x - first.x <= 1 && last.y - first.y <= 1, "at most four cells over {r:?}");
         let (a, b) = (first.pixels(100, 70), last.pixels(100, 70));
         assert!(holds(PixelRect { x0: a.x0, x1: b.x1, y0: a.y0, y1: b.y1 }));
-        let truth = (r.y0..r.y1).flat_map(|y| (r.x0..r.x1).map(move |x| (y * 100 + x) as usize)).map(|i| depth[i]).fold(f32::INFINITY, f32::min);
+        let truth = (r.y0..r.y1)
+            .flat_map(|y| (r.x0..r.x1).map(move |x| (y * 100 + x) as usize))
+            .map(|i| depth[i])
+            .fold(f32::INFINITY, f32::min);
         assert!(pyramid.farthest_over(&depth, r) <= truth);
     }
 }
@@ -76,8 +96,15 @@ fn windows_put_together_are_the_image() {
         for (y0, y1) in [(0, 40), (40, 90)] {
             for (x0, x1) in [(0, 33), (33, 64), (64, 90)] {
                 let window = Some(PixelRect { x0, x1, y0, y1 });
-                Solid::draw(&mut target, &scene, &view, scene.live(), &Options { threads, window, ..Options::default() });
-                let inside = |i: usize| (x0..x1).contains(&(i as u32 % 90)) && (y0..y1).contains(&(i as u32 / 90));
+                Solid::draw(
+                    &mut target,
+                    &scene,
+                    &view,
+                    scene.live(),
+                    &Options { threads, window, ..Options::default() },
+                );
+                let inside =
+                    |i: usize| (x0..x1).contains(&(i as u32 % 90)) && (y0..y1).contains(&(i as u32 / 90));
                 assert!((0..90 * 90).filter(|&i| inside(i)).all(|i| target.item[i] == whole.item[i]));
             }
         }
@@ -85,7 +112,8 @@ fn windows_put_together_are_the_image() {
     }
 }
 
-/// A primitive that the near plane cuts falls into parts; where the pyramid hides one of them, another may show.
+/// A primitive that the near plane cuts falls into parts; where the pyramid hides one of them, another may
+/// show.
 #[test]
 fn parts_of_a_primitive_are_not_judged() {
     let mut dice = Dice::new(8);
@@ -93,18 +121,35 @@ fn parts_of_a_primitive_are_not_judged() {
     let mut cut = 0;
     for _ in 0..400 {
         let edge = f64::from(dice.between(8.0, 56.0));
-        let [a, b, c, d] = [(-4.0, -4.0), (-4.0, 68.0), (edge, 68.0), (edge, -4.0)].map(|(x, y)| at_px(64, x, y, 0.2));
-        let [p, q] =
-            [(); 2].map(|()| at_px(64, f64::from(dice.between(0.0, 64.0)), f64::from(dice.between(0.0, 64.0)), f64::from(dice.between(1.0, 20.0))));
+        let [a, b, c, d] =
+            [(-4.0, -4.0), (-4.0, 68.0), (edge, 68.0), (edge, -4.0)].map(|(x, y)| at_px(64, x, y, 0.2));
+        let [p, q] = [(); 2].map(|()| {
+            at_px(
+                64,
+                f64::from(dice.between(0.0, 64.0)),
+                f64::from(dice.between(0.0, 64.0)),
+                f64::from(dice.between(1.0, 20.0)),
+            )
+        });
         let behind = Vec3::new(dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), dice.between(0.5, 5.0));
         let scene = soup(&[[a, b, c], [a, c, d], [p, q, behind]]);
         let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
         pyramid.clear(64, 64, 1.0 / view.eye.far);
         for part in scene.live().chunks(2) {
-            Solid::sift(&mut target, Sieve { pyramid: &mut pyramid, hidden: &mut hidden }, &scene, &view, part, &Options::default());
+            Solid::sift(
+                &mut target,
+                Sieve { pyramid: &mut pyramid, hidden: &mut hidden },
+                &scene,
+                &view,
+                part,
+                &Options::default(),
+            );
             pyramid.refresh_all(&target.depth);
         }
-        cut += usize::from(Solid::extent(&scene, &view, PrimId(2), &Options::default()).is_none() && target.item.contains(&2));
+        cut += usize::from(
+            Solid::extent(&scene, &view, PrimId(2), &Options::default()).is_none()
+                && target.item.contains(&2),
+        );
         assert!(hidden.iter().all(|h| !target.item.contains(&h.0)), "what is called hidden shows");
     }
     assert!(cut > 100, "{cut} show and are cut");

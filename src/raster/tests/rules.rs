@@ -9,7 +9,10 @@ fn flat_triangle(size: u32, corners: [[f64; 2]; 3]) -> [Vec3; 3] {
 }
 
 fn covered(target: &Target) -> Vec<(u32, u32)> {
-    (0..target.height).flat_map(|y| (0..target.width).map(move |x| (x, y))).filter(|&(x, y)| pick(target, x, y).is_some()).collect()
+    (0..target.height)
+        .flat_map(|y| (0..target.width).map(move |x| (x, y)))
+        .filter(|&(x, y)| pick(target, x, y).is_some())
+        .collect()
 }
 
 #[test]
@@ -39,12 +42,22 @@ fn top_left_rule_by_hand() {
 
 #[test]
 fn left_rule_of_segments_by_hand() {
-    let eye = Eye { position: Vec2::ZERO, target: Vec2::Y, up: Vec2::Y, fov: std::f32::consts::FRAC_PI_2, near: 1.0, far: 10.0 };
+    let eye = Eye {
+        position: Vec2::ZERO,
+        target: Vec2::Y,
+        up: Vec2::Y,
+        fov: std::f32::consts::FRAC_PI_2,
+        near: 1.0,
+        far: 10.0,
+    };
     let view = View { eye, width: 8, height: 1 };
     let at = |x: f32| Vec2::new((x / 4.0 - 1.0) * 4.0, 4.0);
     let shown = |a: f32, b: f32| {
         let scene = scene_of::<Flat>(vec![at(a), at(b)], vec![[0, 1]]);
-        covered(&assert_equal(&scene, &view, scene.live(), false, "by hand")).iter().map(|c| c.0).collect::<Vec<_>>()
+        covered(&assert_equal(&scene, &view, scene.live(), false, "by hand"))
+            .iter()
+            .map(|c| c.0)
+            .collect::<Vec<_>>()
     };
     assert_eq!(shown(1.5, 3.5), [1, 2]);
     assert_eq!(shown(3.5, 1.5), [1, 2]);
@@ -66,8 +79,10 @@ fn cut_square(dice: &mut Dice, size: u32, cells: u32, on_centers: bool) -> Vec<[
         [f64::from(i) * step + shift[0], f64::from(j) * step + shift[1]]
     };
     let side = cells + 1;
-    let grid: Vec<[f64; 2]> =
-        (0..side * side).map(|k| (k % side, k / side)).map(|(i, j)| point(i, j, i > 0 && j > 0 && i < cells && j < cells)).collect();
+    let grid: Vec<[f64; 2]> = (0..side * side)
+        .map(|k| (k % side, k / side))
+        .map(|(i, j)| point(i, j, i > 0 && j > 0 && i < cells && j < cells))
+        .collect();
     let mut triangles = Vec::new();
     for k in (0..cells * cells).map(|k| (k / cells * side + k % cells) as usize) {
         let q = [grid[k], grid[k + 1], grid[k + 1 + side as usize], grid[k + side as usize]];
@@ -97,7 +112,10 @@ fn every_pixel_of_a_cut_square_has_one_owner() {
         let cells = 1 + dice.below(12);
         let scene = soup(&cut_square(dice, size, cells, round % 2 == 0 && cells < 5));
         let view = straight_view(size, 1.0, 10.0);
-        assert!(owners(&scene, &view).iter().all(|&n| n == 1), "round {round}: a pixel has no owner or several");
+        assert!(
+            owners(&scene, &view).iter().all(|&n| n == 1),
+            "round {round}: a pixel has no owner or several"
+        );
     }
 }
 
@@ -117,7 +135,8 @@ fn fans_across_the_near_plane_and_off_screen_are_watertight() {
                 hub + Vec3::new(turn.cos(), 0.0, turn.sin()) * reach * dice.between(0.5, 1.0)
             })
             .collect();
-        let triangles: Vec<_> = (0..spokes as usize).map(|k| [hub, rim[k], rim[(k + 1) % spokes as usize]]).collect();
+        let triangles: Vec<_> =
+            (0..spokes as usize).map(|k| [hub, rim[k], rim[(k + 1) % spokes as usize]]).collect();
         let scene = soup(&triangles);
         let view = straight_view(60, 0.5, 1e6);
         let count = owners(&scene, &view);
@@ -167,7 +186,8 @@ fn order_and_hidden_members_leave_no_trace() {
 /// if the ray runs too close to an edge or two hits are too close to tell.
 fn ray_cast(triangles: &[[Vec3; 3]], view: &View<Solid>, x: u32, y: u32) -> Option<Option<(u32, f64)>> {
     let size = f64::from(view.width);
-    let ray = DVec3::new((2.0 * f64::from(x) + 1.0) / size - 1.0, 1.0 - (2.0 * f64::from(y) + 1.0) / size, -1.0);
+    let ray =
+        DVec3::new((2.0 * f64::from(x) + 1.0) / size - 1.0, 1.0 - (2.0 * f64::from(y) + 1.0) / size, -1.0);
     let mut hits: Vec<(f64, u32)> = Vec::new();
     for (id, t) in triangles.iter().enumerate() {
         let [a, b, c] = t.map(|p| p.as_dvec3());
@@ -178,7 +198,8 @@ fn ray_cast(triangles: &[[Vec3; 3]], view: &View<Solid>, x: u32, y: u32) -> Opti
         let (s, t, w) = ((-a).dot(p) / det, ray.dot(q) / det, v.dot(q) / det);
         let (near, far) = (f64::from(view.eye.near), f64::from(view.eye.far));
         // Barycentric coordinates change by this much over about a pixel's tenth at the hit.
-        let slack = 0.1 * (2.0 / size) * w.abs() * (u.length().max(v.length()) + (c - b).length()) / u.cross(v).length().max(1e-9)
+        let slack = 0.1 * (2.0 / size) * w.abs() * (u.length().max(v.length()) + (c - b).length())
+            / u.cross(v).length().max(1e-9)
             * (ray.length() * u.cross(v).length() / det.abs().max(1e-12));
         let least = s.min(t).min(1.0 - s - t);
         if least < -slack || w < near * 0.98 || w > far * 1.02 {
@@ -214,7 +235,10 @@ fn near_crossing_triangles_agree_with_rays() {
             if let Some((_, w)) = expected {
                 hits += 1;
                 let depth = 1.0 / f64::from(image.depth[(y * 32 + x) as usize]);
-                assert!((depth - w).abs() < 0.03 * w, "round {round}, pixel ({x}, {y}): depth {depth}, by ray {w}");
+                assert!(
+                    (depth - w).abs() < 0.03 * w,
+                    "round {round}, pixel ({x}, {y}): depth {depth}, by ray {w}"
+                );
             }
         }
     }
@@ -227,19 +251,34 @@ fn outside_the_frustum_means_no_fragment() {
     let mut outside = 0;
     for _ in 0..20_000 {
         let position = dice.point(100.0);
-        let eye = Eye { position, target: position + dice.point(1.0), up: dice.point(1.0), fov: dice.between(0.1, 2.5), near: 0.25, far: 50.0 };
+        let eye = Eye {
+            position,
+            target: position + dice.point(1.0),
+            up: dice.point(1.0),
+            fov: dice.between(0.1, 2.5),
+            near: 0.25,
+            far: 50.0,
+        };
         let view = View { eye, width: 64, height: 16 };
         // Triangles just beyond a plane: from the volume's corners, moved outwards by little or nothing.
         let corners = Frustum::corners(&view.projection(), eye.near, eye.far);
         let frustum: Frustum<Vec3> = view.frustum();
         let (normal, offset) = frustum.plane(dice.below(6) as usize);
-        let on: Vec<Vec3> = corners.into_iter().filter(|&c| (normal.dot(c - position) + offset).abs() < 0.01).collect();
+        let on: Vec<Vec3> =
+            corners.into_iter().filter(|&c| (normal.dot(c - position) + offset).abs() < 0.01).collect();
         let by = [0.0, 1e-6, 1e-4, 1e-2][dice.below(4) as usize];
-        let triangle = [(); 3].map(|()| on[dice.below(on.len() as u32) as usize] + dice.point(0.02) * by - normal * by * dice.between(0.0, 30.0));
+        let triangle = [(); 3].map(|()| {
+            on[dice.below(on.len() as u32) as usize] + dice.point(0.02) * by
+                - normal * by * dice.between(0.0, 30.0)
+        });
         let scene = soup(&[triangle]);
         if let FrustumTest::Outside(_) = frustum.test(&scene.bounds(), Frustum::<Vec3>::ALL) {
             outside += 1;
-            assert_eq!(visible(&render(&scene, &view, scene.live())), [], "{triangle:?} is outside and shows");
+            assert_eq!(
+                visible(&render(&scene, &view, scene.live())),
+                [],
+                "{triangle:?} is outside and shows"
+            );
         }
     }
     assert!(outside > 800, "too few are outside: {outside}");
@@ -252,7 +291,8 @@ fn far_and_near_planes_hold_per_fragment() {
     let wall = [Vec3::new(1.0, -9.0, -0.5), Vec3::new(1.0, 9.0, -0.5), Vec3::new(1.0, 0.0, -40.0)];
     let scene = soup(&[wall]);
     let image = assert_equal(&scene, &view, scene.live(), false, "wall");
-    let depths: Vec<f32> = image.item.iter().zip(&image.depth).filter(|p| *p.0 == 0).map(|p| 1.0 / p.1).collect();
+    let depths: Vec<f32> =
+        image.item.iter().zip(&image.depth).filter(|p| *p.0 == 0).map(|p| 1.0 / p.1).collect();
     let (least, most) = depths.iter().fold((f32::MAX, 0f32), |(l, m), &d| (l.min(d), m.max(d)));
     assert!((2.0..2.3).contains(&least) && most <= 8.0 && most > 7.0, "depths {least} to {most}");
 }

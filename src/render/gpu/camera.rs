@@ -26,35 +26,60 @@ pub struct SpaceCamera {
 
 impl From<Eye<Solid>> for SpaceCamera {
     fn from(eye: Eye<Solid>) -> Self {
-        Self { position: eye.position, target: eye.target, up: eye.up, fov: eye.fov, near: eye.near, far: eye.far }
+        Self {
+            position: eye.position,
+            target: eye.target,
+            up: eye.up,
+            fov: eye.fov,
+            near: eye.near,
+            far: eye.far,
+        }
     }
 }
 
 impl SpaceCamera {
     /// The map from world to clip space for a picture of this size; the same arithmetic that culling uses.
     pub fn projection(&self, size_px: [u32; 2]) -> Projection<Vec3> {
-        let eye = Eye { position: self.position, target: self.target, up: self.up, fov: self.fov, near: self.near, far: self.far };
+        let eye = Eye {
+            position: self.position,
+            target: self.target,
+            up: self.up,
+            fov: self.fov,
+            near: self.near,
+            far: self.far,
+        };
         View::<Solid> { eye, width: size_px[0].max(1), height: size_px[1].max(1) }.projection()
     }
     /// Where a world point falls in the picture; `None` before the near plane.
     pub fn project(&self, point: Vec3, size_px: [u32; 2]) -> Option<Vec2> {
         let clip = self.projection(size_px).clip(point);
         let ndc = (clip.z >= self.near).then(|| clip.truncate() / clip.z)?;
-        Some(Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * Vec2::new(size_px[0] as f32, size_px[1] as f32))
+        Some(
+            Vec2::new(ndc.x * 0.5 + 0.5, 0.5 - ndc.y * 0.5) * Vec2::new(size_px[0] as f32, size_px[1] as f32),
+        )
     }
     /// Origin and unit direction of the ray through a pixel position.
     pub fn ray(&self, at_px: Vec2, size_px: [u32; 2]) -> (Vec3, Vec3) {
         let rows = self.projection(size_px).rows;
-        let ndc = Vec2::new(at_px.x / size_px[0].max(1) as f32 * 2.0 - 1.0, 1.0 - at_px.y / size_px[1].max(1) as f32 * 2.0);
+        let ndc = Vec2::new(
+            at_px.x / size_px[0].max(1) as f32 * 2.0 - 1.0,
+            1.0 - at_px.y / size_px[1].max(1) as f32 * 2.0,
+        );
         // The rows are orthogonal; dividing by the squared length undoes their scale.
-        let direction = rows[2] + rows[0] * (ndc.x / rows[0].length_squared()) + rows[1] * (ndc.y / rows[1].length_squared());
+        let direction = rows[2]
+            + rows[0] * (ndc.x / rows[0].length_squared())
+            + rows[1] * (ndc.y / rows[1].length_squared());
         (self.position, direction.normalize())
     }
     /// Clip z is `constant + slope · depth`: 1 at the near plane, 0 at the far plane or at infinity. A
     /// floating-point buffer is then about equally fine at every depth.
     pub(super) fn reversed_depth(&self) -> [f32; 2] {
         let (near, far) = (f64::from(self.near), f64::from(self.far));
-        if far.is_finite() { [(near * far / (far - near)) as f32, (-near / (far - near)) as f32] } else { [self.near, 0.0] }
+        if far.is_finite() {
+            [(near * far / (far - near)) as f32, (-near / (far - near)) as f32]
+        } else {
+            [self.near, 0.0]
+        }
     }
 }
 
@@ -62,7 +87,14 @@ impl SpaceCamera {
 mod tests {
     use super::*;
 
-    const CAMERA: SpaceCamera = SpaceCamera { position: Vec3::new(3.0, 2.0, 5.0), target: Vec3::ZERO, up: Vec3::Y, fov: 0.9, near: 0.1, far: 5000.0 };
+    const CAMERA: SpaceCamera = SpaceCamera {
+        position: Vec3::new(3.0, 2.0, 5.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        fov: 0.9,
+        near: 0.1,
+        far: 5000.0,
+    };
 
     #[test]
     fn a_ray_goes_through_what_is_projected_on_its_pixel() {

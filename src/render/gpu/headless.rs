@@ -9,7 +9,10 @@ use eframe::wgpu;
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
     /// No driver.
-    #[error("no graphics adapter found ({reason}); 3D pictures need Vulkan or OpenGL, which the package mesa-vulkan-drivers brings in software")]
+    #[error(
+        "no graphics adapter found ({reason}); 3D pictures need Vulkan or OpenGL, which the package \
+         mesa-vulkan-drivers brings in software"
+    )]
     NoAdapter {
         /// What the adapter search said.
         reason: String,
@@ -61,11 +64,22 @@ pub fn headless() -> Result<Headless, GpuError> {
     let info = adapter.get_info();
     let limits = adapter.limits();
     // No more than WebGL offers, apart from sizes, so that what works here works wherever the explorer does.
-    let required_limits =
-        wgpu::Limits { max_buffer_size: limits.max_buffer_size, ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(limits) };
-    let request = adapter.request_device(&wgpu::DeviceDescriptor { label: Some("headless"), required_limits, ..Default::default() });
-    let (device, queue) = wait(request).map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
-    Ok(Headless { device, queue, adapter: format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info) })
+    let required_limits = wgpu::Limits {
+        max_buffer_size: limits.max_buffer_size,
+        ..wgpu::Limits::downlevel_webgl2_defaults().using_resolution(limits)
+    };
+    let request = adapter.request_device(&wgpu::DeviceDescriptor {
+        label: Some("headless"),
+        required_limits,
+        ..Default::default()
+    });
+    let (device, queue) = wait(request)
+        .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+    Ok(Headless {
+        device,
+        queue,
+        adapter: format!("{} ({:?}, {} {})", info.name, info.backend, info.driver, info.driver_info),
+    })
 }
 
 /// Runs a future to its end. The ones used here are ready at once outside a browser.
@@ -81,7 +95,11 @@ fn wait<T>(future: impl Future<Output = T>) -> T {
 }
 
 /// The pixels of a texture of premultiplied RGBA bytes, as they are, row 0 at the top.
-pub(super) fn read(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
+pub(super) fn read(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &wgpu::Texture,
+) -> Result<Vec<u8>, GpuError> {
     let (width, height) = (texture.width(), texture.height());
     let row = (width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {

@@ -109,7 +109,11 @@ impl SpaceLayer {
         for prims in scene.live().chunks(CHUNK) {
             let upload = |label, contents: &[u8]| {
                 let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
-                device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+                device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                    label: Some(label),
+                    contents,
+                    usage,
+                })
             };
             let corners = upload("corners", bytemuck::cast_slice(&pack::corners(scene, prims, &inner)));
             let stamps = upload("stamps", bytemuck::cast_slice(&pack::stamps(prims, None, &[])));
@@ -127,8 +131,17 @@ impl SpaceLayer {
 
     /// Uploads when everything was decided. Once a film; `wrong` are the triangles, ascending, that were
     /// culled although they are visible. Stamps of another scene than the one set are not taken.
-    pub fn set_film(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, stamps: &Stamps, hierarchy: &dyn Hierarchy<Solid>, wrong: &[PrimId]) {
-        let Some(scene) = self.scene.as_ref().filter(|s| s.prim_count() == stamps.prims().len()) else { return };
+    pub fn set_film(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        stamps: &Stamps,
+        hierarchy: &dyn Hierarchy<Solid>,
+        wrong: &[PrimId],
+    ) {
+        let Some(scene) = self.scene.as_ref().filter(|s| s.prim_count() == stamps.prims().len()) else {
+            return;
+        };
         for (chunk, prims) in self.chunks.iter_mut().zip(scene.live().chunks(CHUNK)) {
             let words = pack::stamps(prims, Some(stamps), wrong);
             queue.write_buffer(&chunk.stamps, 0, bytemuck::cast_slice(&words));
@@ -142,7 +155,8 @@ impl SpaceLayer {
         }
         let (words, levels) = pack::nodes(stamps, hierarchy);
         let bounds = (0..hierarchy.node_count() as u32).map(|n| hierarchy.bounds(NodeId(n))).collect();
-        self.nodes = Nodes { buffer: instances(device, queue, "nodes", bytemuck::cast_slice(&words)), levels, bounds };
+        self.nodes =
+            Nodes { buffer: instances(device, queue, "nodes", bytemuck::cast_slice(&words)), levels, bounds };
         self.revision += 1;
     }
 
@@ -174,9 +188,13 @@ impl SpaceLayer {
     ) -> bool {
         let most = device.limits().max_texture_dimension_2d;
         let size_px = size_px.map(|v| v.clamp(1, most));
-        let mut target =
-            self.targets.remove(&viewport).filter(|t| t.size_px == size_px).unwrap_or_else(|| Target::new(device, &self.pipelines, size_px));
-        let same = target.shows.as_ref().is_some_and(|(c, s, r)| c == camera && s == style && *r == self.revision);
+        let mut target = self
+            .targets
+            .remove(&viewport)
+            .filter(|t| t.size_px == size_px)
+            .unwrap_or_else(|| Target::new(device, &self.pipelines, size_px));
+        let same =
+            target.shows.as_ref().is_some_and(|(c, s, r)| c == camera && s == style && *r == self.revision);
         if !same {
             let tile = Tile { whole_px: size_px, origin_px: [0, 0], size_px };
             target.prepare(device, queue, camera, style, tile, &self.outlines(&style.highlights));
@@ -205,7 +223,12 @@ impl SpaceLayer {
     ///
     /// # Errors
     /// [`GpuError::Read`].
-    pub fn read_rgba(&self, device: &wgpu::Device, queue: &wgpu::Queue, viewport: ViewportId) -> Result<Option<snapshot::Picture>, GpuError> {
+    pub fn read_rgba(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        viewport: ViewportId,
+    ) -> Result<Option<snapshot::Picture>, GpuError> {
         let Some(target) = self.targets.get(&viewport) else { return Ok(None) };
         let rgba = snapshot::straight(headless::read(device, queue, &target.color)?);
         Ok(Some((target.size_px[0], target.size_px[1], rgba)))
@@ -213,7 +236,11 @@ impl SpaceLayer {
 
     /// Bytes on the device: buffers, then targets.
     pub fn bytes(&self) -> (usize, usize) {
-        let chunks: u64 = self.chunks.iter().map(|c| c.corners.size() + c.stamps.size() + c.order.as_ref().map_or(0, |o| o.0.size())).sum();
+        let chunks: u64 = self
+            .chunks
+            .iter()
+            .map(|c| c.corners.size() + c.stamps.size() + c.order.as_ref().map_or(0, |o| o.0.size()))
+            .sum();
         let small = [&self.nodes.buffer, &self.marks.segments, &self.marks.areas];
         let small: u64 = small.into_iter().flatten().map(wgpu::Buffer::size).sum();
         ((chunks + small) as usize, self.targets.values().map(Target::bytes).sum())
@@ -224,7 +251,9 @@ impl SpaceLayer {
         let mut to = Vec::new();
         let mut bounds = |b: Option<&Aabb<Vec3>>, role| {
             let b = b.filter(|b| !b.is_empty());
-            to.extend(b.into_iter().flat_map(|b| Aabb::<Vec3>::edges().map(move |(i, j)| pack::segment(b.corner(i), b.corner(j), role))));
+            to.extend(b.into_iter().flat_map(|b| {
+                Aabb::<Vec3>::edges().map(move |(i, j)| pack::segment(b.corner(i), b.corner(j), role))
+            }));
         };
         let mut sides = Vec::new();
         for &(subject, role) in highlights {
@@ -232,9 +261,14 @@ impl SpaceLayer {
                 Subject::Node(n) => bounds(self.nodes.bounds.get(n.at()), role),
                 Subject::Object(ObjectId(o)) => bounds(self.objects.get(o as usize), role),
                 Subject::Prim(p) => {
-                    let Some(scene) = self.scene.as_ref().filter(|s| p.at() < s.prim_count()) else { continue };
+                    let Some(scene) = self.scene.as_ref().filter(|s| p.at() < s.prim_count()) else {
+                        continue;
+                    };
                     let points: Vec<_> = scene.prim_points(p).collect();
-                    sides.extend((0..points.len()).map(|i| pack::segment(points[i], points[(i + 1) % points.len()], role)));
+                    sides.extend(
+                        (0..points.len())
+                            .map(|i| pack::segment(points[i], points[(i + 1) % points.len()], role)),
+                    );
                 }
                 Subject::None | Subject::Plane(_) | Subject::Eye => {}
             }
@@ -290,7 +324,9 @@ impl SpaceLayer {
             NodeBoxes::Frontier => (0, u32::MAX),
             NodeBoxes::Levels(first, last) => (first, last),
         };
-        let start = |level: u32| self.nodes.levels.get(level as usize).or(self.nodes.levels.last()).copied().unwrap_or(0);
+        let start = |level: u32| {
+            self.nodes.levels.get(level as usize).or(self.nodes.levels.last()).copied().unwrap_or(0)
+        };
         let range = start(first)..start(last.saturating_add(1));
         if range.is_empty() {
             return;
@@ -333,7 +369,11 @@ fn instances(device: &wgpu::Device, queue: &wgpu::Queue, label: &str, bytes: &[u
 }
 
 /// A pass over a viewport's target, cleared.
-fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &Target, style: &SpaceStyle) -> wgpu::RenderPass<'a> {
+fn begin<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    target: &Target,
+    style: &SpaceStyle,
+) -> wgpu::RenderPass<'a> {
     let [r, g, b] = style.palette.paper.map(|c| f64::from(c) / 255.0);
     let clear = if style.transparent { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -346,7 +386,10 @@ fn begin<'a>(encoder: &'a mut wgpu::CommandEncoder, target: &Target, style: &Spa
         })],
         depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
             view: &target.depth_view,
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Discard,
+            }),
             stencil_ops: None,
         }),
         ..Default::default()

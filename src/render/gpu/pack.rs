@@ -31,7 +31,11 @@ const HEAD: u32 = 32;
 
 /// Step in the upper 28 bits (a film is capped far below), role in the lower four.
 fn stamp_word(stamp: Stamp, wrong: bool) -> u32 {
-    let role = if wrong && stamp.verdict != Verdict::Visible { Role::Wrong } else { role_of(State::Decided(stamp.verdict)) };
+    let role = if wrong && stamp.verdict != Verdict::Visible {
+        Role::Wrong
+    } else {
+        role_of(State::Decided(stamp.verdict))
+    };
     step_word(stamp.step) << 4 | role as u32
 }
 /// A step that the shader can compare; what never happens stays later than every step.
@@ -43,7 +47,9 @@ pub(super) const NEVER: u32 = (1 << 28) - 1;
 
 /// Stamps of three corners for each of `prims`; `wrong` is ascending.
 pub(super) fn stamps(prims: &[PrimId], stamps: Option<&Stamps>, wrong: &[PrimId]) -> Vec<[u32; 3]> {
-    let word = |p: &PrimId| stamps.map_or(NEVER << 4, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()));
+    let word = |p: &PrimId| {
+        stamps.map_or(NEVER << 4, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()))
+    };
     prims.iter().map(|p| [word(p); 3]).collect()
 }
 
@@ -57,7 +63,11 @@ pub(super) struct Order {
 impl Order {
     /// The order, and the corner numbers in it, three a triangle.
     pub fn of(stamps: &[[u32; 3]]) -> (Self, Vec<[u32; 3]>) {
-        let mut keys: Vec<u64> = stamps.iter().enumerate().map(|(i, s)| u64::from(s[0].rotate_right(4)) << 32 | i as u64).collect();
+        let mut keys: Vec<u64> = stamps
+            .iter()
+            .enumerate()
+            .map(|(i, s)| u64::from(s[0].rotate_right(4)) << 32 | i as u64)
+            .collect();
         keys.sort_unstable();
         let mut runs: Vec<(u32, Vec<u32>)> = Vec::new();
         for key in &keys {
@@ -114,7 +124,11 @@ const AMBIENT: f32 = 0.62;
 fn look_word(linear: [f32; 3], normal: Vec3, inner: u8) -> u32 {
     let shade = AMBIENT + (1.0 - AMBIENT) * normal.normalize_or(LIGHT).dot(LIGHT).abs().min(1.0);
     let channels = linear.map(|c| (encode(c) * 127.0).round() as u32);
-    channels[0] | channels[1] << 7 | channels[2] << 14 | ((shade * 255.0).round() as u32) << 21 | u32::from(inner & 7) << 29
+    channels[0]
+        | channels[1] << 7
+        | channels[2] << 14
+        | ((shade * 255.0).round() as u32) << 21
+        | u32::from(inner & 7) << 29
 }
 /// Linear light to an sRGB value, 0..1.
 fn encode(linear: f32) -> f32 {
@@ -158,7 +172,17 @@ pub(super) fn nodes(stamps: &Stamps, hierarchy: &dyn Hierarchy<Solid>) -> (Vec<N
         let (low, high) = (hierarchy.bounds(n).min, hierarchy.bounds(n).max);
         let leaf = hierarchy.children(n).is_empty();
         let [a, b] = [low, high].map(|v| v.to_array().map(f32::to_bits));
-        [a[0], a[1], a[2], b[0], b[1], b[2], step_word(stamps.entered(n)), stamp_word(stamps.nodes()[n.at()], false), leaf.into()]
+        [
+            a[0],
+            a[1],
+            a[2],
+            b[0],
+            b[1],
+            b[2],
+            step_word(stamps.entered(n)),
+            stamp_word(stamps.nodes()[n.at()], false),
+            leaf.into(),
+        ]
     });
     let words: Vec<_> = words.collect();
     starts.push(ids.len() as u32);
@@ -230,7 +254,9 @@ mod tests {
     #[test]
     fn a_stamp_keeps_order_and_role() {
         let stamp = |step, verdict| stamp_word(Stamp { step, verdict }, false);
-        assert!(stamp(7, Verdict::OverBudget) >> 4 == 7 && stamp(7, Verdict::Hidden) & 15 == Role::Hidden as u32);
+        assert!(
+            stamp(7, Verdict::OverBudget) >> 4 == 7 && stamp(7, Verdict::Hidden) & 15 == Role::Hidden as u32
+        );
         assert!(stamp(Stamp::NEVER, Verdict::Partial) >> 4 > 10_000_000);
         assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Outside }, true) & 15, Role::Wrong as u32);
         assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Visible }, true) & 15, Role::Visible as u32);
@@ -244,15 +270,28 @@ mod tests {
         for _ in 0..50 {
             let mut stamp = |_| {
                 let (step, verdict) = (random.next_u32() % 40, ends[random.next_u32() as usize % 4]);
-                [stamp_word(if step < 8 { Stamp { step: Stamp::NEVER, verdict: Verdict::Partial } } else { Stamp { step, verdict } }, false); 3]
+                [stamp_word(
+                    if step < 8 {
+                        Stamp { step: Stamp::NEVER, verdict: Verdict::Partial }
+                    } else {
+                        Stamp { step, verdict }
+                    },
+                    false,
+                ); 3]
             };
             let stamps: Vec<_> = (0..60).map(&mut stamp).collect();
             let (order, indices) = Order::of(&stamps);
             for step in [0, 8, 20, 39, NEVER - 1] {
                 let shown = random.next_u32() & 0xffff;
                 let role = |w: u32| if w >> 4 <= step { w & 15 } else { Role::Scene as u32 };
-                let expected: Vec<u32> = (0..60).filter(|&i| shown >> role(stamps[i as usize][0]) & 1 == 1).collect();
-                let mut found: Vec<u32> = order.shown(step, shown).into_iter().flatten().map(|t| indices[t as usize][0] / 3).collect();
+                let expected: Vec<u32> =
+                    (0..60).filter(|&i| shown >> role(stamps[i as usize][0]) & 1 == 1).collect();
+                let mut found: Vec<u32> = order
+                    .shown(step, shown)
+                    .into_iter()
+                    .flatten()
+                    .map(|t| indices[t as usize][0] / 3)
+                    .collect();
                 found.sort_unstable();
                 assert_eq!(found, expected);
             }
@@ -273,7 +312,12 @@ mod tests {
         let mut drawing = Drawing::default();
         let p = |x: f32| Vec3::new(x, 0.0, 0.0);
         drawing.push(Layer::Eye, Role::Eye, Subject::Eye, Mark::Arrow(p(0.0), p(1.0)));
-        drawing.push(Layer::Areas, Role::Evidence, Subject::None, Mark::Area(vec![p(0.0), p(1.0), p(2.0), p(3.0)]));
+        drawing.push(
+            Layer::Areas,
+            Role::Evidence,
+            Subject::None,
+            Mark::Area(vec![p(0.0), p(1.0), p(2.0), p(3.0)]),
+        );
         drawing.outline(Layer::Frustum, Role::Eye, Subject::Eye, [p(0.0), p(1.0), p(2.0)]);
         let words = marks(&drawing);
         assert_eq!(words.layers, [(Layer::Areas, 0, 0), (Layer::Frustum, 4, 6), (Layer::Eye, 7, 6)]);

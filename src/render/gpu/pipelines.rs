@@ -43,7 +43,11 @@ impl Pipelines {
             entries: &[entry(
                 0,
                 ShaderStages::VERTEX_FRAGMENT,
-                wgpu::BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset: false, min_binding_size: None },
+                wgpu::BindingType::Buffer {
+                    ty: BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
             )],
         });
         let layout = pipeline_layout(device, &frame_layout);
@@ -52,19 +56,54 @@ impl Pipelines {
         let build = |plan: Plan<'_>| pipeline(device, &layout, &plan);
 
         let corner = [
-            buffer(16, VertexStepMode::Vertex, &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32] }),
+            buffer(
+                16,
+                VertexStepMode::Vertex,
+                &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32] },
+            ),
             buffer(4, VertexStepMode::Vertex, &const { wgpu::vertex_attr_array![2 => Uint32] }),
         ];
         let triangles = |entries, opaque| {
-            [true, false].map(|backs| build(Plan { module: &space, entries, buffers: &corner, backs, opaque, depth: CompareFunction::Greater }))
+            [true, false].map(|backs| {
+                build(Plan {
+                    module: &space,
+                    entries,
+                    buffers: &corner,
+                    backs,
+                    opaque,
+                    depth: CompareFunction::Greater,
+                })
+            })
         };
         let over = |entries, buffers: &[_]| {
-            let plan = |fragment, depth| Plan { module: &lines, entries: (entries, fragment), buffers, backs: true, opaque: false, depth };
-            [build(plan("fs_front", CompareFunction::GreaterEqual)), build(plan("fs_behind", CompareFunction::Less))]
+            let plan = |fragment, depth| Plan {
+                module: &lines,
+                entries: (entries, fragment),
+                buffers,
+                backs: true,
+                opaque: false,
+                depth,
+            };
+            [
+                build(plan("fs_front", CompareFunction::GreaterEqual)),
+                build(plan("fs_behind", CompareFunction::Less)),
+            ]
         };
-        let segment = [buffer(28, VertexStepMode::Instance, &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32] })];
-        let node = [buffer(36, VertexStepMode::Instance, &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32x3] })];
-        let area = [buffer(16, VertexStepMode::Vertex, &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32] })];
+        let segment = [buffer(
+            28,
+            VertexStepMode::Instance,
+            &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32] },
+        )];
+        let node = [buffer(
+            36,
+            VertexStepMode::Instance,
+            &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Uint32x3] },
+        )];
+        let area = [buffer(
+            16,
+            VertexStepMode::Vertex,
+            &const { wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32] },
+        )];
         let (blit_layout, blit) = blit(device, blit_format);
         Self {
             whole: triangles(("vs_opaque", "fs_whole"), true),
@@ -81,7 +120,8 @@ impl Pipelines {
             segments: over("vs_segment", &segment),
             nodes: over("vs_node", &node),
             blit,
-            nearest: device.create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() }),
+            nearest: device
+                .create_sampler(&wgpu::SamplerDescriptor { label: Some("nearest"), ..Default::default() }),
             frame_layout,
             blit_layout,
         }
@@ -89,19 +129,30 @@ impl Pipelines {
 }
 
 fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {
-    device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source: wgpu::ShaderSource::Wgsl(source.into()) })
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    })
 }
 
 fn entry(binding: u32, visibility: ShaderStages, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-fn buffer(array_stride: u64, step_mode: VertexStepMode, attributes: &[wgpu::VertexAttribute]) -> Option<wgpu::VertexBufferLayout<'_>> {
+fn buffer(
+    array_stride: u64,
+    step_mode: VertexStepMode,
+    attributes: &[wgpu::VertexAttribute],
+) -> Option<wgpu::VertexBufferLayout<'_>> {
     Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes })
 }
 
 fn pipeline_layout(device: &wgpu::Device, group: &wgpu::BindGroupLayout) -> wgpu::PipelineLayout {
-    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor { label: None, bind_group_layouts: &[Some(group)], immediate_size: 0 })
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(group)],
+        immediate_size: 0,
+    })
 }
 
 fn pipeline(device: &wgpu::Device, layout: &wgpu::PipelineLayout, plan: &Plan<'_>) -> wgpu::RenderPipeline {
@@ -115,7 +166,10 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::PipelineLayout, plan: &Plan<'_
             compilation_options: Default::default(),
             buffers: plan.buffers,
         },
-        primitive: wgpu::PrimitiveState { cull_mode: (!plan.backs).then_some(Face::Back), ..Default::default() },
+        primitive: wgpu::PrimitiveState {
+            cull_mode: (!plan.backs).then_some(Face::Back),
+            ..Default::default()
+        },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(plan.opaque),
@@ -128,7 +182,11 @@ fn pipeline(device: &wgpu::Device, layout: &wgpu::PipelineLayout, plan: &Plan<'_
             module: plan.module,
             entry_point: Some(plan.entries.1),
             compilation_options: Default::default(),
-            targets: &[Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend, write_mask: wgpu::ColorWrites::ALL })],
+            targets: &[Some(wgpu::ColorTargetState {
+                format: COLOR_FORMAT,
+                blend,
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
         }),
         multiview_mask: None,
         cache: None,
@@ -149,11 +207,20 @@ fn blit(device: &wgpu::Device, format: wgpu::TextureFormat) -> (wgpu::BindGroupL
     });
     let module = module(device, "blit", include_str!("blit.wgsl"));
     let fragment = if format.is_srgb() { "fs_linear" } else { "fs_encoded" };
-    let target = wgpu::ColorTargetState { format, blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), write_mask: wgpu::ColorWrites::ALL };
+    let target = wgpu::ColorTargetState {
+        format,
+        blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+        write_mask: wgpu::ColorWrites::ALL,
+    };
     let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("blit"),
         layout: Some(&pipeline_layout(device, &group)),
-        vertex: wgpu::VertexState { module: &module, entry_point: Some("vs"), compilation_options: Default::default(), buffers: &[] },
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("vs"),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
         primitive: Default::default(),
         depth_stencil: None,
         multisample: Default::default(),

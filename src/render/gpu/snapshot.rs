@@ -46,13 +46,18 @@ impl SpaceLayer {
         let mut rgba = vec![0; width as usize * height as usize * 4];
         for y in (0..height).step_by(tile_px[1] as usize) {
             for x in (0..width).step_by(tile_px[0] as usize) {
-                let tile = Tile { whole_px: size_px.map(|v| v * samples), origin_px: [x * samples, y * samples], size_px: target.size_px };
+                let tile = Tile {
+                    whole_px: size_px.map(|v| v * samples),
+                    origin_px: [x * samples, y * samples],
+                    size_px: target.size_px,
+                };
                 target.prepare(device, queue, camera, &fine, tile, &outlines);
                 let mut encoder = device.create_command_encoder(&Default::default());
                 self.draw(&mut encoder, &target, &fine);
                 queue.submit([encoder.finish()]);
                 let pixels = averaged(&read(device, queue, &target.color)?, target.size_px[0], samples);
-                let (columns, rows) = (tile_px[0].min(width - x) as usize, tile_px[1].min(height - y) as usize);
+                let (columns, rows) =
+                    (tile_px[0].min(width - x) as usize, tile_px[1].min(height - y) as usize);
                 for row in 0..rows {
                     let from = row * tile_px[0] as usize * 4;
                     let to = ((y as usize + row) * width as usize + x as usize) * 4;
@@ -74,7 +79,8 @@ fn averaged(fine: &[u8], fine_width: u32, samples: u32) -> Vec<u8> {
     for band in fine.chunks_exact(stride * n) {
         for x in (0..stride).step_by(4 * n) {
             for channel in 0..4 {
-                let sum: u32 = (0..n * n).map(|k| u32::from(band[k / n * stride + x + k % n * 4 + channel])).sum();
+                let sum: u32 =
+                    (0..n * n).map(|k| u32::from(band[k / n * stride + x + k % n * 4 + channel])).sum();
                 out.push(((sum + samples * samples / 2) / (samples * samples)) as u8);
             }
         }
@@ -104,6 +110,9 @@ mod tests {
         // Two rows of four pixels, averaged two by two.
         let fine: Vec<u8> = (0..8u8).flat_map(|i| [i * 10, 0, 255, 255]).collect();
         assert_eq!(averaged(&fine, 4, 2), [25, 0, 255, 255, 45, 0, 255, 255]);
-        assert_eq!(straight(vec![64, 0, 128, 128, 7, 8, 9, 0, 1, 2, 3, 255]), [128, 0, 255, 128, 7, 8, 9, 0, 1, 2, 3, 255]);
+        assert_eq!(
+            straight(vec![64, 0, 128, 128, 7, 8, 9, 0, 1, 2, 3, 255]),
+            [128, 0, 255, 128, 7, 8, 9, 0, 1, 2, 3, 255]
+        );
     }
 }

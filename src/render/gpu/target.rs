@@ -50,7 +50,10 @@ impl Target {
             })
         };
         let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let color = texture(COLOR_FORMAT, attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC);
+        let color = texture(
+            COLOR_FORMAT,
+            attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
+        );
         let color_view = color.create_view(&Default::default());
         let uniforms = buffer(device, "frame", 4 * FRAME_WORDS as u64, wgpu::BufferUsages::UNIFORM);
         let frame = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -62,8 +65,14 @@ impl Target {
             label: Some("blit"),
             layout: &pipelines.blit_layout,
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&color_view) },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&pipelines.nearest) },
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&color_view),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::Sampler(&pipelines.nearest),
+                },
             ],
         });
         Self {
@@ -74,7 +83,12 @@ impl Target {
             blit,
             frame,
             uniforms,
-            outlines: buffer(device, "outlines", 16 * size_of::<SegmentWords>() as u64, wgpu::BufferUsages::VERTEX),
+            outlines: buffer(
+                device,
+                "outlines",
+                16 * size_of::<SegmentWords>() as u64,
+                wgpu::BufferUsages::VERTEX,
+            ),
             outline_count: 0,
             shows: None,
         }
@@ -93,7 +107,12 @@ impl Target {
         queue.write_buffer(&self.uniforms, 0, bytemuck::cast_slice(&frame_words(camera, style, tile)));
         let bytes = bytemuck::cast_slice(outlines);
         if bytes.len() as u64 > self.outlines.size() {
-            self.outlines = buffer(device, "outlines", bytes.len().next_power_of_two() as u64, wgpu::BufferUsages::VERTEX);
+            self.outlines = buffer(
+                device,
+                "outlines",
+                bytes.len().next_power_of_two() as u64,
+                wgpu::BufferUsages::VERTEX,
+            );
         }
         queue.write_buffer(&self.outlines, 0, bytes);
         self.outline_count = outlines.len() as u32;
@@ -105,9 +124,19 @@ impl Target {
 }
 
 /// An empty buffer to write to.
-pub(super) fn buffer(device: &wgpu::Device, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+pub(super) fn buffer(
+    device: &wgpu::Device,
+    label: &str,
+    size: u64,
+    usage: wgpu::BufferUsages,
+) -> wgpu::Buffer {
     let size = size.max(16);
-    device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage: usage | wgpu::BufferUsages::COPY_DST, mapped_at_creation: false })
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size,
+        usage: usage | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 /// A color byte triple and a fourth number.
@@ -151,8 +180,18 @@ fn frame_words(camera: &SpaceCamera, style: &SpaceStyle, tile: Tile) -> Vec<u32>
         Surface::Both => 1,
         Surface::Wireframe => 2,
     };
-    words.extend([step(style), (style.color_by == ColorBy::State).into(), wires, style.section.is_some().into()]);
-    words.extend([mask(style, Shown::Solid), mask(style, Shown::Ghost), u32::MAX, (style.nodes == NodeBoxes::Frontier).into()]);
+    words.extend([
+        step(style),
+        (style.color_by == ColorBy::State).into(),
+        wires,
+        style.section.is_some().into(),
+    ]);
+    words.extend([
+        mask(style, Shown::Solid),
+        mask(style, Shown::Ghost),
+        u32::MAX,
+        (style.nodes == NodeBoxes::Frontier).into(),
+    ]);
     let ppp = style.pixels_per_point;
     let paints = &style.palette.paints;
     words.extend(paints.iter().flat_map(|p| color(p.flat, 1.0)));

@@ -1,8 +1,9 @@
-//! The plan of the city: a slightly crooked grid of streets, and rings of houses around the yards of its blocks.
+//! The plan of the city: a slightly crooked grid of streets, and rings of houses around the yards of its
+//! blocks.
 //!
-//! Cells of a grid whose nodes are moved a little; each is drawn in by half a street on every side. Houses are
-//! cut out along straight lines of a cell's own coordinates (u, v), so that neighbors have the same corners to
-//! the last bit and their walls join without a gap. Metres; x east, z south, y up.
+//! Cells of a grid whose nodes are moved a little; each is drawn in by half a street on every side. Houses
+//! are cut out along straight lines of a cell's own coordinates (u, v), so that neighbors have the same
+//! corners to the last bit and their walls join without a gap. Metres; x east, z south, y up.
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -10,7 +11,8 @@ use rand_pcg::rand_core::Rng;
 
 use super::plan::{divide, signed};
 
-/// Four corners in the order north-west, north-east, south-east, south-west; side k runs from corner k to k + 1.
+/// Four corners in the order north-west, north-east, south-east, south-west; side k runs from corner k to k +
+/// 1.
 pub(super) type Quad = [DVec3; 4];
 
 /// Top of the pavements above the street, m.
@@ -133,7 +135,8 @@ impl City {
     pub(super) fn cell(&self, i: usize, j: usize) -> &Cell {
         &self.cells[j * (self.blocks[0] + 2) + i]
     }
-    /// Street lines of the walk: three from north to south, two from west to east, well inside if there are enough.
+    /// Street lines of the walk: three from north to south, two from west to east, well inside if there are
+    /// enough.
     pub(super) fn walked_lines(&self) -> ([usize; 3], [usize; 2]) {
         let [wide, deep] = self.blocks;
         ([1 + wide / 4, 1 + wide / 2, 1 + wide - wide / 4], [1 + deep / 3, 1 + deep - deep / 3])
@@ -180,12 +183,18 @@ fn ring(line: &Quad, rng: &mut Pcg32) -> Vec<House> {
     let length = |a: usize, b: usize| line[a].distance(line[b]);
     let (wide, deep) = (length(0, 1).min(length(3, 2)), length(0, 3).min(length(1, 2)));
     let (du, dv) = (DEPTH / wide, DEPTH / deep);
-    let inner =
-        |part: f64, whole: f64, rng: &mut Pcg32| divide(part, 1.0 - part, ((1.0 - 2.0 * part) * whole / WIDTH + 0.5).floor().max(1.0) as u64, rng);
+    let inner = |part: f64, whole: f64, rng: &mut Pcg32| {
+        divide(part, 1.0 - part, ((1.0 - 2.0 * part) * whole / WIDTH + 0.5).floor().max(1.0) as u64, rng)
+    };
     let mut lots: Vec<([f64; 4], [usize; 2], [bool; 4])> = Vec::new();
     // Each side of the ring begins with the corner house at its start.
     for side in 0..4 {
-        let corner = [[0.0, 0.0, du, dv], [1.0 - du, 0.0, 1.0, dv], [1.0 - du, 1.0 - dv, 1.0, 1.0], [0.0, 1.0 - dv, du, 1.0]][side];
+        let corner = [
+            [0.0, 0.0, du, dv],
+            [1.0 - du, 0.0, 1.0, dv],
+            [1.0 - du, 1.0 - dv, 1.0, 1.0],
+            [0.0, 1.0 - dv, du, 1.0],
+        ][side];
         let (before, after) = ((side + 2) % 4, (side + 1) % 4);
         lots.push((corner, [before, after], std::array::from_fn(|k| k == side || k == (side + 3) % 4)));
         let cuts = if side % 2 == 0 { inner(du, wide, rng) } else { inner(dv, deep, rng) };
@@ -201,7 +210,9 @@ fn ring(line: &Quad, rng: &mut Pcg32) -> Vec<House> {
         if side >= 2 {
             row.reverse();
         }
-        lots.extend(row.into_iter().map(|lot| (lot, [(side + 3) % 4, after], std::array::from_fn(|k| k == side))));
+        lots.extend(
+            row.into_iter().map(|lot| (lot, [(side + 3) % 4, after], std::array::from_fn(|k| k == side))),
+        );
     }
     let mut houses = Vec::with_capacity(lots.len());
     let mut apart = Vec::with_capacity(lots.len());

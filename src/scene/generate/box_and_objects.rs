@@ -1,7 +1,8 @@
 //! `generate:box-and-objects`: a plain box and a row of complex objects that it hides.
 //!
-//! The first test of Georges (1995, Section 5.2): the flight begins where all objects are in sight and moves on until the
-//! box hides them all. The box and the place where the flight ends follow from the length of the row. Cost: O(polygons).
+//! The first test of Georges (1995, Section 5.2): the flight begins where all objects are in sight and moves
+//! on until the box hides them all. The box and the place where the flight ends follow from the length of the
+//! row. Cost: O(polygons).
 
 use glam::DVec3;
 
@@ -16,10 +17,23 @@ use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "box-and-objects",
-    meaning: "a plain box that hides a row of dense objects, which are all in sight where the flight begins; after Georges 1995",
+    meaning: "a plain box that hides a row of dense objects, which are all in sight where the flight begins; \
+              after Georges 1995",
     params: &[
-        GeneratorParam { name: "polygons", default: 60_000, min: 1_000, max: 8_000_000, meaning: "triangles, met within 5 percent" },
-        GeneratorParam { name: "objects", default: 8, min: 1, max: 64, meaning: "objects in the row, which share the triangles" },
+        GeneratorParam {
+            name: "polygons",
+            default: 60_000,
+            min: 1_000,
+            max: 8_000_000,
+            meaning: "triangles, met within 5 percent",
+        },
+        GeneratorParam {
+            name: "objects",
+            default: 8,
+            min: 1,
+            max: 64,
+            meaning: "objects in the row, which share the triangles",
+        },
     ],
     make,
 };
@@ -59,7 +73,12 @@ impl Row {
     }
 }
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let (polygons, row) = (values.get("polygons"), Row::new(values.get("objects")));
     let each = polygons / u64::from(row.objects);
     if each < LEAST {
@@ -86,7 +105,9 @@ fn furnish(sink: &mut Sink, row: &Row, each: u64) {
     block(sink, &frame, [-row.cover, 0.0, -BOX_HALF_DEPTH], [row.cover, BOX_HEIGHT, BOX_HALF_DEPTH]);
     for k in 0..row.objects {
         sink.begin(|| (format!("object_{k}"), "objects".into()));
-        sink.paint([furniture::METAL, furniture::BOOKS, furniture::LEAF, furniture::BOOKS + 2][(k % KINDS) as usize]);
+        sink.paint(
+            [furniture::METAL, furniture::BOOKS, furniture::LEAF, furniture::BOOKS + 2][(k % KINDS) as usize],
+        );
         sculpture(sink, row.middle(k), RADIUS, k, each);
     }
 }
@@ -127,19 +148,24 @@ mod tests {
             assert_eq!(scene.report().dropped_total(), 0, "{:?}", scene.report());
             assert_eq!(touched(&scene), None);
         }
-        let error = generate("box-and-objects?polygons=1000&objects=64", &LoadOptions::default(), &Quiet).expect_err("too many objects");
+        let error = generate("box-and-objects?polygons=1000&objects=64", &LoadOptions::default(), &Quiet)
+            .expect_err("too many objects");
         assert!(error.to_string().contains("fewer objects"), "{error}");
     }
 
     #[test]
     fn the_same_call_gives_the_same_bits() {
         // Machines must agree, so the bits are written down.
-        assert_eq!(row("box-and-objects?polygons=2000&objects=5").hash_hex(), "c5e7cb542e7ae5292e4fd7dddeef40f89e070734f04dba4ec6487dd94a46df91");
+        assert_eq!(
+            row("box-and-objects?polygons=2000&objects=5").hash_hex(),
+            "c5e7cb542e7ae5292e4fd7dddeef40f89e070734f04dba4ec6487dd94a46df91"
+        );
     }
 
     /// A ray from an eye to a point meets the box.
     fn behind_box(row: &Row, eye: DVec3, p: DVec3) -> bool {
-        let (low, high) = (DVec3::new(-row.cover, 0.0, -BOX_HALF_DEPTH), DVec3::new(row.cover, BOX_HEIGHT, BOX_HALF_DEPTH));
+        let (low, high) =
+            (DVec3::new(-row.cover, 0.0, -BOX_HALF_DEPTH), DVec3::new(row.cover, BOX_HEIGHT, BOX_HALF_DEPTH));
         let (a, b) = ((low - eye) / (p - eye), (high - eye) / (p - eye));
         let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
         enter < leave && enter > 0.0 && enter < 1.0
@@ -148,15 +174,22 @@ mod tests {
     #[test]
     fn the_flight_begins_with_all_objects_in_sight_and_ends_with_all_hidden() {
         for objects in [1u32, 8, 24] {
-            let (sizes, scene) = (Row::new(u64::from(objects)), row(&format!("box-and-objects?polygons=12000&objects={objects}")));
+            let (sizes, scene) = (
+                Row::new(u64::from(objects)),
+                row(&format!("box-and-objects?polygons=12000&objects={objects}")),
+            );
             let views = &scene.paths()[0].views;
             let points = |view: &crate::geometry::View<Solid>| {
                 let eye = view.eye.position.as_dvec3() + scene.origin();
                 let hidden = |k: u32| {
-                    let of_object = |p: &&crate::geometry::PrimId| scene.objects()[scene.object_of(**p).at()].name == format!("object_{k}");
+                    let of_object = |p: &&crate::geometry::PrimId| {
+                        scene.objects()[scene.object_of(**p).at()].name == format!("object_{k}")
+                    };
                     let prims = scene.live().iter().filter(of_object);
-                    let all: Vec<bool> =
-                        prims.flat_map(|&p| scene.prim_points(p)).map(|p| behind_box(&sizes, eye, p.as_dvec3() + scene.origin())).collect();
+                    let all: Vec<bool> = prims
+                        .flat_map(|&p| scene.prim_points(p))
+                        .map(|p| behind_box(&sizes, eye, p.as_dvec3() + scene.origin()))
+                        .collect();
                     (all.iter().any(|h| *h), all.iter().all(|h| *h))
                 };
                 (0..objects).map(hidden).collect::<Vec<_>>()

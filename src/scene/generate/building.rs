@@ -19,10 +19,23 @@ use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "building",
-    meaning: "a furnished floor of offices around corridors in the shape of an 8, after the Soda Hall floor of the papers",
+    meaning: "a furnished floor of offices around corridors in the shape of an 8, after the Soda Hall floor \
+              of the papers",
     params: &[
-        GeneratorParam { name: "polygons", default: 135_000, min: 1_000, max: 8_000_000, meaning: "triangles, met within a few percent" },
-        GeneratorParam { name: "seed", default: 1, min: 0, max: u32::MAX as u64, meaning: "chooses widths of rooms, sides of doors and furniture" },
+        GeneratorParam {
+            name: "polygons",
+            default: 135_000,
+            min: 1_000,
+            max: 8_000_000,
+            meaning: "triangles, met within a few percent",
+        },
+        GeneratorParam {
+            name: "seed",
+            default: 1,
+            min: 0,
+            max: u32::MAX as u64,
+            meaning: "chooses widths of rooms, sides of doors and furniture",
+        },
         GeneratorParam {
             name: "rooms",
             default: 0,
@@ -37,7 +50,12 @@ pub(super) const GENERATOR: Generator = Generator {
 /// Thickness of a wall, m.
 pub(super) const WALL: f64 = 0.15;
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
     let rooms = match values.get("rooms") {
         // As many again as the furniture of one gets finer: both grow with the square root.
@@ -45,7 +63,8 @@ fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Pro
         given => given,
     };
     let plan = Plan::new(rooms, seed);
-    let detail = detail_for(polygons, source, progress, |sink, detail| furnish(sink, &plan, seed, detail, polygons))?;
+    let detail =
+        detail_for(polygons, source, progress, |sink, detail| furnish(sink, &plan, seed, detail, polygons))?;
     progress.report(0.3, "furnishing");
     let mut sink = Sink::keeping(piece::MATERIALS);
     furnish(&mut sink, &plan, seed, detail, polygons);
@@ -61,7 +80,13 @@ fn furnish(sink: &mut Sink, plan: &Plan, seed: u64, detail: u32, budget: u64) {
     for round in 0..ROUNDS.len() + 1 {
         for (k, room) in plan.rooms.iter().chain(&plan.corridors).enumerate() {
             let rng = &mut Pcg32::new(seed.wrapping_mul(1_000_003).wrapping_add(k as u64), round as u64 + 2);
-            let group = || if k < plan.rooms.len() { format!("room_{k}") } else { format!("corridor_{}", k - plan.rooms.len()) };
+            let group = || {
+                if k < plan.rooms.len() {
+                    format!("room_{k}")
+                } else {
+                    format!("corridor_{}", k - plan.rooms.len())
+                }
+            };
             if sink.triangles >= budget {
                 return;
             }
@@ -133,7 +158,8 @@ fn stand(room: &Room, door: Side, door_at: f64, place: Place) -> Option<Frame> {
     let extent = |axis: DVec3| (axis.x.abs() * (x1 - x0) + axis.z.abs() * (z1 - z0)) * 0.5;
     let right = into.cross(DVec3::Y);
     let middle = DVec3::new((x0 + x1) * 0.5, 0.0, (z0 + z1) * 0.5);
-    let inside = Inside { middle, into, right, deep: extent(into), wide: extent(right), plaster: WALL * 0.5 + 0.01 };
+    let inside =
+        Inside { middle, into, right, deep: extent(into), wide: extent(right), plaster: WALL * 0.5 + 0.01 };
     Some(match place {
         Place::At(spot) => inside.frame(spot),
         Place::Window => {
@@ -143,7 +169,11 @@ fn stand(room: &Room, door: Side, door_at: f64, place: Place) -> Option<Frame> {
         Place::Hinge => {
             let along = if matches!(door, Side::North | Side::South) { DVec3::X } else { DVec3::Z };
             let offset = along * (door_at + 0.475 - (middle * along).element_sum());
-            Frame { origin: middle - into * (inside.deep - inside.plaster) + offset, right: along, away: into }
+            Frame {
+                origin: middle - into * (inside.deep - inside.plaster) + offset,
+                right: along,
+                away: into,
+            }
         }
     })
 }
@@ -153,7 +183,11 @@ fn corridor(sink: &mut Sink, stretch: &Room, detail: u32, rng: &mut Pcg32, group
     let [x0, z0, x1, z1] = stretch.rect;
     let along_x = x1 - x0 > z1 - z0;
     let (length, ahead) = if along_x { (x1 - x0, DVec3::X) } else { (z1 - z0, DVec3::Z) };
-    let start = DVec3::new(if along_x { x0 } else { (x0 + x1) * 0.5 }, 0.0, if along_x { (z0 + z1) * 0.5 } else { z0 });
+    let start = DVec3::new(
+        if along_x { x0 } else { (x0 + x1) * 0.5 },
+        0.0,
+        if along_x { (z0 + z1) * 0.5 } else { z0 },
+    );
     let side = ahead.cross(DVec3::Y);
     let lamps = (length / 4.0).ceil();
     for k in 0..lamps as u32 {
@@ -165,9 +199,17 @@ fn corridor(sink: &mut Sink, stretch: &Room, detail: u32, rng: &mut Pcg32, group
     if along_x {
         return;
     }
-    let wall = Frame { origin: start + side * (CORRIDOR * 0.5 - WALL * 0.5 - 0.01), right: DVec3::Y.cross(side), away: side };
-    let spots: [(&str, Piece, f64); 4] =
-        [("bench", piece::bench, 0.3), ("picture", piece::picture, 0.3), ("plant", piece::plant, 0.5), ("bench", piece::bench, 0.7)];
+    let wall = Frame {
+        origin: start + side * (CORRIDOR * 0.5 - WALL * 0.5 - 0.01),
+        right: DVec3::Y.cross(side),
+        away: side,
+    };
+    let spots: [(&str, Piece, f64); 4] = [
+        ("bench", piece::bench, 0.3),
+        ("picture", piece::picture, 0.3),
+        ("plant", piece::plant, 0.5),
+        ("bench", piece::bench, 0.7),
+    ];
     for (name, draw, t) in spots {
         sink.begin(|| (name.to_owned(), group()));
         draw(sink, &Frame { origin: wall.origin + ahead * (length * t), ..wall }, detail, rng);
@@ -208,7 +250,11 @@ pub(super) fn build_wall(sink: &mut Sink, wall: &Wall, height: f64) {
     match wall.opening {
         None => panes.push([wall.from, wall.to, 0.0, height]),
         Some([from, to, bottom, top]) => {
-            panes.extend([[wall.from, from, 0.0, height], [from, to, top, height], [to, wall.to, 0.0, height]]);
+            panes.extend([
+                [wall.from, from, 0.0, height],
+                [from, to, top, height],
+                [to, wall.to, 0.0, height],
+            ]);
             if bottom > 0.0 {
                 panes.push([from, to, 0.0, bottom]);
             }
@@ -217,13 +263,21 @@ pub(super) fn build_wall(sink: &mut Sink, wall: &Wall, height: f64) {
     let half = WALL * 0.5;
     for [from, to, bottom, top] in panes {
         for across in [-half, half] {
-            let corners = [point(from, bottom, across), point(to, bottom, across), point(to, top, across), point(from, top, across)];
+            let corners = [
+                point(from, bottom, across),
+                point(to, bottom, across),
+                point(to, top, across),
+                point(from, top, across),
+            ];
             sink.face(&corners, normal * across);
         }
     }
     let Some([from, to, bottom, top]) = wall.opening else { return };
     let mut reveal = |a: (f64, f64), b: (f64, f64), outward: DVec3| {
-        sink.face(&[point(a.0, a.1, -half), point(b.0, b.1, -half), point(b.0, b.1, half), point(a.0, a.1, half)], outward);
+        sink.face(
+            &[point(a.0, a.1, -half), point(b.0, b.1, -half), point(b.0, b.1, half), point(a.0, a.1, half)],
+            outward,
+        );
     };
     reveal((from, bottom), (from, top), ahead);
     reveal((to, bottom), (to, top), -ahead);
@@ -236,7 +290,16 @@ pub(super) fn build_wall(sink: &mut Sink, wall: &Wall, height: f64) {
 /// Along the middles of the corridors in the shape of an 8, once, corners rounded.
 fn walk(plan: &Plan, origin: DVec3) -> ViewPath<Solid> {
     let ([west, middle, east], [north, south]) = (plan.aisles(), plan.lanes());
-    let stops = [(middle, north), (west, north), (west, south), (middle, south), (middle, north), (east, north), (east, south), (middle, south)];
+    let stops = [
+        (middle, north),
+        (west, north),
+        (west, south),
+        (middle, south),
+        (middle, north),
+        (east, north),
+        (east, south),
+        (middle, south),
+    ];
     let stops = stops.map(|(x, z)| DVec3::new(x, EYE, z));
     let far = (plan.size[0] * plan.size[0] + plan.size[1] * plan.size[1]).sqrt();
     figure_8(&stops, &Manner { round: 1.0, ahead: 1.5, far }, origin)
@@ -270,7 +333,10 @@ mod tests {
         assert_eq!(hash("building?polygons=3000&seed=4"), hash("building?seed=4&polygons=3000"));
         assert_ne!(hash("building?polygons=3000&seed=4"), hash("building?polygons=3000&seed=5"));
         // Machines must agree, so the bits are written down.
-        assert_eq!(hash("building?polygons=3000&seed=4"), "c63f824e01f626c1a6fd857ae65e9ddae7e8c1a677fbefb97cba2cf91a1bb38e");
+        assert_eq!(
+            hash("building?polygons=3000&seed=4"),
+            "c63f824e01f626c1a6fd857ae65e9ddae7e8c1a677fbefb97cba2cf91a1bb38e"
+        );
     }
 
     #[test]

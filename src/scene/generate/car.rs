@@ -40,7 +40,8 @@ const AXLES: [f64; 2] = [-1.3, 1.36];
 const WHEEL: f64 = 0.31;
 const TRACK: f64 = 0.72;
 
-/// A car whose skin has about `skin` triangles (none if that is 0) and whose other parts are as fine as `detail` says.
+/// A car whose skin has about `skin` triangles (none if that is 0) and whose other parts are as fine as
+/// `detail` says.
 pub(super) fn car(sink: &mut Sink, frame: &Frame, detail: u32, skin: u64, group: &str) {
     let begin = |sink: &mut Sink, name: &str| sink.begin(|| (name.to_owned(), group.to_owned()));
     // Below 2 some parts would have too few cells.
@@ -112,7 +113,9 @@ fn cabin(x: f64, angle: (f64, f64)) -> DVec3 {
 /// Whether a cell of the lower body is there: not under the roof, and not where wheels are.
 fn hull_is_solid(p: DVec3) -> bool {
     let open_top = p.x < 0.75 && p.x > -1.55 && p.y > 0.84 && p.z.abs() < 0.7;
-    let in_arch = |axle: &f64| p.z.abs() > 0.5 && (p.x - axle) * (p.x - axle) + (p.y - WHEEL) * (p.y - WHEEL) < 0.38 * 0.38;
+    let in_arch = |axle: &f64| {
+        p.z.abs() > 0.5 && (p.x - axle) * (p.x - axle) + (p.y - WHEEL) * (p.y - WHEEL) < 0.38 * 0.38
+    };
     !open_top && !AXLES.iter().any(in_arch)
 }
 
@@ -165,7 +168,15 @@ fn surfaces(sink: &mut Sink, frame: &Frame, cells: u64, inset: f64) {
         let p = if t.abs() == 1.0 { core } else { core + (p - core) * shrink };
         p.with_x((HALF - inset) * t)
     };
-    part_of_sheet(sink, (columns, around), &lower, |p| DVec3::new(p.x * 0.9, 0.55, 0.0), hull_is_solid, inset > 0.0, place);
+    part_of_sheet(
+        sink,
+        (columns, around),
+        &lower,
+        |p| DVec3::new(p.x * 0.9, 0.55, 0.0),
+        hull_is_solid,
+        inset > 0.0,
+        place,
+    );
     let (columns, around) = grid(cells / 3, 0.8);
     let upper = |i: u32, j: u32| {
         let x = -0.4 + 1.35 * along(i, columns);
@@ -173,7 +184,15 @@ fn surfaces(sink: &mut Sink, frame: &Frame, cells: u64, inset: f64) {
         let core = DVec3::new(x, 0.7, 0.0);
         core + (p - core) * shrink
     };
-    part_of_sheet(sink, (columns, around), &upper, |p| DVec3::new(p.x * 0.5 - 0.2, 0.6, 0.0), cabin_is_solid, inset > 0.0, place);
+    part_of_sheet(
+        sink,
+        (columns, around),
+        &upper,
+        |p| DVec3::new(p.x * 0.5 - 0.2, 0.6, 0.0),
+        cabin_is_solid,
+        inset > 0.0,
+        place,
+    );
 }
 
 /// The cells of a surface that are there. A lining is turned inward.
@@ -246,7 +265,15 @@ fn engine_block(sink: &mut Sink, frame: &Frame, detail: u32) {
         turned(sink, frame, [x, high - 0.06, 0.0], [x, high, 0.0], 0.06, parts(16, detail), parts(3, detail));
         turned(sink, frame, [x, low, 0.0], [x, high - 0.06, 0.0], 0.018, parts(8, detail), parts(3, detail));
         sink.paint(IRON);
-        turned(sink, frame, [x - 0.03, low, 0.0], [x + 0.03, low, 0.0], 0.08, parts(16, detail), parts(2, detail));
+        turned(
+            sink,
+            frame,
+            [x - 0.03, low, 0.0],
+            [x + 0.03, low, 0.0],
+            0.08,
+            parts(16, detail),
+            parts(2, detail),
+        );
     }
 }
 
@@ -292,7 +319,13 @@ fn auxiliaries(sink: &mut Sink, frame: &Frame, detail: u32) {
     for k in 0..8 {
         let z = -0.2 + 0.05 * f64::from(k);
         sink.paint([COPPER, PLASTIC][k as usize % 2]);
-        hose(sink, frame, [[0.9, 0.6, z], [1.1, 0.74, z * 1.4], [1.3, 0.66, z * 1.8]], 0.008, (parts(6, detail), parts(16, detail)));
+        hose(
+            sink,
+            frame,
+            [[0.9, 0.6, z], [1.1, 0.74, z * 1.4], [1.3, 0.66, z * 1.8]],
+            0.008,
+            (parts(6, detail), parts(16, detail)),
+        );
     }
 }
 
@@ -326,7 +359,15 @@ fn drive_train(sink: &mut Sink, frame: &Frame, detail: u32) {
     turned(sink, frame, [0.24, 0.36, 0.0], [-1.15, 0.32, 0.0], 0.035, parts(12, detail), parts(20, detail));
     ball(sink, &frame.moved([AXLES[0], 0.31, 0.0]), [0.16, 0.14, 0.14], parts(16, detail), parts(10, detail));
     for x in AXLES {
-        turned(sink, frame, [x, WHEEL, -TRACK], [x, WHEEL, TRACK], 0.03, parts(10, detail), parts(12, detail));
+        turned(
+            sink,
+            frame,
+            [x, WHEEL, -TRACK],
+            [x, WHEEL, TRACK],
+            0.03,
+            parts(10, detail),
+            parts(12, detail),
+        );
         for z in [-0.5, 0.5] {
             // A spring is a stack of rings here.
             for turn in 0..parts(7, detail) {
@@ -340,9 +381,27 @@ fn drive_train(sink: &mut Sink, frame: &Frame, detail: u32) {
 
 fn exhaust(sink: &mut Sink, frame: &Frame, detail: u32) {
     sink.paint(IRON);
-    hose(sink, frame, [[0.96, 0.34, 0.26], [0.3, 0.2, 0.3], [-0.9, 0.24, 0.3]], 0.028, (parts(10, detail), parts(30, detail)));
-    lathe(sink, frame.at([-0.9, 0.24, 0.3]), -frame.right, &capsule(0.7, 0.09, 0.06, parts(6, detail)), parts(14, detail));
-    hose(sink, frame, [[-1.6, 0.24, 0.3], [-1.9, 0.26, 0.32], [-2.15, 0.24, 0.34]], 0.026, (parts(10, detail), parts(10, detail)));
+    hose(
+        sink,
+        frame,
+        [[0.96, 0.34, 0.26], [0.3, 0.2, 0.3], [-0.9, 0.24, 0.3]],
+        0.028,
+        (parts(10, detail), parts(30, detail)),
+    );
+    lathe(
+        sink,
+        frame.at([-0.9, 0.24, 0.3]),
+        -frame.right,
+        &capsule(0.7, 0.09, 0.06, parts(6, detail)),
+        parts(14, detail),
+    );
+    hose(
+        sink,
+        frame,
+        [[-1.6, 0.24, 0.3], [-1.9, 0.26, 0.32], [-2.15, 0.24, 0.34]],
+        0.026,
+        (parts(10, detail), parts(10, detail)),
+    );
     sink.paint(PLASTIC);
     rounded(sink, frame, [-1.95, 0.3, -0.5], [-1.5, 0.45, 0.2], parts(8, detail), 0.15);
 }
@@ -361,12 +420,30 @@ fn wheels(sink: &mut Sink, frame: &Frame, detail: u32) {
             sink.paint(RUBBER);
             lathe(sink, center, out, &profile, parts(28, detail));
             sink.paint(RIM);
-            lathe(sink, center, out, &[[-0.08, 0.19], [-0.08, 0.2], [0.08, 0.2], [0.08, 0.18], [-0.08, 0.18]], parts(28, detail));
-            lathe(sink, center + out * 0.02, out, &[[0.0, 0.0], [0.0, 0.06], [0.05, 0.05], [0.05, 0.0]], parts(16, detail));
+            lathe(
+                sink,
+                center,
+                out,
+                &[[-0.08, 0.19], [-0.08, 0.2], [0.08, 0.2], [0.08, 0.18], [-0.08, 0.18]],
+                parts(28, detail),
+            );
+            lathe(
+                sink,
+                center + out * 0.02,
+                out,
+                &[[0.0, 0.0], [0.0, 0.06], [0.05, 0.05], [0.05, 0.0]],
+                parts(16, detail),
+            );
             let up = frame.right;
             for (c, s) in (0..6).map(|k| circle(k, 6)) {
                 let spoke = up * c + out.cross(up) * s;
-                lathe(sink, center + out * 0.04 + spoke * 0.05, spoke, &drum(0.13, 0.016, parts(2, detail)), parts(6, detail));
+                lathe(
+                    sink,
+                    center + out * 0.04 + spoke * 0.05,
+                    spoke,
+                    &drum(0.13, 0.016, parts(2, detail)),
+                    parts(6, detail),
+                );
             }
             sink.paint(IRON);
             lathe(sink, center - out * 0.04, out, &drum(0.02, 0.14, 1), parts(24, detail));

@@ -1,8 +1,9 @@
 //! `generate:city`: streets of a city with furnished houses.
 //!
-//! After the city that Coorg and Teller (1997, Section 4) walked through at street level: blocks of houses that stand
-//! wall to wall around yards, whose large plain walls hide the rest of the city and all that stands inside. The
-//! number of triangles is met as in the building: finer pieces, and then the last of them left off. Cost: O(polygons).
+//! After the city that Coorg and Teller (1997, Section 4) walked through at street level: blocks of houses
+//! that stand wall to wall around yards, whose large plain walls hide the rest of the city and all that
+//! stands inside. The number of triangles is met as in the building: finer pieces, and then the last of them
+//! left off. Cost: O(polygons).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -13,23 +14,40 @@ use super::plan::signed;
 use super::shapes::{Frame, Sink, block};
 use super::stand::{Inside, Spot};
 use super::walk::{EYE, Manner, figure_8};
-use super::{Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for, house, street};
+use super::{
+    Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for, house,
+    street,
+};
 use crate::geometry::{Solid, ViewPath};
 use crate::scene::Report;
 use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "city",
-    meaning: "streets of a city whose houses are furnished, for walks at street level; after the city of Coorg and Teller 1997",
+    meaning: "streets of a city whose houses are furnished, for walks at street level; after the city of \
+              Coorg and Teller 1997",
     params: &[
-        GeneratorParam { name: "polygons", default: 109_000, min: 1_000, max: 8_000_000, meaning: "triangles, met within 2 percent" },
-        GeneratorParam { name: "seed", default: 1, min: 0, max: u32::MAX as u64, meaning: "chooses streets, houses and furniture" },
+        GeneratorParam {
+            name: "polygons",
+            default: 109_000,
+            min: 1_000,
+            max: 8_000_000,
+            meaning: "triangles, met within 2 percent",
+        },
+        GeneratorParam {
+            name: "seed",
+            default: 1,
+            min: 0,
+            max: u32::MAX as u64,
+            meaning: "chooses streets, houses and furniture",
+        },
         GeneratorParam {
             name: "blocks",
             default: 0,
             min: 0,
             max: 2_000,
-            meaning: "blocks of about ten houses, at least 2; 0 chooses them by the number of polygons (12 for 109,000)",
+            meaning: "blocks of about ten houses, at least 2; 0 chooses them by the number of polygons (12 \
+                      for 109,000)",
         },
     ],
     make,
@@ -78,7 +96,12 @@ pub(super) const DOORS: u32 = 3;
 pub(super) const CAR: u32 = FIRST + 20;
 pub(super) const CARS: u32 = 3;
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
     let blocks = match values.get("blocks") {
         // As many again as the pieces of one gets finer: both grow with the square root.
@@ -89,10 +112,15 @@ fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Pro
     let mut bare = Sink::counting();
     structure(&mut bare, &city);
     if bare.triangles > polygons {
-        let why = format!("the walls and streets of {blocks} blocks alone are {} polygons: give more polygons or fewer blocks", bare.triangles);
+        let why = format!(
+            "the walls and streets of {blocks} blocks alone are {} polygons: give more polygons or fewer \
+             blocks",
+            bare.triangles
+        );
         return Err(SceneError::Format { path: source.to_owned(), why });
     }
-    let detail = detail_for(polygons, source, progress, |sink, detail| furnish(sink, &city, seed, detail, polygons))?;
+    let detail =
+        detail_for(polygons, source, progress, |sink, detail| furnish(sink, &city, seed, detail, polygons))?;
     progress.report(0.3, "furnishing");
     let mut sink = Sink::keeping(&[piece::MATERIALS, MATERIALS].concat());
     furnish(&mut sink, &city, seed, detail, polygons);
@@ -104,8 +132,8 @@ fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Pro
 
 /// What all houses, or all sides of streets, get in a round.
 enum Round {
-    /// On each side of a block: how many along it, how far from the street's edge (to the houses), how far apart
-    /// from an even distribution, and what.
+    /// On each side of a block: how many along it, how far from the street's edge (to the houses), how far
+    /// apart from an even distribution, and what.
     Street(&'static str, u32, f64, f64, Piece),
     /// Windows that face streets, or the others.
     Windows(bool),
@@ -147,7 +175,9 @@ fn furnish(sink: &mut Sink, city: &City, seed: u64, detail: u32, budget: u64) {
         for (k, cell) in city.cells.iter().enumerate().filter(|(_, c)| !c.meadow) {
             let rng = &mut Pcg32::new(seed.wrapping_mul(1_000_003).wrapping_add(k as u64), number as u64 + 2);
             if let Round::Street(name, count, from_edge, loose, draw) = round {
-                (0..4).for_each(|side| along(sink, cell, side, (name, *count, *from_edge, *loose, *draw), detail, rng, budget, k));
+                (0..4).for_each(|side| {
+                    along(sink, cell, side, (name, *count, *from_edge, *loose, *draw), detail, rng, budget, k)
+                });
                 continue;
             }
             for h in &cell.houses {
@@ -162,7 +192,15 @@ fn furnish(sink: &mut Sink, city: &City, seed: u64, detail: u32, budget: u64) {
     }
 }
 
-fn house_round(sink: &mut Sink, h: &House, round: &Round, detail: u32, rng: &mut Pcg32, budget: u64, group: &impl Fn() -> String) {
+fn house_round(
+    sink: &mut Sink,
+    h: &House,
+    round: &Round,
+    detail: u32,
+    rng: &mut Pcg32,
+    budget: u64,
+    group: &impl Fn() -> String,
+) {
     match round {
         Round::Windows(street) => {
             for storey in 0..h.storeys {
@@ -199,7 +237,8 @@ fn floor(h: &House, storey: u32) -> Inside {
     let front = (0..4).find(|k| h.street[*k]).unwrap_or(0);
     let into = (middle - (h.ground[front] + h.ground[(front + 1) % 4]) * 0.5).normalize();
     let right = into.cross(DVec3::Y);
-    let extent = |axis: DVec3| h.ground.iter().map(|c| (*c - middle).dot(axis).abs()).fold(f64::INFINITY, f64::min);
+    let extent =
+        |axis: DVec3| h.ground.iter().map(|c| (*c - middle).dot(axis).abs()).fold(f64::INFINITY, f64::min);
     let middle = middle.with_y(CURB + STOREY * f64::from(storey) + 0.01);
     Inside { middle, into, right, deep: extent(into), wide: extent(right), plaster: 0.2 }
 }
@@ -276,7 +315,16 @@ fn structure(sink: &mut Sink, city: &City) {
 /// Along the middles of the streets in the shape of an 8, once, corners rounded.
 fn walk(city: &City, origin: DVec3) -> ViewPath<Solid> {
     let ([west, middle, east], [north, south]) = city.walked_lines();
-    let turns = [(middle, north), (west, north), (west, south), (middle, south), (middle, north), (east, north), (east, south), (middle, south)];
+    let turns = [
+        (middle, north),
+        (west, north),
+        (west, south),
+        (middle, south),
+        (middle, north),
+        (east, north),
+        (east, south),
+        (middle, south),
+    ];
     let mut stops = Vec::new();
     for (k, &(i, j)) in turns.iter().enumerate() {
         let (to_i, to_j) = turns[(k + 1) % turns.len()];
@@ -317,7 +365,8 @@ mod tests {
             "polygons=60000&blocks=2",
         ] {
             let scene = city(&format!("city?{call}"));
-            let want: f64 = call["polygons=".len()..].split('&').next().and_then(|n| n.parse().ok()).expect("a number");
+            let want: f64 =
+                call["polygons=".len()..].split('&').next().and_then(|n| n.parse().ok()).expect("a number");
             let got = scene.prim_count() as f64;
             assert!((got - want).abs() < 0.02 * want + 100.0, "{call}: {got}");
             assert_eq!(scene.report().dropped_total(), 0, "{call}: {:?}", scene.report());
@@ -331,7 +380,10 @@ mod tests {
         assert_eq!(hash("city?polygons=3000&seed=4"), hash("city?seed=4&polygons=3000"));
         assert_ne!(hash("city?polygons=3000&seed=4"), hash("city?polygons=3000&seed=5"));
         // Machines must agree, so the bits are written down.
-        assert_eq!(hash("city?polygons=3000&seed=4"), "345fc4b78bf87e327ba9ea01500cda2ee093c31c1bfb3e6b65def078ba597b0a");
+        assert_eq!(
+            hash("city?polygons=3000&seed=4"),
+            "345fc4b78bf87e327ba9ea01500cda2ee093c31c1bfb3e6b65def078ba597b0a"
+        );
     }
 
     #[test]
@@ -342,18 +394,23 @@ mod tests {
         }
     }
 
-    /// Upright edges of walls that meet, in streets and between houses of different heights, are the same edge: then
-    /// walls hide together what none hides alone. Left over are only corners of yards where three houses meet: edges of
-    /// one wall, or of four where two houses touch above a lower one.
+    /// Upright edges of walls that meet, in streets and between houses of different heights, are the same
+    /// edge: then walls hide together what none hides alone. Left over are only corners of yards where three
+    /// houses meet: edges of one wall, or of four where two houses touch above a lower one.
     #[test]
     fn walls_that_meet_share_their_edges() {
         let scene = city("city?polygons=20000&seed=2&blocks=12");
         let mut edges = std::collections::BTreeMap::<[u32; 2], u32>::new();
-        for face in scene.faces().iter().filter(|f| scene.objects()[scene.object_of(f.prims[0]).at()].name == "walls") {
+        for face in
+            scene.faces().iter().filter(|f| scene.objects()[scene.object_of(f.prims[0]).at()].name == "walls")
+        {
             let at = |k: usize| scene.points()[face.corners[k % face.corners.len()] as usize];
             // A wall drawn back from the street has a height that no other has.
-            let drawn_back = (0..face.corners.len()).any(|k| ((at(k).y - 0.45) / 3.0).fract() > 0.9 && at(k).y > 1.0);
-            for k in (0..face.corners.len()).filter(|k| !drawn_back && at(*k).with_y(0.0) == at(k + 1).with_y(0.0)) {
+            let drawn_back =
+                (0..face.corners.len()).any(|k| ((at(k).y - 0.45) / 3.0).fract() > 0.9 && at(k).y > 1.0);
+            for k in
+                (0..face.corners.len()).filter(|k| !drawn_back && at(*k).with_y(0.0) == at(k + 1).with_y(0.0))
+            {
                 let mut edge = [face.corners[k], face.corners[(k + 1) % face.corners.len()]];
                 edge.sort_unstable();
                 *edges.entry(edge).or_default() += 1;
@@ -361,12 +418,18 @@ mod tests {
         }
         let of = |count: u32| edges.values().filter(|c| **c == count).count();
         assert_eq!(of(1) + of(2) + of(4), edges.len(), "an edge of three walls");
-        assert!(edges.len() > 300 && of(2) * 100 > edges.len() * 88, "{} single edges of {}", of(1), edges.len());
+        assert!(
+            edges.len() > 300 && of(2) * 100 > edges.len() * 88,
+            "{} single edges of {}",
+            of(1),
+            edges.len()
+        );
     }
 
     #[test]
     fn blocks_that_do_not_fit_the_budget_are_refused() {
-        let error = generate("city?polygons=1000&blocks=100", &LoadOptions::default(), &Quiet).expect_err("too many blocks");
+        let error = generate("city?polygons=1000&blocks=100", &LoadOptions::default(), &Quiet)
+            .expect_err("too many blocks");
         assert!(error.to_string().contains("fewer blocks"), "{error}");
     }
 }

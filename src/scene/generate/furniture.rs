@@ -149,7 +149,14 @@ pub(super) fn shelf(sink: &mut Sink, frame: &Frame, detail: u32, rng: &mut Pcg32
             let width = 1.1 / f64::from(count) * (0.75 + 0.2 * signed(rng));
             let (tall, deep) = (0.27 + 0.06 * signed(rng), 0.2 + 0.05 * signed(rng));
             sink.paint(BOOKS + rng.next_u32() % 3);
-            rounded(sink, frame, [x, y + 0.02, -0.02 - deep], [x + width, y + 0.02 + tall, -0.02], detail.div_ceil(4), 0.0);
+            rounded(
+                sink,
+                frame,
+                [x, y + 0.02, -0.02 - deep],
+                [x + width, y + 0.02 + tall, -0.02],
+                detail.div_ceil(4),
+                0.0,
+            );
             x += 1.1 / f64::from(count);
         }
         sink.paint(WOOD);
@@ -167,7 +174,12 @@ pub(super) fn plant(sink: &mut Sink, frame: &Frame, detail: u32, rng: &mut Pcg32
         let reach = 0.2 + 0.08 * signed(rng);
         let high = 0.75 + 0.35 * signed(rng);
         let point = |r: f64, y: f64, side: f64| at.at([r * c - side * s, y, r * s + side * c]);
-        let corners = [point(0.03, 0.34, 0.0), point(reach * 0.6, high * 0.8, 0.05), point(reach, high, 0.0), point(reach * 0.6, high * 0.8, -0.05)];
+        let corners = [
+            point(0.03, 0.34, 0.0),
+            point(reach * 0.6, high * 0.8, 0.05),
+            point(reach, high, 0.0),
+            point(reach * 0.6, high * 0.8, -0.05),
+        ];
         let outward = DVec3::Y;
         sink.face(&[corners[0], corners[1], corners[2]], outward);
         sink.face(&[corners[0], corners[2], corners[3]], outward);

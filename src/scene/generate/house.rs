@@ -1,8 +1,8 @@
 //! The houses of the city: walls, roofs, floors, and the windows and doors on the walls.
 //!
-//! A wall is one polygon from the ground to the eaves. Where a lower house joins, the wall's corner at that height
-//! is a corner of both, so that walls that meet share whole edges; a wall between two houses shows only above the
-//! lower one. What lies between them below is a wall of its own, drawn back from the street.
+//! A wall is one polygon from the ground to the eaves. Where a lower house joins, the wall's corner at that
+//! height is a corner of both, so that walls that meet share whole edges; a wall between two houses shows
+//! only above the lower one. What lies between them below is a wall of its own, drawn back from the street.
 
 use glam::DVec3;
 
@@ -30,7 +30,9 @@ pub(super) fn shell(sink: &mut Sink, house: &House, group: &impl Fn() -> String)
     for storey in 0..house.storeys {
         sink.begin(|| (format!("floor_{storey}"), group()));
         let low = CURB + STOREY * f64::from(storey);
-        for (material, y, outward) in [(furniture::FLOOR, low + 0.01, DVec3::Y), (furniture::CEILING, low + HEIGHT + 0.01, -DVec3::Y)] {
+        for (material, y, outward) in
+            [(furniture::FLOOR, low + 0.01, DVec3::Y), (furniture::CEILING, low + HEIGHT + 0.01, -DVec3::Y)]
+        {
             // The ground floor lies on the pavement's slab.
             if storey > 0 || outward.y < 0.0 {
                 sink.paint(material);
@@ -98,7 +100,8 @@ fn roof(sink: &mut Sink, house: &House) {
             }
             sink.paint(paint::FACADE + house.paint % paint::FACADES);
             for side in house.ends {
-                let hidden = |n: Neighbor| n.eaves > eaves + RISE || (n.eaves >= eaves && n.roof == Roof::Gabled);
+                let hidden =
+                    |n: Neighbor| n.eaves > eaves + RISE || (n.eaves >= eaves && n.roof == Roof::Gabled);
                 if !house.joined[side].is_some_and(hidden) {
                     sink.face(&[c[side], c[(side + 1) % 4], ridge(side)], side_of(house, side).2);
                 }
@@ -112,7 +115,11 @@ fn bays(house: &House, side: usize) -> (u32, impl Fn(u32) -> Frame) {
     let (a, b, outward) = side_of(house, side);
     let count = (a.distance(b) / BAY).floor().max(1.0) as u32;
     let right = (b - a).normalize();
-    let at = move |k: u32| Frame { origin: a.lerp(b, (f64::from(k) + 0.5) / f64::from(count)), right, away: -outward };
+    let at = move |k: u32| Frame {
+        origin: a.lerp(b, (f64::from(k) + 0.5) / f64::from(count)),
+        right,
+        away: -outward,
+    };
     (count, at)
 }
 
@@ -122,7 +129,14 @@ fn sheet(sink: &mut Sink, frame: &Frame, [x0, x1, y0, y1]: [f64; 4], before: f64
 }
 
 /// The windows of a storey on one side, and the house's door. None where there is a neighbor.
-pub(super) fn windows(sink: &mut Sink, house: &House, side: usize, storey: u32, detail: u32, group: &impl Fn() -> String) {
+pub(super) fn windows(
+    sink: &mut Sink,
+    house: &House,
+    side: usize,
+    storey: u32,
+    detail: u32,
+    group: &impl Fn() -> String,
+) {
     if house.joined[side].is_some() {
         return;
     }
@@ -145,7 +159,12 @@ pub(super) fn windows(sink: &mut Sink, house: &House, side: usize, storey: u32, 
             for row in 0..rows {
                 let (x, high) = (-0.58 + 0.61 * f64::from(column), 1.46 / f64::from(rows));
                 let y = 0.92 + high * f64::from(row);
-                sheet(sink, &frame, [x, x + 0.55, y, y + high - if row + 1 < rows { 0.05 } else { 0.0 }], 0.05);
+                sheet(
+                    sink,
+                    &frame,
+                    [x, x + 0.55, y, y + high - if row + 1 < rows { 0.05 } else { 0.0 }],
+                    0.05,
+                );
             }
         }
     }

@@ -1,4 +1,5 @@
-//! Surfaces of revolution around any axis, and surfaces over a grid: the finely tessellated shapes of the generators.
+//! Surfaces of revolution around any axis, and surfaces over a grid: the finely tessellated shapes of the
+//! generators.
 //!
 //! As everywhere here only addition, multiplication, division and square root are used.
 
@@ -9,16 +10,19 @@ use super::shapes::{Sink, circle};
 /// A place on a profile: along the axis, and away from it, m.
 pub(super) type Station = [f64; 2];
 
-/// Turns a profile around the axis through `from` along the unit vector `along`. A profile that begins and ends on
-/// the axis makes a closed body; seen along the axis the outside is on the left of the profile's direction.
+/// Turns a profile around the axis through `from` along the unit vector `along`. A profile that begins and
+/// ends on the axis makes a closed body; seen along the axis the outside is on the left of the profile's
+/// direction.
 pub(super) fn lathe(sink: &mut Sink, from: DVec3, along: DVec3, profile: &[Station], sides: u32) {
     let sides = sides.max(3);
     let (u, v) = across(along);
-    let spokes: Vec<DVec3> = (0..2 * sides).map(|k| circle(k, 2 * sides)).map(|(c, s)| u * c + v * s).collect();
+    let spokes: Vec<DVec3> =
+        (0..2 * sides).map(|k| circle(k, 2 * sides)).map(|(c, s)| u * c + v * s).collect();
     for pair in profile.windows(2) {
         let ([a, near], [b, far]) = (pair[0], pair[1]);
         for k in 0..sides as usize {
-            let (left, middle, right) = (spokes[2 * k], spokes[2 * k + 1], spokes[(2 * k + 2) % spokes.len()]);
+            let (left, middle, right) =
+                (spokes[2 * k], spokes[2 * k + 1], spokes[(2 * k + 2) % spokes.len()]);
             let outward = middle * (b - a) + along * (near - far);
             let at = |place: f64, spoke: DVec3, radius: f64| from + along * place + spoke * radius;
             if near > 0.0 {
@@ -49,13 +53,18 @@ pub(super) fn drum(length: f64, radius: f64, rows: u32) -> Vec<Station> {
 /// The profile of a body with round ends: `cells` stations a dome, as many along the middle, if there is one.
 pub(super) fn capsule(length: f64, radius: f64, dome: f64, cells: u32) -> Vec<Station> {
     let arc = |k: u32| circle(k, 4 * cells);
-    let mut profile: Vec<Station> = (0..=cells).map(arc).map(|(c, s)| [dome * (1.0 - c), radius * s]).collect();
+    let mut profile: Vec<Station> =
+        (0..=cells).map(arc).map(|(c, s)| [dome * (1.0 - c), radius * s]).collect();
     profile[0][1] = 0.0;
     let straight = length > 2.0 * dome;
     if straight {
-        profile.extend((1..cells).map(|k| [dome + (length - 2.0 * dome) * f64::from(k) / f64::from(cells), radius]));
+        profile.extend(
+            (1..cells).map(|k| [dome + (length - 2.0 * dome) * f64::from(k) / f64::from(cells), radius]),
+        );
     }
-    profile.extend((0..cells + u32::from(straight)).rev().map(arc).map(|(c, s)| [length - dome * (1.0 - c), radius * s]));
+    profile.extend(
+        (0..cells + u32::from(straight)).rev().map(arc).map(|(c, s)| [length - dome * (1.0 - c), radius * s]),
+    );
     if let Some(last) = profile.last_mut() {
         last[1] = 0.0;
     }
@@ -68,9 +77,14 @@ pub(super) fn grid(triangles: u64, ratio: f64) -> (u32, u32) {
     (columns, ((triangles as f64 / f64::from(2 * columns) + 0.5) as u32).max(3))
 }
 
-/// The surface of `point(i, j)` for `i` up to `columns` and `j` up to `rows`; each cell turns away from `inside(i, j)`.
-/// Triangles without area, where points of the grid fall together, are left out.
-pub(super) fn sheet(sink: &mut Sink, (columns, rows): (u32, u32), point: impl Fn(u32, u32) -> DVec3, inside: impl Fn(u32, u32) -> DVec3) {
+/// The surface of `point(i, j)` for `i` up to `columns` and `j` up to `rows`; each cell turns away from
+/// `inside(i, j)`. Triangles without area, where points of the grid fall together, are left out.
+pub(super) fn sheet(
+    sink: &mut Sink,
+    (columns, rows): (u32, u32),
+    point: impl Fn(u32, u32) -> DVec3,
+    inside: impl Fn(u32, u32) -> DVec3,
+) {
     let column = |i: u32| -> Vec<DVec3> { (0..=rows).map(|j| point(i, j)).collect() };
     let mut left = column(0);
     for i in 0..columns {
@@ -99,7 +113,11 @@ mod tests {
         sink.begin(|| ("a".into(), "b".into()));
         shape(&mut sink);
         let mesh = sink.into_mesh();
-        mesh.corners.chunks(3).map(|c| [0, 1, 2].map(|k| mesh.points[c[k] as usize])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+        mesh.corners
+            .chunks(3)
+            .map(|c| [0, 1, 2].map(|k| mesh.points[c[k] as usize]))
+            .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
+            .sum()
     }
 
     #[test]
@@ -121,7 +139,12 @@ mod tests {
             let ((c, s), (up, out)) = (circle(i % 6, 6), circle(j, 8));
             DVec3::new(out * c, up, if j.is_multiple_of(4) { 0.0 } else { out * s })
         };
-        sheet(&mut sink, (6, 4), |i, j| if j.is_multiple_of(4) { DVec3::Y * (2.0 - f64::from(j)) } else { point(i, j) }, |_, _| DVec3::ZERO);
+        sheet(
+            &mut sink,
+            (6, 4),
+            |i, j| if j.is_multiple_of(4) { DVec3::Y * (2.0 - f64::from(j)) } else { point(i, j) },
+            |_, _| DVec3::ZERO,
+        );
         assert_eq!(sink.triangles, 6 * 4 * 2 - 2 * 6);
     }
 }

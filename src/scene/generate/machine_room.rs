@@ -1,9 +1,9 @@
 //! `generate:machine-room`: four rooms of a ship full of machines, and a torpedo behind three bulkheads.
 //!
-//! After the submarine that Georges (1995, Section 5.2) tested with: many large polygons that hide, and one very dense
-//! object that is hidden from most of the way. The doors of the bulkheads stand such that no line of sight passes
-//! two of them, so the body is hidden from all of the first two rooms and most of the third. The number of triangles is
-//! met as in the building. Cost: O(polygons).
+//! After the submarine that Georges (1995, Section 5.2) tested with: many large polygons that hide, and one
+//! very dense object that is hidden from most of the way. The doors of the bulkheads stand such that no line
+//! of sight passes two of them, so the body is hidden from all of the first two rooms and most of the third.
+//! The number of triangles is met as in the building. Cost: O(polygons).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -21,17 +21,31 @@ use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "machine-room",
-    meaning: "rooms full of machines, and one very dense body behind walls for most of a flight; after the submarine of Georges 1995",
+    meaning: "rooms full of machines, and one very dense body behind walls for most of a flight; after the \
+              submarine of Georges 1995",
     params: &[
-        GeneratorParam { name: "polygons", default: 300_000, min: 30_000, max: 8_000_000, meaning: "triangles, met within 2 percent" },
+        GeneratorParam {
+            name: "polygons",
+            default: 300_000,
+            min: 30_000,
+            max: 8_000_000,
+            meaning: "triangles, met within 2 percent",
+        },
         GeneratorParam {
             name: "body",
             default: 0,
             min: 0,
             max: 4_000_000,
-            meaning: "triangles of the hidden body, half of all at most; 0 is a third of all (100,000 of 300,000)",
+            meaning: "triangles of the hidden body, half of all at most; 0 is a third of all (100,000 of \
+                      300,000)",
         },
-        GeneratorParam { name: "seed", default: 1, min: 0, max: u32::MAX as u64, meaning: "chooses sizes and colors of machines" },
+        GeneratorParam {
+            name: "seed",
+            default: 1,
+            min: 0,
+            max: u32::MAX as u64,
+            meaning: "chooses sizes and colors of machines",
+        },
     ],
     make,
 };
@@ -48,7 +62,12 @@ const DOORS: [f64; 3] = [2.7, 12.7, 2.7];
 const BODY: DVec3 = DVec3::new(32.5, 1.35, 8.0);
 const NOSE: f64 = 3.5;
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
     let body = match values.get("body") {
         0 => polygons / 3,
@@ -58,7 +77,8 @@ fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Pro
         }
         given => given,
     };
-    let detail = detail_for(polygons, source, progress, |sink, detail| furnish(sink, seed, detail, polygons, body))?;
+    let detail =
+        detail_for(polygons, source, progress, |sink, detail| furnish(sink, seed, detail, polygons, body))?;
     progress.report(0.3, "furnishing");
     let mut sink = Sink::keeping(MATERIALS);
     furnish(&mut sink, seed, detail, polygons, body);
@@ -124,14 +144,23 @@ const MACHINES: &[Stand] = &[
 ];
 
 /// Floor areas `[x0, z0, x1, z1]` that fill up with drums.
-const STORES: [[f64; 4]; 5] =
-    [[2.0, 12.4, 8.4, 14.8], [27.8, 12.8, 28.4, 15.6], [24.8, 7.6, 26.4, 8.8], [18.6, 14.6, 20.4, 15.2], [33.9, 0.6, 35.4, 1.9]];
+const STORES: [[f64; 4]; 5] = [
+    [2.0, 12.4, 8.4, 14.8],
+    [27.8, 12.8, 28.4, 15.6],
+    [24.8, 7.6, 26.4, 8.8],
+    [18.6, 14.6, 20.4, 15.2],
+    [33.9, 0.6, 35.4, 1.9],
+];
 
 /// The ship, the body and the machines, then pipes, bolts and drums until the budget is met.
 fn furnish(sink: &mut Sink, seed: u64, detail: u32, budget: u64, body: u64) {
     structure(sink);
     sink.begin(|| ("torpedo".into(), "torpedo".into()));
-    piece::torpedo(sink, &Frame { origin: DVec3::new(BODY.x, BODY.y, NOSE), right: DVec3::X, away: DVec3::Z }, body);
+    piece::torpedo(
+        sink,
+        &Frame { origin: DVec3::new(BODY.x, BODY.y, NOSE), right: DVec3::X, away: DVec3::Z },
+        body,
+    );
     sink.begin(|| ("cradle".into(), "torpedo".into()));
     sink.paint(STEEL);
     for z in [5.5, 8.0, 10.5] {
@@ -211,7 +240,12 @@ fn pipes(sink: &mut Sink, run: u32, detail: u32) {
         _ => {
             let x = west + 1.8 + 1.7 * lane;
             let (turn, y) = (WIDE * (0.3 + 0.15 * lane), HIGH - 0.25);
-            vec![DVec3::new(x, y, 0.15), DVec3::new(x, y, turn), DVec3::new(x + 0.8, y, turn), DVec3::new(x + 0.8, y, WIDE - 0.15)]
+            vec![
+                DVec3::new(x, y, 0.15),
+                DVec3::new(x, y, turn),
+                DVec3::new(x + 0.8, y, turn),
+                DVec3::new(x + 0.8, y, WIDE - 0.15),
+            ]
         }
     };
     piece::pipe(sink, &points, radius, k, detail);
@@ -246,7 +280,11 @@ fn structure(sink: &mut Sink) {
         slab(sink, [BAY * f64::from(bay), 0.0, BAY * f64::from(bay + 1), WIDE], [DECK, OVERHEAD], HIGH);
     }
     let hull = |along_x: bool, place: f64, to: f64| Wall { along_x, place, from: 0.0, to, opening: None };
-    for (k, wall) in [hull(true, 0.0, long), hull(true, WIDE, long), hull(false, 0.0, WIDE), hull(false, long, WIDE)].iter().enumerate() {
+    for (k, wall) in
+        [hull(true, 0.0, long), hull(true, WIDE, long), hull(false, 0.0, WIDE), hull(false, long, WIDE)]
+            .iter()
+            .enumerate()
+    {
         sink.begin(|| (format!("hull_{k}"), "hull".into()));
         sink.paint(HULL);
         build_wall(sink, wall, HIGH);
@@ -255,7 +293,11 @@ fn structure(sink: &mut Sink) {
         sink.begin(|| (format!("bulkhead_{k}"), "bulkheads".into()));
         sink.paint(BULKHEAD);
         let opening = Some([door - 0.65, door + 0.65, 0.0, 2.2]);
-        build_wall(sink, &Wall { along_x: false, place: BAY * f64::from(k as u32 + 1), from: 0.0, to: WIDE, opening }, HIGH);
+        build_wall(
+            sink,
+            &Wall { along_x: false, place: BAY * f64::from(k as u32 + 1), from: 0.0, to: WIDE, opening },
+            HIGH,
+        );
     }
 }
 
@@ -309,10 +351,15 @@ mod tests {
             let (got, want) = (scene.prim_count() as f64, f64::from(polygons));
             assert!((got - want).abs() < 0.02 * want, "{got} instead of {want}");
             assert_eq!(scene.report().dropped_total(), 0, "{:?}", scene.report());
-            let body = scene.live().iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "torpedo").count() as f64;
+            let body = scene
+                .live()
+                .iter()
+                .filter(|p| scene.objects()[scene.object_of(**p).at()].name == "torpedo")
+                .count() as f64;
             assert!((body - want / 3.0).abs() < 0.02 * want / 3.0, "{body} of {want}");
         }
-        let error = generate("machine-room?polygons=30000&body=20000", &LoadOptions::default(), &Quiet).expect_err("too large a body");
+        let error = generate("machine-room?polygons=30000&body=20000", &LoadOptions::default(), &Quiet)
+            .expect_err("too large a body");
         assert!(error.to_string().contains("more than half"), "{error}");
     }
 
@@ -321,7 +368,10 @@ mod tests {
         let hash = |call: &str| room(call).hash_hex();
         assert_ne!(hash("machine-room?polygons=30000&seed=4"), hash("machine-room?polygons=30000&seed=5"));
         // Machines must agree, so the bits are written down.
-        assert_eq!(hash("machine-room?polygons=30000&seed=4"), "b309a826f860e7d287cdf0f8ee1fbea7a3e7acd312321c846c05b948b42511c8");
+        assert_eq!(
+            hash("machine-room?polygons=30000&seed=4"),
+            "b309a826f860e7d287cdf0f8ee1fbea7a3e7acd312321c846c05b948b42511c8"
+        );
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! What stands in the machine room and under the hoods of the cars. One function a piece; the same piece at any detail.
+//! What stands in the machine room and under the hoods of the cars. One function a piece; the same piece at
+//! any detail.
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -43,7 +44,8 @@ const DIAL: u32 = 13;
 const TORPEDO: u32 = 14;
 const YELLOW: u32 = 15;
 
-/// So many cells at detail 4, in proportion at any other: steps of detail small enough to meet a budget closely.
+/// So many cells at detail 4, in proportion at any other: steps of detail small enough to meet a budget
+/// closely.
 fn parts(cells: u32, detail: u32) -> u32 {
     (cells * detail).div_ceil(4)
 }
@@ -51,7 +53,13 @@ fn parts(cells: u32, detail: u32) -> u32 {
 /// A bolt's head on a surface at `at` that looks along `out`: a hexagon, on a washer where things are fine.
 pub(super) fn bolt(sink: &mut Sink, at: DVec3, out: DVec3, size: f64, detail: u32) {
     if detail >= 8 {
-        lathe(sink, at, out, &[[0.0, 1.5 * size], [0.2 * size, 1.5 * size], [0.2 * size, size]], parts(6, detail));
+        lathe(
+            sink,
+            at,
+            out,
+            &[[0.0, 1.5 * size], [0.2 * size, 1.5 * size], [0.2 * size, size]],
+            parts(6, detail),
+        );
     }
     lathe(sink, at, out, &[[0.0, size], [size, size], [size, 0.0]], 6);
 }
@@ -67,8 +75,16 @@ fn bolts(sink: &mut Sink, center: DVec3, out: DVec3, radius: f64, count: u32, si
 /// Two flanges face to face around a pipe, bolted.
 fn flange(sink: &mut Sink, at: DVec3, along: DVec3, radius: f64, detail: u32) {
     let (wide, half) = (radius * 1.7, 0.025);
-    let profile =
-        [[-half, radius], [-half, wide], [-0.003, wide], [-0.003, 0.97 * wide], [0.003, 0.97 * wide], [0.003, wide], [half, wide], [half, radius]];
+    let profile = [
+        [-half, radius],
+        [-half, wide],
+        [-0.003, wide],
+        [-0.003, 0.97 * wide],
+        [0.003, 0.97 * wide],
+        [0.003, wide],
+        [half, wide],
+        [half, radius],
+    ];
     lathe(sink, at, along, &profile, parts(8, detail));
     for side in [-1.0, 1.0] {
         bolts(sink, at + along * (side * half), along * side, radius * 1.36, 6, radius * 0.16, detail);
@@ -84,13 +100,21 @@ pub(super) fn pipe(sink: &mut Sink, points: &[DVec3], radius: f64, color: u32, d
         if length > 1.5 {
             sink.paint(STEEL);
             let stretches = (length / 3.0).ceil();
-            (0..stretches as u32).for_each(|k| flange(sink, pair[0] + way * (length * (f64::from(k) + 0.5) / stretches), way, radius, detail));
+            (0..stretches as u32).for_each(|k| {
+                flange(sink, pair[0] + way * (length * (f64::from(k) + 0.5) / stretches), way, radius, detail)
+            });
         }
     }
     sink.paint(STEEL);
     for at in points.iter().skip(1).take(points.len().saturating_sub(2)) {
         let size = radius * 1.35;
-        lathe(sink, *at - DVec3::Y * size, DVec3::Y, &capsule(2.0 * size, size, size, parts(2, detail)), parts(6, detail));
+        lathe(
+            sink,
+            *at - DVec3::Y * size,
+            DVec3::Y,
+            &capsule(2.0 * size, size, size, parts(2, detail)),
+            parts(6, detail),
+        );
     }
 }
 
@@ -130,14 +154,32 @@ pub(super) fn tank(sink: &mut Sink, frame: &Frame, detail: u32, rng: &mut Pcg32)
     sink.paint(STEEL);
     for level in [0.3, 0.7] {
         let at = foot + DVec3::Y * (level * height);
-        lathe(sink, at, DVec3::Y, &[[-0.05, radius], [-0.05, radius + 0.06], [0.05, radius + 0.06], [0.05, radius]], parts(10, detail));
+        lathe(
+            sink,
+            at,
+            DVec3::Y,
+            &[[-0.05, radius], [-0.05, radius + 0.06], [0.05, radius + 0.06], [0.05, radius]],
+            parts(10, detail),
+        );
         bolts(sink, at + DVec3::Y * 0.05, DVec3::Y, radius + 0.03, 20, 0.018, detail);
     }
     for (c, s) in (0..4).map(|k| circle(2 * k + 1, 8)) {
-        lathe(sink, frame.at([0.8 * radius * c, 0.0, 0.8 * radius * s]), DVec3::Y, &drum(0.8, 0.06, 1), parts(4, detail));
+        lathe(
+            sink,
+            frame.at([0.8 * radius * c, 0.0, 0.8 * radius * s]),
+            DVec3::Y,
+            &drum(0.8, 0.06, 1),
+            parts(4, detail),
+        );
     }
     let hatch = frame.at([0.0, 1.7, -radius]);
-    lathe(sink, hatch, -frame.away, &[[-0.1, 0.32], [0.06, 0.32], [0.06, 0.26], [0.09, 0.22], [0.09, 0.0]], parts(8, detail));
+    lathe(
+        sink,
+        hatch,
+        -frame.away,
+        &[[-0.1, 0.32], [0.06, 0.32], [0.06, 0.26], [0.09, 0.22], [0.09, 0.0]],
+        parts(8, detail),
+    );
     bolts(sink, hatch - frame.away * 0.06, -frame.away, 0.29, 12, 0.014, detail);
 }
 
@@ -150,7 +192,9 @@ pub(super) fn pump(sink: &mut Sink, frame: &Frame, detail: u32, _: &mut Pcg32) {
     let mut profile: Vec<Station> = vec![[0.0, 0.0]];
     for k in 0..fins {
         let (from, wide) = (f64::from(k) / f64::from(fins), 1.0 / f64::from(fins));
-        profile.extend([(0.0, 0.34), (0.5, 0.34), (0.5, 0.28), (1.0, 0.28)].map(|(t, radius)| [from + t * wide, radius]));
+        profile.extend(
+            [(0.0, 0.34), (0.5, 0.34), (0.5, 0.28), (1.0, 0.28)].map(|(t, radius)| [from + t * wide, radius]),
+        );
     }
     profile.push([1.0, 0.0]);
     lathe(sink, frame.at([-0.95, 0.52, 0.0]), frame.right, &profile, parts(6, detail));
@@ -174,10 +218,22 @@ pub(super) fn engine(sink: &mut Sink, frame: &Frame, detail: u32, _: &mut Pcg32)
         sink.paint(ENGINE);
         lathe(sink, frame.at([x, 1.05, 0.0]), DVec3::Y, &drum(0.5, 0.21, parts(2, detail)), parts(8, detail));
         sink.paint(STEEL);
-        lathe(sink, frame.at([x, 1.52, 0.0]), DVec3::Y, &capsule(0.26, 0.17, 0.1, parts(1, detail)), parts(8, detail));
+        lathe(
+            sink,
+            frame.at([x, 1.52, 0.0]),
+            DVec3::Y,
+            &capsule(0.26, 0.17, 0.1, parts(1, detail)),
+            parts(8, detail),
+        );
         bolts(sink, frame.at([x, 1.55, 0.0]), DVec3::Y, 0.19, 8, 0.016, detail);
         sink.paint(BRASS);
-        pipe(sink, &[frame.at([x, 1.4, -0.15]), frame.at([x, 1.4, -0.5]), frame.at([x, 0.8, -0.5])], 0.035, k, detail);
+        pipe(
+            sink,
+            &[frame.at([x, 1.4, -0.15]), frame.at([x, 1.4, -0.5]), frame.at([x, 0.8, -0.5])],
+            0.035,
+            k,
+            detail,
+        );
         sink.paint(STEEL);
         block(sink, frame, [x - 0.18, 0.4, -0.46], [x + 0.18, 0.85, -0.42]);
         for (dx, y) in [(-0.15, 0.43), (0.15, 0.43), (-0.15, 0.82), (0.15, 0.82)] {
@@ -185,9 +241,24 @@ pub(super) fn engine(sink: &mut Sink, frame: &Frame, detail: u32, _: &mut Pcg32)
         }
     }
     sink.paint(RUBBER);
-    lathe(sink, frame.at([-1.5, 1.5, 0.36]), frame.right, &capsule(3.0, 0.16, 0.16, parts(2, detail)), parts(8, detail));
+    lathe(
+        sink,
+        frame.at([-1.5, 1.5, 0.36]),
+        frame.right,
+        &capsule(3.0, 0.16, 0.16, parts(2, detail)),
+        parts(8, detail),
+    );
     sink.paint(STEEL);
-    let rim = [[0.0, 0.0], [0.0, 0.2], [-0.03, 0.25], [-0.03, 0.55], [0.12, 0.55], [0.12, 0.25], [0.09, 0.2], [0.09, 0.0]];
+    let rim = [
+        [0.0, 0.0],
+        [0.0, 0.2],
+        [-0.03, 0.25],
+        [-0.03, 0.55],
+        [0.12, 0.55],
+        [0.12, 0.25],
+        [0.09, 0.2],
+        [0.09, 0.0],
+    ];
     lathe(sink, frame.at([1.55, 0.65, 0.0]), frame.right, &rim, parts(12, detail));
 }
 
@@ -229,7 +300,13 @@ pub(super) fn cabinet(sink: &mut Sink, frame: &Frame, detail: u32, _: &mut Pcg32
         let y = 1.5 + 0.4 * f64::from(k) / f64::from(parts(4, detail));
         block(sink, frame, [-0.35, y, -0.62], [0.35, y + 0.2 / f64::from(parts(4, detail)), -0.6]);
     }
-    lathe(sink, frame.at([0.4, 0.9, -0.64]), DVec3::Y, &capsule(0.25, 0.015, 0.015, parts(1, detail)), parts(4, detail));
+    lathe(
+        sink,
+        frame.at([0.4, 0.9, -0.64]),
+        DVec3::Y,
+        &capsule(0.25, 0.015, 0.015, parts(1, detail)),
+        parts(4, detail),
+    );
 }
 
 /// Six gas bottles in a rack.

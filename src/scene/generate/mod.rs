@@ -84,14 +84,19 @@ pub fn generators() -> &'static [Generator] {
 }
 
 /// Makes the scene that `generate:NAME[?key=value&…]` describes. `call` is what follows `generate:`.
-pub(super) fn generate(call: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+pub(super) fn generate(
+    call: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let fail = |why: String| SceneError::Format { path: format!("generate:{call}"), why };
     let (name, query) = call.split_once('?').unwrap_or((call, ""));
     let Some(generator) = GENERATORS.iter().find(|g| g.name == name) else {
         let known: Vec<&str> = GENERATORS.iter().map(|g| g.name).collect();
         return Err(fail(format!("there is no generator `{name}`; there are: {}", known.join(", "))));
     };
-    let mut values = Values { params: generator.params, values: generator.params.iter().map(|p| p.default).collect() };
+    let mut values =
+        Values { params: generator.params, values: generator.params.iter().map(|p| p.default).collect() };
     for pair in query.split('&').filter(|p| !p.is_empty()) {
         let Some((key, value)) = pair.split_once('=') else {
             return Err(fail(format!("`{pair}` should read key=value")));
@@ -104,10 +109,16 @@ pub(super) fn generate(call: &str, options: &LoadOptions, progress: &dyn Progres
         let number: Option<u64> = value.replace('_', "").parse().ok();
         match number.filter(|n| (param.min..=param.max).contains(n)) {
             Some(number) => values.values[i] = number,
-            None => return Err(fail(format!("`{key}` must be a whole number from {} to {}, not `{value}`", param.min, param.max))),
+            None => {
+                return Err(fail(format!(
+                    "`{key}` must be a whole number from {} to {}, not `{value}`",
+                    param.min, param.max
+                )));
+            }
         }
     }
-    let given: Vec<String> = generator.params.iter().zip(&values.values).map(|(p, v)| format!("{}={v}", p.name)).collect();
+    let given: Vec<String> =
+        generator.params.iter().zip(&values.values).map(|(p, v)| format!("{}={v}", p.name)).collect();
     let source = format!("generate:{name}?{}", given.join("&"));
     (generator.make)(&values, &source, options, &Part { whole: progress, start: 0.0, length: 0.95 })
 }
@@ -116,7 +127,12 @@ pub(super) fn generate(call: &str, options: &LoadOptions, progress: &dyn Progres
 const MAX_DETAIL: u32 = 64;
 
 /// The least detail at which `furnish` makes as many triangles as the budget asks, or the finest.
-fn detail_for(budget: u64, source: &str, progress: &dyn Progress, furnish: impl Fn(&mut Sink, u32)) -> Result<u32, SceneError> {
+fn detail_for(
+    budget: u64,
+    source: &str,
+    progress: &dyn Progress,
+    furnish: impl Fn(&mut Sink, u32),
+) -> Result<u32, SceneError> {
     for detail in 1..MAX_DETAIL {
         progress.report(0.1, "planning");
         if progress.cancelled() {

@@ -153,7 +153,11 @@ impl Plan {
             let cuts = divide(start, start + length, m, rng);
             for w in cuts.windows(2) {
                 let at = door_at(w[0], w[1], rng);
-                self.rooms.push(Room { rect: [w[0], front.min(spine), w[1], front.max(spine)], door: Some((door, at)), window: None });
+                self.rooms.push(Room {
+                    rect: [w[0], front.min(spine), w[1], front.max(spine)],
+                    door: Some((door, at)),
+                    window: None,
+                });
                 self.wall(true, front, w[0], w[1], Some(doorway(at)));
             }
             for place in &cuts[1..cuts.len() - 1] {

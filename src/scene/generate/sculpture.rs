@@ -37,7 +37,9 @@ fn knot(sink: &mut Sink, center: DVec3, radius: f64, triangles: u64) {
         let (c, s) = circle(i % around, around);
         center + (here + (side * c + side.cross(ahead) * s) * 0.45) * scale
     };
-    sheet(sink, (around, along), point, |_, j| center + (on_curve(j).0 + on_curve((j + 1) % along).0) * (0.5 * scale));
+    sheet(sink, (around, along), point, |_, j| {
+        center + (on_curve(j).0 + on_curve((j + 1) % along).0) * (0.5 * scale)
+    });
 }
 
 /// The columns and rows of a ball-like grid whose first and last row are points.
@@ -49,7 +51,8 @@ fn ball_grid(triangles: u64, ratio: f64) -> (u32, u32) {
 fn bumps(sink: &mut Sink, center: DVec3, radius: f64, triangles: u64) {
     let (around, rows) = ball_grid(triangles, 0.5);
     let point = |i: u32, j: u32| {
-        let (up, out) = if j == 0 || j == rows { (1.0 - 2.0 * f64::from(j / rows), 0.0) } else { circle(j, 2 * rows) };
+        let (up, out) =
+            if j == 0 || j == rows { (1.0 - 2.0 * f64::from(j / rows), 0.0) } else { circle(j, 2 * rows) };
         let (c, s) = circle(i % around, around);
         let bump = 0.8 + 0.2 * part(i % around, 6, around).0 * part(j, 5, 2 * rows).0 * out;
         center + DVec3::new(out * c, up, out * s) * (radius * bump)
@@ -72,18 +75,23 @@ fn vase(sink: &mut Sink, center: DVec3, radius: f64, triangles: u64) {
 
 fn twist(sink: &mut Sink, center: DVec3, radius: f64, triangles: u64) {
     let (around, rows) = ball_grid(triangles, 0.8);
-    let height = |j: u32| DVec3::Y * (radius * (2.0 * f64::from(j.clamp(1, rows - 1) - 1) / f64::from(rows - 2) - 1.0));
+    let height = |j: u32| {
+        DVec3::Y * (radius * (2.0 * f64::from(j.clamp(1, rows - 1) - 1) / f64::from(rows - 2) - 1.0))
+    };
     let point = |i: u32, j: u32| {
         if j == 0 || j == rows {
             return center + height(j);
         }
         let (c, s) = circle(i % around, around);
-        let turned = (u64::from(i % around) * 5 * u64::from(2 * rows) + u64::from(j) * u64::from(around)) % u64::from(around * 2 * rows);
+        let turned = (u64::from(i % around) * 5 * u64::from(2 * rows) + u64::from(j) * u64::from(around))
+            % u64::from(around * 2 * rows);
         let wave = circle(turned as u32, around * 2 * rows).0;
         center + height(j) + DVec3::new(c, 0.0, s) * (radius * (0.5 + 0.12 * wave))
     };
     // The flat ends turn away from the middle of the column, its side from its axis.
-    let inside = |_: u32, j: u32| if j == 0 || j + 1 == rows { center } else { center + (height(j) + height(j + 1)) * 0.5 };
+    let inside = |_: u32, j: u32| {
+        if j == 0 || j + 1 == rows { center } else { center + (height(j) + height(j + 1)) * 0.5 }
+    };
     sheet(sink, (around, rows), point, inside);
 }
 
@@ -99,9 +107,14 @@ mod tests {
                 sink.begin(|| ("a".into(), "b".into()));
                 let center = DVec3::new(3.0, 2.0, -1.0);
                 sculpture(&mut sink, center, 1.0, kind, want);
-                assert!(sink.triangles.abs_diff(want) * 100 <= want * 4, "kind {kind}: {} instead of {want}", sink.triangles);
+                assert!(
+                    sink.triangles.abs_diff(want) * 100 <= want * 4,
+                    "kind {kind}: {} instead of {want}",
+                    sink.triangles
+                );
                 let mesh = sink.into_mesh();
-                let triangles = || mesh.corners.chunks(3).map(|c| [0, 1, 2].map(|k| mesh.points[c[k] as usize] - center));
+                let triangles =
+                    || mesh.corners.chunks(3).map(|c| [0, 1, 2].map(|k| mesh.points[c[k] as usize] - center));
                 let volume: f64 = triangles().map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
                 let unsigned: f64 = triangles().map(|[a, b, c]| (a.dot(b.cross(c)) / 6.0).abs()).sum();
                 // A knot's cone from the center folds over itself; all others are stars.

@@ -1,8 +1,9 @@
 //! `generate:seminar-room`: a room with rows of chairs.
 //!
-//! After the seminar room of Soda Hall that Klosowski and Silva (2000, Section 5) walked through: nearly all triangles are in
-//! the chairs, few in walls and floor, so that inside the room no large polygon hides much and how much is seen changes
-//! along the flight. The number of triangles is met as in the building. Cost: O(polygons).
+//! After the seminar room of Soda Hall that Klosowski and Silva (2000, Section 5) walked through: nearly all
+//! triangles are in the chairs, few in walls and floor, so that inside the room no large polygon hides much
+//! and how much is seen changes along the flight. The number of triangles is met as in the building. Cost:
+//! O(polygons).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -19,10 +20,23 @@ use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "seminar-room",
-    meaning: "a room with rows of chairs and few walls, where nothing large hides much; after Klosowski and Silva 2000",
+    meaning: "a room with rows of chairs and few walls, where nothing large hides much; after Klosowski and \
+              Silva 2000",
     params: &[
-        GeneratorParam { name: "polygons", default: 45_000, min: 10_000, max: 4_000_000, meaning: "triangles, met within 2 percent" },
-        GeneratorParam { name: "seed", default: 1, min: 0, max: u32::MAX as u64, meaning: "how the chairs are moved and what lies on them" },
+        GeneratorParam {
+            name: "polygons",
+            default: 45_000,
+            min: 10_000,
+            max: 4_000_000,
+            meaning: "triangles, met within 2 percent",
+        },
+        GeneratorParam {
+            name: "seed",
+            default: 1,
+            min: 0,
+            max: u32::MAX as u64,
+            meaning: "how the chairs are moved and what lies on them",
+        },
     ],
     make,
 };
@@ -39,9 +53,15 @@ const ROW: f64 = 0.98;
 const AISLE: f64 = 0.75;
 const FIRST: f64 = 3.4;
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let (polygons, seed) = (values.get("polygons"), values.get("seed"));
-    let detail = detail_for(polygons, source, progress, |sink, detail| furnish(sink, seed, detail, polygons))?;
+    let detail =
+        detail_for(polygons, source, progress, |sink, detail| furnish(sink, seed, detail, polygons))?;
     progress.report(0.3, "furnishing");
     let mut sink = Sink::keeping(MATERIALS);
     furnish(&mut sink, seed, detail, polygons);
@@ -56,7 +76,11 @@ fn seat(k: u32) -> Frame {
     let (row, place) = (k / (2 * SEATS), k % (2 * SEATS));
     let side = if place < SEATS { -1.0 } else { 1.0 };
     let x = side * (AISLE + SEAT * (f64::from(place % SEATS) + 0.5));
-    Frame { origin: DVec3::new(WIDE * 0.5 + x, 0.0, FIRST + ROW * f64::from(row)), right: DVec3::X, away: DVec3::Z }
+    Frame {
+        origin: DVec3::new(WIDE * 0.5 + x, 0.0, FIRST + ROW * f64::from(row)),
+        right: DVec3::X,
+        away: DVec3::Z,
+    }
 }
 
 /// So many cells at detail 4, in proportion at any other.
@@ -99,7 +123,13 @@ fn left_behind(sink: &mut Sink, frame: &Frame, detail: u32, rng: &mut Pcg32) {
         block(sink, &at, [-0.1, 0.49, -0.14], [0.1, 0.5, 0.14]);
     } else {
         sink.paint(piece::LEAF);
-        ball(sink, &at.moved([0.0, 0.13, 0.05]), [0.16, 0.13, 0.12], around(8, detail), parts(5, detail).max(2));
+        ball(
+            sink,
+            &at.moved([0.0, 0.13, 0.05]),
+            [0.16, 0.13, 0.12],
+            around(8, detail),
+            parts(5, detail).max(2),
+        );
     }
 }
 
@@ -122,12 +152,22 @@ fn furnish(sink: &mut Sink, seed: u64, detail: u32, budget: u64) {
     let rng = &mut Pcg32::new(seed, 2);
     for (name, x, z, away, draw) in FRONT {
         sink.begin(|| (name.to_owned(), "front".into()));
-        draw(sink, &Frame { origin: DVec3::new(x, 0.0, z), right: DVec3::Y.cross(away), away }, detail.div_ceil(4), rng);
+        draw(
+            sink,
+            &Frame { origin: DVec3::new(x, 0.0, z), right: DVec3::Y.cross(away), away },
+            detail.div_ceil(4),
+            rng,
+        );
     }
     for k in 0..6u32 {
         sink.begin(|| (format!("lamp_{k}"), "lamps".into()));
         let origin = DVec3::new(3.0 + 6.0 * f64::from(k % 2), 0.0, 2.5 + 3.2 * f64::from(k / 2));
-        piece::hanging_lamp(sink, &Frame { origin, right: DVec3::X, away: DVec3::Z }, detail.div_ceil(4), rng);
+        piece::hanging_lamp(
+            sink,
+            &Frame { origin, right: DVec3::X, away: DVec3::Z },
+            detail.div_ceil(4),
+            rng,
+        );
     }
     for (name, what) in [("chair", chair as Piece), ("left", left_behind)] {
         for k in 0..2 * SEATS * ROWS {
@@ -143,7 +183,13 @@ fn furnish(sink: &mut Sink, seed: u64, detail: u32, budget: u64) {
 fn structure(sink: &mut Sink) {
     sink.begin(|| ("floor and ceiling".into(), "room".into()));
     slab(sink, [0.0, 0.0, WIDE, DEEP], [piece::FLOOR, piece::CEILING], HEIGHT);
-    let wall = |along_x: bool, place: f64, from: f64, to: f64, opening: Option<[f64; 4]>| Wall { along_x, place, from, to, opening };
+    let wall = |along_x: bool, place: f64, from: f64, to: f64, opening: Option<[f64; 4]>| Wall {
+        along_x,
+        place,
+        from,
+        to,
+        opening,
+    };
     let window = |from: f64| Some([from + 0.4, from + 3.2, 0.9, 2.3]);
     let walls = [
         wall(true, 0.0, 0.0, WIDE, None),
@@ -160,7 +206,8 @@ fn structure(sink: &mut Sink) {
     }
     sink.begin(|| ("board".into(), "front".into()));
     sink.paint(PAPER);
-    let front = Frame { origin: DVec3::new(WIDE * 0.5, 0.0, WALL * 0.5), right: DVec3::X, away: DVec3::NEG_Z };
+    let front =
+        Frame { origin: DVec3::new(WIDE * 0.5, 0.0, WALL * 0.5), right: DVec3::X, away: DVec3::NEG_Z };
     block(sink, &front, [-2.2, 0.9, -0.03], [2.2, 2.2, 0.0]);
 }
 
@@ -206,7 +253,11 @@ mod tests {
             let (got, want) = (scene.prim_count() as f64, f64::from(polygons));
             assert!((got - want).abs() < 0.02 * want + 100.0, "{got} instead of {want}");
             assert_eq!(scene.report().dropped_total(), 0, "{:?}", scene.report());
-            let of_chairs = scene.live().iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name.starts_with("chair_")).count();
+            let of_chairs = scene
+                .live()
+                .iter()
+                .filter(|p| scene.objects()[scene.object_of(**p).at()].name.starts_with("chair_"))
+                .count();
             assert!(of_chairs as f64 > 0.5 * got, "{of_chairs} of {got}");
         }
     }
@@ -216,7 +267,10 @@ mod tests {
         let hash = |call: &str| room(call).hash_hex();
         assert_ne!(hash("seminar-room?polygons=10000&seed=4"), hash("seminar-room?polygons=10000&seed=5"));
         // Machines must agree, so the bits are written down.
-        assert_eq!(hash("seminar-room?polygons=10000&seed=4"), "c04627dc6189c6f7c6c5c72f649dbb109c745e6737df3d150692cec49e38cace");
+        assert_eq!(
+            hash("seminar-room?polygons=10000&seed=4"),
+            "c04627dc6189c6f7c6c5c72f649dbb109c745e6737df3d150692cec49e38cace"
+        );
     }
 
     #[test]

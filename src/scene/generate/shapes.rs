@@ -1,8 +1,8 @@
 //! Boxes, cushions, cylinders and balls, and the mesh they are collected in.
 //!
 //! Each is convex, and its quads are turned to face away from its center. The tessellation is told by one
-//! number `detail ≥ 1`; the number of triangles grows with its square. A counting sink makes the same calls and
-//! keeps nothing, so that a generator can find the detail that meets a budget.
+//! number `detail ≥ 1`; the number of triangles grows with its square. A counting sink makes the same calls
+//! and keeps nothing, so that a generator can find the detail that meets a budget.
 
 use glam::DVec3;
 
@@ -23,7 +23,10 @@ impl Sink {
         Self { mesh: None, triangles: 0, object: 0, material: 0 }
     }
     pub(super) fn keeping(materials: &[(&str, [f32; 3])]) -> Self {
-        let materials = materials.iter().map(|(name, color)| Material { name: (*name).to_owned(), color: *color }).collect();
+        let materials = materials
+            .iter()
+            .map(|(name, color)| Material { name: (*name).to_owned(), color: *color })
+            .collect();
         Self { mesh: Some(Mesh { materials, ..Mesh::default() }), triangles: 0, object: 0, material: 0 }
     }
     pub(super) fn into_mesh(self) -> Mesh {
@@ -97,7 +100,14 @@ pub(super) fn block(sink: &mut Sink, frame: &Frame, low: [f64; 3], high: [f64; 3
 }
 
 /// A box of `cells`² quads a side, its points pulled towards a ball by `roundness` of 0..1.
-pub(super) fn rounded(sink: &mut Sink, frame: &Frame, low: [f64; 3], high: [f64; 3], cells: u32, roundness: f64) {
+pub(super) fn rounded(
+    sink: &mut Sink,
+    frame: &Frame,
+    low: [f64; 3],
+    high: [f64; 3],
+    cells: u32,
+    roundness: f64,
+) {
     let place = |unit: DVec3| {
         let p = unit * (1.0 - roundness) + unit.normalize() * roundness;
         frame.at(std::array::from_fn(|a| low[a] + (high[a] - low[a]) * (p[a] * 0.5 + 0.5)))
@@ -141,7 +151,10 @@ pub(super) fn tube(sink: &mut Sink, frame: &Frame, height: f64, radii: [f64; 2],
     let ring = |level: u32| -> Vec<DVec3> {
         let t = f64::from(level) / f64::from(stacks);
         let radius = radii[0] + (radii[1] - radii[0]) * t;
-        (0..sides).map(|k| circle(k, sides)).map(|(c, s)| frame.at([c * radius, height * t, s * radius])).collect()
+        (0..sides)
+            .map(|k| circle(k, sides))
+            .map(|(c, s)| frame.at([c * radius, height * t, s * radius]))
+            .collect()
     };
     let mut below = ring(0);
     sink.face(&below, -DVec3::Y);
@@ -211,7 +224,10 @@ mod tests {
             for k in 0..n {
                 let (c, s) = circle(k, n);
                 let angle = std::f64::consts::TAU * f64::from(k) / f64::from(n);
-                assert!((c - angle.cos()).abs() < 1e-14 && (s - angle.sin()).abs() < 1e-14, "{k}/{n}: {c} {s}");
+                assert!(
+                    (c - angle.cos()).abs() < 1e-14 && (s - angle.sin()).abs() < 1e-14,
+                    "{k}/{n}: {c} {s}"
+                );
             }
         }
     }

@@ -45,6 +45,10 @@ impl Inside {
     }
     /// The frame at a wall that is `reach` away from the middle, moved `along` it.
     pub(super) fn against(&self, wall: DVec3, reach: f64, along: DVec3) -> Frame {
-        Frame { origin: self.middle + wall * (reach - self.plaster) + along, right: DVec3::Y.cross(wall), away: wall }
+        Frame {
+            origin: self.middle + wall * (reach - self.plaster) + along,
+            right: DVec3::Y.cross(wall),
+            away: wall,
+        }
     }
 }

@@ -1,9 +1,9 @@
 //! `generate:thin-slabs`: blinds and posts at growing distances, with objects behind them.
 //!
-//! For the known weakness of culling by depth samples (Georges 1995, Section 3; Greene, Kass and Miller 1993): slabs and
-//! gaps have the same size everywhere, so with distance they become narrower than a pixel. An image then takes a blind
-//! for solid, loses a post, and hides what a finer image shows. Each blind spans the same angle as every other, so all cover as
-//! many pixels. Cost: O(polygons).
+//! For the known weakness of culling by depth samples (Georges 1995, Section 3; Greene, Kass and Miller
+//! 1993): slabs and gaps have the same size everywhere, so with distance they become narrower than a pixel.
+//! An image then takes a blind for solid, loses a post, and hides what a finer image shows. Each blind spans
+//! the same angle as every other, so all cover as many pixels. Cost: O(polygons).
 
 use glam::DVec3;
 
@@ -18,7 +18,8 @@ use crate::scene::assemble::assemble;
 
 pub(super) const GENERATOR: Generator = Generator {
     name: "thin-slabs",
-    meaning: "blinds and posts that become narrower than a pixel with distance, and what they hide: for aliasing",
+    meaning: "blinds and posts that become narrower than a pixel with distance, and what they hide: for \
+              aliasing",
     params: &[GeneratorParam {
         name: "polygons",
         default: 60_000,
@@ -44,7 +45,12 @@ const HEIGHT: f64 = 0.5;
 const POST: f64 = 0.03;
 const EYE: f64 = 1.6;
 
-fn make(values: &Values, source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<Parts<Solid>, SceneError> {
+fn make(
+    values: &Values,
+    source: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Parts<Solid>, SceneError> {
     let mut slabs = Sink::counting();
     furnish(&mut slabs, 0);
     let each = values.get("polygons").saturating_sub(slabs.triangles) / u64::from(BLINDS);
@@ -67,10 +73,14 @@ fn furnish(sink: &mut Sink, each: u64) {
     let far = 1.5 * place(BLINDS - 1).0;
     sink.begin(|| ("ground".into(), String::new()));
     sink.paint(furniture::FLOOR);
-    sink.face(&[(-far, 20.0), (far, 20.0), (far, -far), (-far, -far)].map(|(x, z)| DVec3::new(x, 0.0, z)), DVec3::Y);
+    sink.face(
+        &[(-far, 20.0), (far, 20.0), (far, -far), (-far, -far)].map(|(x, z)| DVec3::new(x, 0.0, z)),
+        DVec3::Y,
+    );
     for k in 0..BLINDS {
         let (distance, slope) = place(k);
-        let foot = Frame { origin: DVec3::new(slope * distance, 0.0, -distance), right: DVec3::X, away: DVec3::Z };
+        let foot =
+            Frame { origin: DVec3::new(slope * distance, 0.0, -distance), right: DVec3::X, away: DVec3::Z };
         let (half, height) = (HALF_WIDTH * distance, EYE + HEIGHT * 0.5 * distance);
         sink.begin(|| (format!("blind_{k}"), "slabs".into()));
         sink.paint(furniture::BLIND);
@@ -128,10 +138,14 @@ mod tests {
             assert_eq!(touched(&scene), None);
         }
         // Machines must agree, so the bits are written down.
-        assert_eq!(slabs("thin-slabs?polygons=30000").hash_hex(), "a86f9bc45e4e6106af2830764d009decffbecbdcd37ea294250178963723bea3");
+        assert_eq!(
+            slabs("thin-slabs?polygons=30000").hash_hex(),
+            "a86f9bc45e4e6106af2830764d009decffbecbdcd37ea294250178963723bea3"
+        );
     }
 
-    /// At a thousand pixels the gaps of the nearest blind are wider than a pixel and those of the farthest are not.
+    /// At a thousand pixels the gaps of the nearest blind are wider than a pixel and those of the farthest
+    /// are not.
     #[test]
     fn gaps_pass_the_size_of_a_pixel() {
         let pixel = 2.0 * 30f64.to_radians().tan() / 1024.0;

@@ -1,5 +1,5 @@
-//! Ways through generated scenes: a walk in the shape of an 8 along straight stretches with rounded corners, and
-//! flights whose line of sight is led too. Shared by all generators.
+//! Ways through generated scenes: a walk in the shape of an 8 along straight stretches with rounded corners,
+//! and flights whose line of sight is led too. Shared by all generators.
 
 use glam::{DVec3, Vec3};
 
@@ -28,7 +28,11 @@ pub(super) fn figure_8(stops: &[DVec3], manner: &Manner, origin: DVec3) -> ViewP
         let (from, on) = (stops[(i + stops.len() - 1) % stops.len()], stops[(i + 1) % stops.len()]);
         // A parabola that touches both stretches stays between them.
         let (a, b) = (*corner + to(from), *corner + to(on));
-        line.extend((0..=8).map(|k| f64::from(k) / 8.0).map(|t| a * ((1.0 - t) * (1.0 - t)) + *corner * (2.0 * t * (1.0 - t)) + b * (t * t)));
+        line.extend(
+            (0..=8)
+                .map(|k| f64::from(k) / 8.0)
+                .map(|t| a * ((1.0 - t) * (1.0 - t)) + *corner * (2.0 * t * (1.0 - t)) + b * (t * t)),
+        );
     }
     line.push(line[0]);
     let lengths: Vec<f64> = line.windows(2).map(|w| w[0].distance(w[1])).collect();
@@ -43,19 +47,28 @@ pub(super) fn figure_8(stops: &[DVec3], manner: &Manner, origin: DVec3) -> ViewP
         line[0]
     };
     let view = |k: usize| {
-        let (here, there) = (at(step * k as f64), at((step * k as f64 + manner.ahead) % (step * VIEWS as f64)));
+        let (here, there) =
+            (at(step * k as f64), at((step * k as f64 + manner.ahead) % (step * VIEWS as f64)));
         sight(here - origin, there - origin, manner.far)
     };
     ViewPath { name: "figure 8".into(), views: (0..VIEWS).map(view).collect() }
 }
 
 fn sight(from: DVec3, to: DVec3, far: f64) -> View<Solid> {
-    let eye = Eye { position: from.as_vec3(), target: to.as_vec3(), up: Vec3::Y, fov: 60f32.to_radians(), near: 0.1, far: far as f32 };
+    let eye = Eye {
+        position: from.as_vec3(),
+        target: to.as_vec3(),
+        up: Vec3::Y,
+        fov: 60f32.to_radians(),
+        near: 0.1,
+        far: far as f32,
+    };
     View { eye, width: 1024, height: 1024 }
 }
 
-/// A flight past stops, each where the eye is and what it looks at: a quadratic B-spline, which stays within the
-/// triangles of three stops in a row and goes through the first and the last. As many views between each two.
+/// A flight past stops, each where the eye is and what it looks at: a quadratic B-spline, which stays within
+/// the triangles of three stops in a row and goes through the first and the last. As many views between each
+/// two.
 pub(super) fn flight(stops: &[(DVec3, DVec3)], views: u32, far: f64, origin: DVec3) -> ViewPath<Solid> {
     let stop = |k: i64| stops[k.clamp(0, stops.len() as i64 - 1) as usize];
     let view = |k: u32| {
@@ -65,14 +78,16 @@ pub(super) fn flight(stops: &[(DVec3, DVec3)], views: u32, far: f64, origin: DVe
         let t = way - span as f64;
         let [before, here, after] = [-1, 0, 1].map(|i| stop(span + i));
         let weights = [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t];
-        let blend = |pick: fn((DVec3, DVec3)) -> DVec3| pick(before) * weights[0] + pick(here) * weights[1] + pick(after) * weights[2];
+        let blend = |pick: fn((DVec3, DVec3)) -> DVec3| {
+            pick(before) * weights[0] + pick(here) * weights[1] + pick(after) * weights[2]
+        };
         sight(blend(|s| s.0) - origin, blend(|s| s.1) - origin, far)
     };
     ViewPath { name: "flight".into(), views: (0..views).map(view).collect() }
 }
 
-/// The first primitive that the walk of a scene goes through, if any: its object's name and the view before it.
-/// A walk in the shape of an 8 is closed, a flight is not.
+/// The first primitive that the walk of a scene goes through, if any: its object's name and the view before
+/// it. A walk in the shape of an 8 is closed, a flight is not.
 #[cfg(test)]
 pub(super) fn touched(scene: &crate::scene::Scene<Solid>) -> Option<(String, usize)> {
     let walk: Vec<DVec3> = scene.paths()[0].views.iter().map(|v| v.eye.position.as_dvec3()).collect();

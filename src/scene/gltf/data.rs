@@ -1,7 +1,7 @@
 //! Buffers and accessors of a glTF file, with every bound checked.
 //!
-//! Only the binary chunk, `data:` URIs and regular files in the model's folder are read. The same file named by
-//! many buffers is read once.
+//! Only the binary chunk, `data:` URIs and regular files in the model's folder are read. The same file named
+//! by many buffers is read once.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,21 +25,35 @@ pub(super) struct Data {
 }
 
 impl Data {
-    pub(super) fn read(document: &Document, blob: Option<&[u8]>, folder: Option<&Path>) -> Result<Self, String> {
+    pub(super) fn read(
+        document: &Document,
+        blob: Option<&[u8]>,
+        folder: Option<&Path>,
+    ) -> Result<Self, String> {
         let mut files: BTreeMap<String, Arc<[u8]>> = BTreeMap::new();
         let mut buffers = Vec::new();
         let mut left_bytes = MODEL_LIMIT_BYTES;
         for buffer in document.buffers() {
             let bytes: Arc<[u8]> = match buffer.source() {
-                Source::Bin => blob.ok_or_else(|| format!("buffer {} is the binary chunk, but there is none", buffer.index()))?.into(),
-                Source::Uri(uri) if uri.starts_with("data:") => decode(uri).map_err(|why| format!("buffer {}: {why}", buffer.index()))?.into(),
+                Source::Bin => blob
+                    .ok_or_else(|| {
+                        format!("buffer {} is the binary chunk, but there is none", buffer.index())
+                    })?
+                    .into(),
+                Source::Uri(uri) if uri.starts_with("data:") => {
+                    decode(uri).map_err(|why| format!("buffer {}: {why}", buffer.index()))?.into()
+                }
                 Source::Uri(uri) => match files.get(uri) {
                     Some(read) => read.clone(),
                     None => {
                         let shown: String = uri.chars().take(80).collect();
-                        let folder = folder.ok_or_else(|| format!("buffer file {shown}: there is no folder to look in"))?;
-                        let path = beside(folder, &unescape(uri)).map_err(|why| format!("buffer file {shown}: {why}"))?;
-                        let bytes: Arc<[u8]> = read_file(&path, &shown, left_bytes).map_err(|e| format!("buffer file {e}"))?.into();
+                        let folder = folder
+                            .ok_or_else(|| format!("buffer file {shown}: there is no folder to look in"))?;
+                        let path = beside(folder, &unescape(uri))
+                            .map_err(|why| format!("buffer file {shown}: {why}"))?;
+                        let bytes: Arc<[u8]> = read_file(&path, &shown, left_bytes)
+                            .map_err(|e| format!("buffer file {e}"))?
+                            .into();
                         left_bytes = left_bytes.saturating_sub(bytes.len() as u64);
                         files.insert(uri.to_owned(), bytes.clone());
                         bytes
@@ -47,7 +61,12 @@ impl Data {
                 },
             };
             if bytes.len() < buffer.length() {
-                return Err(format!("buffer {} should have {} bytes, but there are only {}", buffer.index(), buffer.length(), bytes.len()));
+                return Err(format!(
+                    "buffer {} should have {} bytes, but there are only {}",
+                    buffer.index(),
+                    buffer.length(),
+                    bytes.len()
+                ));
             }
             buffers.push(bytes);
         }
@@ -55,9 +74,14 @@ impl Data {
     }
 
     fn view(&self, view: &View<'_>) -> Result<&[u8], String> {
-        let bytes = self.buffers.get(view.buffer().index()).map_or(&[][..], |b| &b[..view.buffer().length().min(b.len())]);
+        let bytes = self
+            .buffers
+            .get(view.buffer().index())
+            .map_or(&[][..], |b| &b[..view.buffer().length().min(b.len())]);
         let inside = view.offset().checked_add(view.length()).and_then(|end| bytes.get(view.offset()..end));
-        inside.ok_or_else(|| format!("buffer view {} lies outside of buffer {}", view.index(), view.buffer().index()))
+        inside.ok_or_else(|| {
+            format!("buffer view {} lies outside of buffer {}", view.index(), view.buffer().index())
+        })
     }
 
     /// All numbers of an accessor of `width` components an item, normalized where it says so.
@@ -70,8 +94,20 @@ impl Data {
         let number = |bytes: &[u8]| component(kind, accessor.normalized(), bytes);
         let mut all = self.items(accessor, width, number)?;
         if let Some(sparse) = accessor.sparse() {
-            let indices = self.strided(&sparse.indices().view(), sparse.indices().offset(), None, sparse.count(), index_bytes(&sparse.indices()));
-            let values = self.strided(&sparse.values().view(), sparse.values().offset(), None, sparse.count(), width * kind.size());
+            let indices = self.strided(
+                &sparse.indices().view(),
+                sparse.indices().offset(),
+                None,
+                sparse.count(),
+                index_bytes(&sparse.indices()),
+            );
+            let values = self.strided(
+                &sparse.values().view(),
+                sparse.values().offset(),
+                None,
+                sparse.count(),
+                width * kind.size(),
+            );
             let (indices, values) = (indices.map_err(|why| fail(&why))?, values.map_err(|why| fail(&why))?);
             for (index, value) in indices.zip(values) {
                 let at = little(index) as usize;
@@ -88,13 +124,20 @@ impl Data {
 
     /// All indices of an accessor of unsigned numbers.
     pub(super) fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, String> {
-        if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32) || accessor.sparse().is_some() {
+        if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32)
+            || accessor.sparse().is_some()
+        {
             return Err(format!("accessor {}: indices must be plain unsigned numbers", accessor.index()));
         }
         self.items(accessor, components(accessor.dimensions()).min(1), little)
     }
 
-    fn items<T: Clone + Default>(&self, accessor: &Accessor, width: usize, read: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
+    fn items<T: Clone + Default>(
+        &self,
+        accessor: &Accessor,
+        width: usize,
+        read: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>, String> {
         let fail = |why: &str| format!("accessor {}: {why}", accessor.index());
         let (count, size) = (accessor.count(), accessor.data_type().size());
         let Some(view) = accessor.view() else {
@@ -103,7 +146,9 @@ impl Data {
             }
             return Ok(vec![T::default(); count * width]);
         };
-        let items = self.strided(&view, accessor.offset(), view.stride(), count, width * size).map_err(|why| fail(&why))?;
+        let items = self
+            .strided(&view, accessor.offset(), view.stride(), count, width * size)
+            .map_err(|why| fail(&why))?;
         Ok(items.flat_map(|item| item.chunks_exact(size)).map(read).collect())
     }
 
@@ -118,9 +163,14 @@ impl Data {
     ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s>, String> {
         let stride = stride.unwrap_or(size);
         let bytes = self.view(view)?;
-        let end = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size)?.checked_add(offset));
+        let end = count
+            .checked_sub(1)
+            .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size)?.checked_add(offset));
         if stride < size || end.is_none_or(|end| end > bytes.len()) {
-            return Err(format!("{count} items of {size} bytes do not fit into buffer view {}", view.index()));
+            return Err(format!(
+                "{count} items of {size} bytes do not fit into buffer view {}",
+                view.index()
+            ));
         }
         Ok((0..count).map(move |i| &bytes[offset + i * stride..][..size]))
     }
@@ -163,7 +213,8 @@ fn decode(uri: &str) -> Result<Vec<u8>, String> {
     if !head.ends_with(";base64") {
         return Err("only base64 data URIs are read".into());
     }
-    let lenient = GeneralPurposeConfig::new().with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent);
+    let lenient =
+        GeneralPurposeConfig::new().with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent);
     let engine = GeneralPurpose::new(&base64::alphabet::STANDARD, lenient);
     engine.decode(body.trim_ascii()).map_err(|e| format!("its base64 is broken: {e}"))
 }
@@ -173,7 +224,10 @@ fn unescape(uri: &str) -> String {
     let bytes = uri.as_bytes();
     let (mut out, mut at) = (Vec::with_capacity(bytes.len()), 0);
     while at < bytes.len() {
-        let hex = bytes.get(at + 1..at + 3).and_then(|h| std::str::from_utf8(h).ok()).and_then(|h| u8::from_str_radix(h, 16).ok());
+        let hex = bytes
+            .get(at + 1..at + 3)
+            .and_then(|h| std::str::from_utf8(h).ok())
+            .and_then(|h| u8::from_str_radix(h, 16).ok());
         match (bytes[at], hex) {
             (b'%', Some(byte)) => {
                 out.push(byte);

@@ -1,9 +1,9 @@
-//! glTF 2.0 and GLB through the crate `gltf`: its JSON and its validation; containers, buffers and accessors are
-//! read here, with every bound checked (Khronos, "glTF 2.0 Specification", 2021).
+//! glTF 2.0 and GLB through the crate `gltf`: its JSON and its validation; containers, buffers and accessors
+//! are read here, with every bound checked (Khronos, "glTF 2.0 Specification", 2021).
 //!
-//! Each node with a mesh becomes an object under its transform; triangles, strips and fans become triangles in the
-//! order of the node tree. The first animation becomes motions where it is rigid. Textures, skins and morph targets
-//! are left out with a note. Cost: O(file), times the instances of each mesh up to a limit.
+//! Each node with a mesh becomes an object under its transform; triangles, strips and fans become triangles
+//! in the order of the node tree. The first animation becomes motions where it is rigid. Textures, skins and
+//! morph targets are left out with a note. Cost: O(file), times the instances of each mesh up to a limit.
 
 mod data;
 mod motion;
@@ -28,7 +28,15 @@ use crate::geometry::Solid;
 const MAX_INSTANCED: usize = 1 << 25;
 
 /// Extensions that a file may require without changing where its triangles are.
-const HARMLESS: &[&str] = &["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "KHR_mesh_quantization", "EXT_lights_", "KHR_xmp"];
+const HARMLESS: &[&str] = &[
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "EXT_texture_",
+    "KHR_mesh_quantization",
+    "EXT_lights_",
+    "KHR_xmp",
+];
 
 /// Reads glTF JSON or GLB. Without a `folder` no buffer file is opened.
 pub(super) fn read(
@@ -40,7 +48,8 @@ pub(super) fn read(
     progress: &dyn Progress,
 ) -> Result<Parts<Solid>, SceneError> {
     let format = |why: String| SceneError::Format { path: source.to_owned(), why };
-    let (text, blob) = if bytes.starts_with(b"glTF") { split_glb(bytes).map_err(format)? } else { (bytes, None) };
+    let (text, blob) =
+        if bytes.starts_with(b"glTF") { split_glb(bytes).map_err(format)? } else { (bytes, None) };
     let root = root(text, source)?;
     let mut report = Report::default();
     check(&root, &mut report).map_err(format)?;
@@ -51,9 +60,13 @@ pub(super) fn read(
     let Reader { mesh, report, placed, data, .. } = reader;
     if mesh.faces.is_empty() {
         let meshes = document.meshes().count();
-        return Err(format(format!("it has no triangles in its scene ({meshes} meshes, {} nodes)", document.nodes().count())));
+        return Err(format(format!(
+            "it has no triangles in its scene ({meshes} meshes, {} nodes)",
+            document.nodes().count()
+        )));
     }
-    let mut parts = assemble(mesh, name, source, options, report, &Part { whole: progress, start: 0.5, length: 0.5 })?;
+    let mut parts =
+        assemble(mesh, name, source, options, report, &Part { whole: progress, start: 0.5, length: 0.5 })?;
     motion::attach(&document, &data, &placed, &mut parts);
     Ok(parts)
 }
@@ -76,7 +89,9 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let (mut text, mut blob, mut at) = (None, None, 12);
     while let (Some(size), Some(kind)) = (word(bytes, at), word(bytes, at + 4)) {
         let Some(chunk) = bytes.get(at + 8..).and_then(|rest| rest.get(..size as usize)) else {
-            return Err(format!("the GLB chunk at byte {at} says it has {size} bytes, but the file ends before"));
+            return Err(format!(
+                "the GLB chunk at byte {at} says it has {size} bytes, but the file ends before"
+            ));
         };
         match &kind.to_le_bytes() {
             b"JSON" if text.is_none() => text = Some(chunk),
@@ -90,7 +105,8 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 }
 
 fn root(text: &[u8], source: &str) -> Result<Root, SceneError> {
-    let text = without_mark(text).map_err(|why| SceneError::Format { path: source.to_owned(), why: why.into() })?;
+    let text =
+        without_mark(text).map_err(|why| SceneError::Format { path: source.to_owned(), why: why.into() })?;
     // Padding of the chunk, which some writers make of zeros.
     let end = text.iter().rposition(|b| *b != 0).map_or(0, |e| e + 1);
     json::from_slice(&text[..end], source)
@@ -106,9 +122,16 @@ fn check(root: &Root, report: &mut Report) -> Result<(), String> {
         return Err(format!("glTF version {} is not supported, only 2", root.asset.version));
     }
     // The crate's validation looks this one up without asking whether it is there.
-    let positions = root.meshes.iter().flat_map(|m| &m.primitives).filter_map(|p| p.attributes.get(&Checked::Valid(Semantic::Positions)));
+    let positions = root
+        .meshes
+        .iter()
+        .flat_map(|m| &m.primitives)
+        .filter_map(|p| p.attributes.get(&Checked::Valid(Semantic::Positions)));
     if let Some(bad) = positions.map(|p| p.value()).find(|p| *p >= root.accessors.len()) {
-        return Err(format!("a mesh has its positions in accessor {bad}, but there are only {}", root.accessors.len()));
+        return Err(format!(
+            "a mesh has its positions in accessor {bad}, but there are only {}",
+            root.accessors.len()
+        ));
     }
     let mut faults = Vec::new();
     root.validate(root, ::gltf::json::Path::new, &mut |path, fault| {
@@ -170,11 +193,15 @@ impl<'a> Reader<'a> {
             Some(scene) => scene.nodes().collect(),
             None => {
                 let mut child = vec![false; count];
-                self.document.nodes().flat_map(|n| n.children().map(|c| c.index()).collect::<Vec<_>>()).for_each(|c| child[c] = true);
+                self.document
+                    .nodes()
+                    .flat_map(|n| n.children().map(|c| c.index()).collect::<Vec<_>>())
+                    .for_each(|c| child[c] = true);
                 self.document.nodes().filter(|n| !child[n.index()]).collect()
             }
         };
-        let mut stack: Vec<(Node, DMat4, String)> = roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY, String::new())).collect();
+        let mut stack: Vec<(Node, DMat4, String)> =
+            roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY, String::new())).collect();
         let mut done = 0;
         while let Some((node, above, group)) = stack.pop() {
             if std::mem::replace(&mut seen[node.index()], true) {
@@ -198,12 +225,14 @@ impl<'a> Reader<'a> {
 
     fn node(&mut self, node: &Node, world: DMat4, group: &str) -> Result<(), String> {
         let Some(mesh) = node.mesh() else { return Ok(()) };
-        let name = node.name().or(mesh.name()).map_or_else(|| format!("node_{}", node.index()), str::to_owned);
+        let name =
+            node.name().or(mesh.name()).map_or_else(|| format!("node_{}", node.index()), str::to_owned);
         let object = self.mesh.objects.len() as u32;
         self.mesh.objects.push(Object { name, group: group.to_owned(), motion: None });
         self.placed.push(Placed { node: node.index(), world });
         for primitive in mesh.primitives() {
-            self.primitive(&primitive, world, object).map_err(|why| format!("mesh {}, primitive {}: {why}", mesh.index(), primitive.index()))?;
+            self.primitive(&primitive, world, object)
+                .map_err(|why| format!("mesh {}, primitive {}: {why}", mesh.index(), primitive.index()))?;
         }
         Ok(())
     }
@@ -211,7 +240,8 @@ impl<'a> Reader<'a> {
     fn primitive(&mut self, primitive: &Primitive, world: DMat4, object: u32) -> Result<(), String> {
         let mode = primitive.mode();
         if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-            self.report.note(format!("mesh primitive {} is made of points or lines; left out", primitive.index()));
+            self.report
+                .note(format!("mesh primitive {} is made of points or lines; left out", primitive.index()));
             return Ok(());
         }
         if primitive.morph_targets().len() > 0 {
@@ -249,7 +279,11 @@ impl<'a> Reader<'a> {
         }
         let spare = if mode == Mode::Triangles { indices.len() % 3 } else { 0 };
         if spare > 0 {
-            self.report.note(format!("primitive {}: the last {spare} of {} corners make no triangle", primitive.index(), indices.len()));
+            self.report.note(format!(
+                "primitive {}: the last {spare} of {} corners make no triangle",
+                primitive.index(),
+                indices.len()
+            ));
         }
         Ok(())
     }
@@ -261,7 +295,9 @@ impl<'a> Reader<'a> {
             let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
             let (name, color) = match material.index() {
                 None => ("default".to_owned(), GRAY),
-                Some(i) => (material.name().map_or_else(|| format!("material_{i}"), str::to_owned), [r, g, b]),
+                Some(i) => {
+                    (material.name().map_or_else(|| format!("material_{i}"), str::to_owned), [r, g, b])
+                }
             };
             let color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { GRAY[0] });
             self.mesh.materials.push(Material { name, color });
@@ -273,10 +309,14 @@ impl<'a> Reader<'a> {
 /// The triangles that a list of corners stands for; every second one of a strip is turned over.
 fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
-        Mode::TriangleStrip => {
-            indices.windows(3).enumerate().map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }).collect()
+        Mode::TriangleStrip => indices
+            .windows(3)
+            .enumerate()
+            .map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
+            .collect(),
+        Mode::TriangleFan => {
+            indices.get(1..).unwrap_or(&[]).windows(2).map(|w| [indices[0], w[0], w[1]]).collect()
         }
-        Mode::TriangleFan => indices.get(1..).unwrap_or(&[]).windows(2).map(|w| [indices[0], w[0], w[1]]).collect(),
         _ => indices.as_chunks::<3>().0.to_vec(),
     }
 }

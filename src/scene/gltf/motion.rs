@@ -1,7 +1,8 @@
 //! The first animation of a glTF file as rigid motions of objects.
 //!
-//! Sampled at 24 frames a second. A node moves by its world transform then, times the inverse of the one at rest;
-//! where that is no rotation and translation (something is scaled), the object stands still and a note says so.
+//! Sampled at 24 frames a second. A node moves by its world transform then, times the inverse of the one at
+//! rest; where that is no rotation and translation (something is scaled), the object stands still and a note
+//! says so.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -41,8 +42,13 @@ impl Joint {
 fn joint(node: &Node) -> Joint {
     let (t, r, s) = node.transform().decomposed();
     let rotation = DQuat::from_array(r.map(f64::from));
-    let rotation = if rotation.is_finite() && rotation.length_squared() > 0.0 { rotation } else { DQuat::IDENTITY };
-    Joint { translation: DVec3::from_array(t.map(f64::from)), rotation, scale: DVec3::from_array(s.map(f64::from)) }
+    let rotation =
+        if rotation.is_finite() && rotation.length_squared() > 0.0 { rotation } else { DQuat::IDENTITY };
+    Joint {
+        translation: DVec3::from_array(t.map(f64::from)),
+        rotation,
+        scale: DVec3::from_array(s.map(f64::from)),
+    }
 }
 
 /// Transform of a node relative to its parent, at rest.
@@ -98,10 +104,14 @@ pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts:
     let json = &document.as_json().animations[animation.index()];
     let nodes = document.nodes().len();
     let there = |c: &::gltf::json::animation::Channel| {
-        c.sampler.value() < json.samplers.len() && c.target.node.value() < nodes && matches!(c.target.path, Checked::Valid(_))
+        c.sampler.value() < json.samplers.len()
+            && c.target.node.value() < nodes
+            && matches!(c.target.path, Checked::Valid(_))
     };
     if !json.channels.iter().all(there) {
-        return parts.report.note("animation left out: it names a sampler, node or property that is not there");
+        return parts
+            .report
+            .note("animation left out: it names a sampler, node or property that is not there");
     }
     let mut channels = Vec::new();
     for channel in animation.channels() {
@@ -114,10 +124,14 @@ pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts:
     let duration = channels.iter().filter_map(|c| c.times.last()).copied().fold(0.0, f64::max);
     let frames = ((duration * FRAMES_PER_SECOND) as usize + 1).min(MAX_FRAMES);
     if frames * placed.len() > MAX_POSES {
-        return parts.report.note(format!("animation left out: {frames} frames of {} objects are too many", placed.len()));
+        return parts
+            .report
+            .note(format!("animation left out: {frames} frames of {} objects are too many", placed.len()));
     }
     if frames as f64 + 1.0 < duration * FRAMES_PER_SECOND {
-        parts.report.note(format!("animation of {duration:.1} s cut to {MAX_FRAMES} frames at {FRAMES_PER_SECOND} a second"));
+        parts.report.note(format!(
+            "animation of {duration:.1} s cut to {MAX_FRAMES} frames at {FRAMES_PER_SECOND} a second"
+        ));
     }
     let mut moves: Vec<Option<Vec<Pose>>> = vec![Some(Vec::with_capacity(frames)); placed.len()];
     let parents = parents(document);
@@ -156,7 +170,11 @@ fn read(channel: &::gltf::animation::Channel, data: &Data) -> Result<Option<Chan
         values = values.chunks_exact(3 * width).flat_map(|k| k[width..2 * width].to_vec()).collect();
     }
     let rising = times.windows(2).all(|w| w[0] < w[1]) && times.iter().all(|t| t.is_finite());
-    if times.is_empty() || !rising || values.len() < times.len() * width || !values.iter().all(|v| v.is_finite()) {
+    if times.is_empty()
+        || !rising
+        || values.len() < times.len() * width
+        || !values.iter().all(|v| v.is_finite())
+    {
         return Err("its times do not rise, or its values are too few or not finite".into());
     }
     let zero = |q: &[f64]| q.iter().all(|v| *v == 0.0);
@@ -187,7 +205,8 @@ fn worlds(document: &Document, parents: &[Option<usize>], channels: &[Channel], 
     for channel in channels {
         channel.apply(moved.entry(channel.node).or_insert_with(|| joint(&nodes[channel.node])), time);
     }
-    let locals: Vec<DMat4> = nodes.iter().map(|n| moved.get(&n.index()).map_or_else(|| local(n), Joint::matrix)).collect();
+    let locals: Vec<DMat4> =
+        nodes.iter().map(|n| moved.get(&n.index()).map_or_else(|| local(n), Joint::matrix)).collect();
     let mut worlds: Vec<Option<DMat4>> = vec![None; nodes.len()];
     for start in 0..nodes.len() {
         // Up to the first ancestor that is known, then down again.

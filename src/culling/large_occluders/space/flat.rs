@@ -76,6 +76,7 @@ const TANGENTS: [Option<[u8; 2]>; 9] = [
 /// See [`Shape::tangents_naive`].
 fn tangents_naive(edge: &Edge<DVec2>, bounds: &Aabb<Vec2>) -> Option<[u8; 2]> {
     let arms: [DVec2; 4] = std::array::from_fn(|i| corner::<Flat>(bounds, i as u8) - edge.from);
-    let touches = |sign: f64| (0..4u8).find(|&i| arms.iter().all(|arm| sign * arms[i as usize].perp_dot(*arm) >= 0.0));
+    let touches =
+        |sign: f64| (0..4u8).find(|&i| arms.iter().all(|arm| sign * arms[i as usize].perp_dot(*arm) >= 0.0));
     Some([touches(1.0)?, touches(-1.0)?])
 }

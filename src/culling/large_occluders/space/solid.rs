@@ -1,9 +1,11 @@
 //! Space: occluders are convex polygons. Tangent vertices come from the table of Section 2.1.
 //!
-//! 1. The edge's first corner is taken as the origin. Where it lies against the box's three slabs (below, inside,
-//!    above) gives one of 27 codes, and with it the silhouette of the box: 4 or 6 corners in order (Figure 7).
-//! 2. Seen from there the edge is a point. Its side of each directed silhouette line gives a code of up to 6 bits,
-//!    and a table maps the code to the two corners where tangents touch (Figure 8). A silhouette line spans the
+//! 1. The edge's first corner is taken as the origin. Where it lies against the box's three slabs (below,
+//!    inside, above) gives one of 27 codes, and with it the silhouette of the box: 4 or 6 corners in order
+//! (Figure 7).
+//! 2. Seen from there the edge is a point. Its side of each directed silhouette line gives a code of up to 6
+//!    bits, and a table maps the code to the two corners where tangents touch (Figure 8). A silhouette line
+//! spans the
 //!    origin and an edge of the box along an axis, so its side is the sign of two products.
 
 use glam::{DVec3, Vec3};
@@ -70,13 +72,15 @@ impl Shape for Solid {
     }
 }
 
-/// The outline of a box as seen from a point, in order around it, as box corners (Figure 7); empty from inside.
+/// The outline of a box as seen from a point, in order around it, as box corners (Figure 7); empty from
+/// inside.
 pub fn outline_seen_from(point: Vec3, bounds: &Aabb<Vec3>) -> Vec<u8> {
     let silhouette = silhouette(point.as_dvec3(), bounds);
     silhouette.lines[..silhouette.count].iter().map(|l| l.corner).collect()
 }
 
-/// The code of Figure 8: bit `i` says on which side of line `i` of the outline seen from `from` the edge's projection lies.
+/// The code of Figure 8: bit `i` says on which side of line `i` of the outline seen from `from` the edge's
+/// projection lies.
 pub fn sides_of_outline(from: Vec3, to: Vec3, bounds: &Aabb<Vec3>) -> u8 {
     let edge = Edge { from: from.as_dvec3(), along: (to - from).as_dvec3() };
     sides(silhouette(edge.from, bounds), &edge, bounds) as u8
@@ -135,7 +139,8 @@ const fn sees(codes: [usize; 3], axis: usize, far: bool) -> bool {
     codes[axis] == if far { 2 } else { 0 }
 }
 
-/// Walks the edges that separate a face that is seen from one that is not, the seen one always on the same hand.
+/// Walks the edges that separate a face that is seen from one that is not, the seen one always on the same
+/// hand.
 const fn outline(codes: [usize; 3]) -> Silhouette {
     let mut all = Silhouette { lines: [Line { corner: 0, axes: [0, 0], flip: false }; 6], count: 0 };
     let mut at = 0u8;
@@ -147,7 +152,8 @@ const fn outline(codes: [usize; 3]) -> Silhouette {
     };
     at = start;
     while let Some(axis) = next(codes, at) {
-        all.lines[all.count] = Line { corner: at, axes: [(axis + 1) % 3, (axis + 2) % 3], flip: at >> axis & 1 == 1 };
+        all.lines[all.count] =
+            Line { corner: at, axes: [(axis + 1) % 3, (axis + 2) % 3], flip: at >> axis & 1 == 1 };
         all.count += 1;
         at ^= 1 << axis;
         if at == start || all.count == 6 {
@@ -161,7 +167,8 @@ const fn outline(codes: [usize; 3]) -> Silhouette {
 const fn next(codes: [usize; 3], corner: u8) -> Option<usize> {
     let mut axis = 0;
     while axis < 3 {
-        // Looking along the step's direction, the one neighbor face is on the left and the other on the right.
+        // Looking along the step's direction, the one neighbor face is on the left and the other on the
+        // right.
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         let (far_b, far_c) = (corner >> b & 1 == 1, corner >> c & 1 == 1);
         let (seen_b, seen_c) = (sees(codes, b, far_b), sees(codes, c, far_c));
@@ -177,7 +184,8 @@ const fn next(codes: [usize; 3], corner: u8) -> Option<usize> {
 }
 
 const NONE: u8 = u8::MAX;
-/// Which lines of an outline begin where a tangent touches, by the signs of 4 or 6 lines: where the sign changes.
+/// Which lines of an outline begin where a tangent touches, by the signs of 4 or 6 lines: where the sign
+/// changes.
 static TOUCHING: [[[u8; 2]; 64]; 2] = [touching(4), touching(6)];
 
 const fn touching(count: usize) -> [[u8; 2]; 64] {
@@ -205,13 +213,15 @@ const fn touching(count: usize) -> [[u8; 2]; 64] {
     all
 }
 
-/// See [`Shape::tangents_naive`]: a plane through the edge and a corner touches the box if all corners lie on one side.
+/// See [`Shape::tangents_naive`]: a plane through the edge and a corner touches the box if all corners lie on
+/// one side.
 fn tangents_naive(edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> Option<[u8; 2]> {
     let arms: [DVec3; 8] = std::array::from_fn(|i| corner::<Solid>(bounds, i as u8) - edge.from);
     let touches = |sign: f64| {
         (0..8u8).find(|&i| {
             let normal = edge.along.cross(arms[i as usize]) * sign;
-            // A corner on the line itself spans no plane; one that the plane contains too may round to either side.
+            // A corner on the line itself spans no plane; one that the plane contains too may round to either
+            // side.
             let slack = -1e-14 * normal.length();
             normal != DVec3::ZERO && arms.iter().all(|arm| normal.dot(*arm) >= slack * arm.length())
         })

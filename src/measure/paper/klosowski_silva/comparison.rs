@@ -1,4 +1,5 @@
-//! Figures 12 and 15: frame by frame what four orders find with the same budget, how many pixels are wrong, and how long it takes.
+//! Figures 12 and 15: frame by frame what four orders find with the same budget, how many pixels are wrong,
+//! and how long it takes.
 
 use std::sync::Arc;
 
@@ -6,7 +7,9 @@ use super::{BY_CENTROID, DELAUNAY, FRAME, Judge, KD_TREE, Most, OCTREE, ORDER, W
 use crate::drawing::{Plot, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::{ROUNDS, stop_or_go};
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::median;
 use crate::raster::Target;
@@ -47,11 +50,21 @@ impl Of {
     }
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let mut runs = Vec::new();
     for (i, way) in WAYS.into_iter().enumerate() {
-        runs.extend(ready(scene, setup, way, &[Most::AsSet], &part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32))?);
+        runs.extend(ready(
+            scene,
+            setup,
+            way,
+            &[Most::AsSet],
+            &part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32),
+        )?);
     }
     let (mut judge, mut target) = (Judge::new(scene, setup), Target::default());
     let n = path.views.len();
@@ -84,12 +97,14 @@ fn table_rows(about: &Measured, all: &[[Of; 4]]) -> Vec<Vec<Cell>> {
         let text: [Cell; 4] = ["measured".into(), about.name.as_str().into(), WAYS[w].label.into(), frame];
         text.into_iter().chain(numbers.map(Cell::from)).collect::<Vec<Cell>>()
     };
-    let numbers: Vec<[[f64; 5]; 4]> = all.iter().map(|ways| [0, 1, 2, 3].map(|w| ways[w].numbers())).collect();
+    let numbers: Vec<[[f64; 5]; 4]> =
+        all.iter().map(|ways| [0, 1, 2, 3].map(|w| ways[w].numbers())).collect();
     let mut rows = Vec::new();
     for w in 0..WAYS.len() {
         let of = |c: usize| numbers.iter().map(move |n| n[w][c]);
         rows.push(row(w, "mean".into(), std::array::from_fn(|c| mean(of(c)))));
-        let worst = |c: usize| if c == 0 { of(c).fold(f64::INFINITY, f64::min) } else { of(c).fold(0.0, f64::max) };
+        let worst =
+            |c: usize| if c == 0 { of(c).fold(f64::INFINITY, f64::min) } else { of(c).fold(0.0, f64::max) };
         rows.push(row(w, "worst".into(), std::array::from_fn(worst)));
     }
     for w in 0..WAYS.len() {
@@ -103,11 +118,14 @@ const PAPER: [(Way, f64, f64); 3] = [(DELAUNAY, 90.0, 4.0), (OCTREE, 64.0, 9.0),
 
 fn paper() -> Vec<Vec<Cell>> {
     let row = |way: Way, frame: &str, found: Cell, wrong: Cell| {
-        let mut row: Vec<Cell> = vec!["paper".into(), "City".into(), way.label.into(), frame.into(), found, wrong];
+        let mut row: Vec<Cell> =
+            vec!["paper".into(), "City".into(), way.label.into(), frame.into(), found, wrong];
         row.extend([const { Cell::Missing }; 3]);
         row
     };
-    let both = |(way, found, wrong): (Way, f64, f64)| [row(way, "mean", found.into(), Cell::Missing), row(way, "worst", Cell::Missing, wrong.into())];
+    let both = |(way, found, wrong): (Way, f64, f64)| {
+        [row(way, "mean", found.into(), Cell::Missing), row(way, "worst", Cell::Missing, wrong.into())]
+    };
     PAPER.into_iter().flat_map(both).collect()
 }
 
@@ -123,7 +141,10 @@ fn plots(table: &Table) -> Vec<Plot> {
             ("total_ms", "time of a frame", "culled and drawn, ms"),
         ] {
             let series = WAYS.iter().zip(frames.chunks(each.max(1))).map(|(way, rows)| {
-                let points = rows.iter().filter_map(|&r| Some((table.number(r, FRAME.key)?, table.number(r, key)?))).collect();
+                let points = rows
+                    .iter()
+                    .filter_map(|&r| Some((table.number(r, FRAME.key)?, table.number(r, key)?)))
+                    .collect();
                 Series::new(way.label, way.role, points)
             });
             plots.push(Plot {

@@ -1,5 +1,6 @@
-//! Budgets in milliseconds (Section 3: "time-critical"): how long frames take that end at a deadline, on a machine that is idle but
-//! for them and on one with two busy threads for each core, and how far they overshoot.
+//! Budgets in milliseconds (Section 3: "time-critical"): how long frames take that end at a deadline, on a
+//! machine that is idle but for them and on one with two busy threads for each core, and how far they
+//! overshoot.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -10,7 +11,9 @@ use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::deadline::frame_within;
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::{median, quantile};
 use crate::raster::Target;
@@ -39,7 +42,11 @@ pub const SWEEP: Sweep = Sweep {
 const DEADLINES_MS: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
 const MACHINES: [&str; 2] = ["idle", "loaded"];
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let all = settings::<S>(METHOD, setup, &[("budget", "100%".to_owned())])?;
     let mut run = around(scene, METHOD, &all, None, &part(progress, 0.0, 0.2))?;
@@ -51,8 +58,14 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             let (mut times, mut found, mut drawn) = (Vec::new(), 0.0, 0);
             for (k, view) in path.views.iter().enumerate() {
                 let done = (m * DEADLINES_MS.len() + d) * n + k;
-                stop_or_go(progress, 0.2 + 0.8 * done as f32 / (2 * DEADLINES_MS.len() * n) as f32, "keeping deadlines")?;
-                let frame = with_load(m == 1, || frame_within(&mut *run, scene, view, std::mem::take(&mut image), deadline));
+                stop_or_go(
+                    progress,
+                    0.2 + 0.8 * done as f32 / (2 * DEADLINES_MS.len() * n) as f32,
+                    "keeping deadlines",
+                )?;
+                let frame = with_load(m == 1, || {
+                    frame_within(&mut *run, scene, view, std::mem::take(&mut image), deadline)
+                });
                 judge.look(scene, view);
                 let verdict = judge.judge(scene, view, &frame.list.prims);
                 found += judge.coverage_percent(&verdict) / n as f64;
@@ -65,7 +78,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             let overshoot = (!late.is_empty()).then(|| median(late));
             times.sort_unstable_by(f64::total_cmp);
             let worst = times.last().copied().unwrap_or_default();
-            let mut row: Vec<Cell> = vec!["measured".into(), about.name.as_str().into(), machine.into(), deadline.into()];
+            let mut row: Vec<Cell> =
+                vec!["measured".into(), about.name.as_str().into(), machine.into(), deadline.into()];
             row.extend([quantile(&times, 0.5), quantile(&times, 0.99), worst, share].map(Cell::from));
             row.extend([overshoot.into(), (drawn as f64 / n as f64).into(), found.into()]);
             rows.push(row);
@@ -99,7 +113,9 @@ fn plots(table: &Table) -> Vec<Plot> {
     let lines = |(name, rows): (String, Vec<usize>)| {
         let series = |of: usize, key: &str, label: &str, role: Role| {
             let some = rows.iter().skip(of * DEADLINES_MS.len()).take(DEADLINES_MS.len());
-            let points = some.filter_map(|&r| Some((table.number(r, "deadline_ms")?, table.number(r, key)?))).collect();
+            let points = some
+                .filter_map(|&r| Some((table.number(r, "deadline_ms")?, table.number(r, key)?)))
+                .collect();
             Series::new(label, role, points)
         };
         Plot {

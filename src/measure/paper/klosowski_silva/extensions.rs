@@ -1,4 +1,5 @@
-//! Section 6: what each extension of the method does, beside the method as it is and beside the paper's arithmetic.
+//! Section 6: what each extension of the method does, beside the method as it is and beside the paper's
+//! arithmetic.
 
 use std::sync::Arc;
 
@@ -6,7 +7,9 @@ use super::{BUDGET, Judge, METHOD, around, frame, settings};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
@@ -47,10 +50,15 @@ const FORMS: [Form; 9] = [
 /// Budgets, per cent.
 const STARTS: [f64; 2] = [1.0, 10.0];
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let mut runs = Vec::new();
-    let saved = around(scene, METHOD, &settings::<S>(METHOD, setup, &[])?, None, &part(progress, 0.0, 0.2))?.save();
+    let saved =
+        around(scene, METHOD, &settings::<S>(METHOD, setup, &[])?, None, &part(progress, 0.0, 0.2))?.save();
     let quick = part(progress, 0.2, 0.3);
     for (budget, (_, form)) in STARTS.iter().flat_map(|b| FORMS.iter().map(move |f| (b, f))) {
         let mut on_top: Vec<(&str, String)> = form.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();
@@ -73,8 +81,12 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     }
     let about = about(scene, &path);
     let row = |at: usize| {
-        let mut row: Vec<Cell> =
-            vec!["measured".into(), about.name.as_str().into(), FORMS[at % FORMS.len()].0.into(), STARTS[at / FORMS.len()].into()];
+        let mut row: Vec<Cell> = vec![
+            "measured".into(),
+            about.name.as_str().into(),
+            FORMS[at % FORMS.len()].0.into(),
+            STARTS[at / FORMS.len()].into(),
+        ];
         row.extend(sums[at].map(Cell::from));
         row
     };
@@ -85,7 +97,8 @@ fn plots(table: &Table) -> Vec<Plot> {
     let bars = |(name, rows): (String, Vec<usize>)| {
         let series = |at: usize, role: Role| {
             let some = rows.iter().skip(at * FORMS.len()).take(FORMS.len()).enumerate();
-            let points = some.filter_map(|(i, &r)| Some((i as f64, table.number(r, "found_percent")?))).collect();
+            let points =
+                some.filter_map(|(i, &r)| Some((i as f64, table.number(r, "found_percent")?))).collect();
             Series::new(format!("budget {} %", STARTS[at]), role, points)
         };
         Plot {

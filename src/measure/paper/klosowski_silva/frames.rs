@@ -1,4 +1,5 @@
-//! Figures 10 and 11, (a) and (b): frame by frame the visible triangles that each budget finds, and the time of a frame.
+//! Figures 10 and 11, (a) and (b): frame by frame the visible triangles that each budget finds, and the time
+//! of a frame.
 
 use std::sync::Arc;
 
@@ -7,7 +8,9 @@ use crate::culling::Settings;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::{ROUNDS, stop_or_go};
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::median;
 use crate::raster::Target;
@@ -59,9 +62,14 @@ fn as_set(settings: &Settings) -> Way {
     [super::OCTREE, super::KD_TREE].into_iter().find(|w| w.tessellation == given).unwrap_or(DELAUNAY)
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
-    let mut runs = ready(scene, setup, as_set(&setup.settings), &BUDGETS.map(Most::Percent), &part(progress, 0.0, 0.1))?;
+    let mut runs =
+        ready(scene, setup, as_set(&setup.settings), &BUDGETS.map(Most::Percent), &part(progress, 0.0, 0.1))?;
     let centroid = ready(scene, setup, BY_CENTROID, &[Most::Percent(10.0)], &part(progress, 0.1, 0.11))?;
     runs.extend(centroid);
     runs.insert(0, frustum(scene, setup, &part(progress, 0.11, 0.2))?);
@@ -102,7 +110,10 @@ fn plots(table: &Table) -> Vec<Plot> {
     let mut plots = Vec::new();
     for (name, rows) in by_scene(table) {
         let series = |&(key, label, role): &(&str, &str, Role)| {
-            let points = rows.iter().filter_map(|&r| Some((table.number(r, FRAME.key)?, table.number(r, key)?))).collect();
+            let points = rows
+                .iter()
+                .filter_map(|&r| Some((table.number(r, FRAME.key)?, table.number(r, key)?)))
+                .collect();
             Series::new(label, role, points)
         };
         let plot = |what: &str, y_label: &str, of: &[(&str, &str, Role)]| Plot {

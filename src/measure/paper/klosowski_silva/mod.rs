@@ -1,8 +1,10 @@
-//! Klosowski and Silva 2000, Section 5: how much of the visible set a budget finds, how many pixels are wrong, how long a frame
-//! and the preprocess take; and what the paper claims without figures: that the visible set is stable.
+//! Klosowski and Silva 2000, Section 5: how much of the visible set a budget finds, how many pixels are
+//! wrong, how long a frame and the preprocess take; and what the paper claims without figures: that the
+//! visible set is stable.
 //!
-//! Exactness is measured at every frame: the visible set is that of the item buffer (Section 4.4), and a pixel is wrong if its
-//! shown bytes differ from those of the exact image. Cost: O(frames · ways) images of the scene.
+//! Exactness is measured at every frame: the visible set is that of the item buffer (Section 4.4), and a
+//! pixel is wrong if its shown bytes differ from those of the exact image. Cost: O(frames · ways) images of
+//! the scene.
 
 mod comparison;
 mod deadline;
@@ -77,19 +79,28 @@ type Runs<S> = Vec<Box<dyn Run<S>>>;
 fn settings<S: World>(key: &str, setup: &Setup, on_top: &[(&str, String)]) -> Result<Settings, PaperError> {
     let known = method::<S>(key).knobs(&Settings::default())?;
     let fits = |k: &String| key == METHOD || known.iter().any(|(knob, _)| knob.name == k);
-    let mut settings = Settings(setup.settings.0.iter().filter(|(k, _)| fits(k)).map(|(k, v)| (k.clone(), v.clone())).collect());
+    let mut settings = Settings(
+        setup.settings.0.iter().filter(|(k, _)| fits(k)).map(|(k, v)| (k.clone(), v.clone())).collect(),
+    );
     settings.0.extend(on_top.iter().map(|(k, v)| ((*k).to_owned(), v.clone())));
     Ok(settings)
 }
 
 /// A way that is ready to run, once for each budget; what takes long is built once.
-fn ready<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, way: Way, budgets: &[Most], progress: &dyn Progress) -> Result<Runs<S>, PaperError> {
+fn ready<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    way: Way,
+    budgets: &[Most],
+    progress: &dyn Progress,
+) -> Result<Runs<S>, PaperError> {
     let key = if way.tessellation.is_some() { METHOD } else { CENTROID };
     let mut runs: Runs<S> = Vec::new();
     let mut saved = None;
     for (i, budget) in budgets.iter().enumerate() {
         let rest = part(progress, if i == 0 { 0.0 } else { 0.9 }, if i == 0 { 0.9 } else { 1.0 });
-        let mut on_top: Vec<(&str, String)> = way.tessellation.iter().map(|t| ("tessellation", (*t).to_owned())).collect();
+        let mut on_top: Vec<(&str, String)> =
+            way.tessellation.iter().map(|t| ("tessellation", (*t).to_owned())).collect();
         if let Most::Percent(percent) = budget {
             on_top.push(("budget", format!("{percent}%")));
         }
@@ -119,8 +130,14 @@ fn around<S: World>(
 }
 
 /// View-frustum culling, ready to run.
-fn frustum<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<Box<dyn Run<S>>, PaperError> {
-    method::<S>(FRUSTUM).ready(scene, &settings::<S>(FRUSTUM, setup, &[])?, progress)?.ok_or(PaperError::Cancelled)
+fn frustum<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<Box<dyn Run<S>>, PaperError> {
+    method::<S>(FRUSTUM)
+        .ready(scene, &settings::<S>(FRUSTUM, setup, &[])?, progress)?
+        .ok_or(PaperError::Cancelled)
 }
 
 /// Whether the settings say that primitives have one side.
@@ -156,7 +173,13 @@ impl Verdict {
 impl Judge {
     fn new<S: World>(scene: &Scene<S>, setup: &Setup) -> Self {
         let truth = Truth::new(scene, one_sided(setup), 1, BACKGROUND);
-        Self { truth, visible: Vec::new(), exact: Vec::new(), kept: vec![false; scene.prim_count()], target: Target::default() }
+        Self {
+            truth,
+            visible: Vec::new(),
+            exact: Vec::new(),
+            kept: vec![false; scene.prim_count()],
+            target: Target::default(),
+        }
     }
     /// Finds out what is exact.
     fn look<S: World>(&mut self, scene: &Scene<S>, view: &View<S>) {
@@ -170,7 +193,10 @@ impl Judge {
         drawn.iter().for_each(|p| self.kept[p.at()] = false);
         draw(&mut self.target, scene, view, drawn);
         let image = shade(&self.target, scene, view, BACKGROUND);
-        Verdict { found, wrong: self.exact.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a != b).collect() }
+        Verdict {
+            found,
+            wrong: self.exact.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a != b).collect(),
+        }
     }
     /// Found visible primitives, per cent of the visible ones: ε of Section 3.
     fn coverage_percent(&self, verdict: &Verdict) -> f64 {
@@ -185,7 +211,12 @@ fn draw<S: World>(target: &mut Target, scene: &Scene<S>, view: &View<S>, prims: 
 }
 
 /// What was drawn, and the time to cull and to draw, ms.
-fn frame<S: World>(scene: &Scene<S>, run: &mut dyn Run<S>, view: &View<S>, target: &mut Target) -> (Vec<PrimId>, [f64; 2]) {
+fn frame<S: World>(
+    scene: &Scene<S>,
+    run: &mut dyn Run<S>,
+    view: &View<S>,
+    target: &mut Target,
+) -> (Vec<PrimId>, [f64; 2]) {
     let (list, cull_ms) = timed(|| run.cull(view).prims);
     let ((), draw_ms) = timed(|| draw(target, scene, view, &list));
     (list, [cull_ms, draw_ms])

@@ -1,6 +1,6 @@
-//! Sections 1 and 5.2.3: "very low overhead", "negligible overhead on top of view-frustum culling". The time of the traversal
-//! beside that of view-frustum culling with a kD-tree. At a budget of 100 % both draw what is in view, so their difference is
-//! what the order costs.
+//! Sections 1 and 5.2.3: "very low overhead", "negligible overhead on top of view-frustum culling". The time
+//! of the traversal beside that of view-frustum culling with a kD-tree. At a budget of 100 % both draw what
+//! is in view, so their difference is what the order costs.
 
 use std::sync::Arc;
 
@@ -8,7 +8,9 @@ use super::{BUDGET, BUDGETS, DELAUNAY, KD_TREE, Most, OCTREE, Way, frame, frustu
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::{ROUNDS, stop_or_go};
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::median;
 use crate::raster::Target;
@@ -37,12 +39,22 @@ const WAYS: [Way; 3] = [DELAUNAY, OCTREE, KD_TREE];
 const BASELINE: &str = "view frustum";
 const EACH: usize = BUDGETS.len() + 1;
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let budgets: Vec<Most> = BUDGETS.into_iter().chain([100.0]).map(Most::Percent).collect();
     let mut runs = vec![frustum(scene, setup, &part(progress, 0.0, 0.05))?];
     for (i, way) in WAYS.into_iter().enumerate() {
-        runs.extend(ready(scene, setup, way, &budgets, &part(progress, 0.05 * (i + 1) as f32, 0.05 * (i + 2) as f32))?);
+        runs.extend(ready(
+            scene,
+            setup,
+            way,
+            &budgets,
+            &part(progress, 0.05 * (i + 1) as f32, 0.05 * (i + 2) as f32),
+        )?);
     }
     let (mut target, n, ways) = (Target::default(), path.views.len(), runs.len());
     let mut rounds = vec![vec![[const { Vec::new() }; 2]; n]; ways];
@@ -65,7 +77,9 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         let mut row: Vec<Cell> = vec!["measured".into(), about.name.as_str().into()];
         match w.checked_sub(1) {
             None => row.extend([BASELINE.into(), Cell::Missing]),
-            Some(w) => row.extend([WAYS[w / EACH].label.into(), [1.0, 2.0, 5.0, 10.0, 100.0][w % EACH].into()]),
+            Some(w) => {
+                row.extend([WAYS[w / EACH].label.into(), [1.0, 2.0, 5.0, 10.0, 100.0][w % EACH].into()])
+            }
         }
         row.extend([drawn[w] as f64 / n as f64, cull, draw, 100.0 * cull / (cull + draw)].map(Cell::from));
         let over = (w > 0).then_some(cull - base_cull);
@@ -86,7 +100,10 @@ fn plots(table: &Table) -> Vec<Plot> {
         let base = table.number(rows[0], "cull_ms").unwrap_or_default();
         let mut series = vec![Series::new(BASELINE, Role::Ink, [1.0, 100.0].map(|x| (x, base)).to_vec())];
         for (way, rows) in WAYS.iter().zip(rows[1..].chunks(EACH)) {
-            let points = rows.iter().filter_map(|&r| Some((table.number(r, BUDGET.key)?, table.number(r, "cull_ms")?))).collect();
+            let points = rows
+                .iter()
+                .filter_map(|&r| Some((table.number(r, BUDGET.key)?, table.number(r, "cull_ms")?)))
+                .collect();
             series.push(Series::new(way.label, way.role, points));
         }
         plots.push(Plot {

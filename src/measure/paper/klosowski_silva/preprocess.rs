@@ -81,7 +81,11 @@ impl Progress for Stages<'_> {
     }
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let about = about(scene, &path(scene, setup));
     let (entry, all) = (method::<S>(METHOD), (WAYS.len() * ROUNDS) as f32);
     let mut times = [const { [const { Vec::new() }; 4] }; WAYS.len()];
@@ -104,7 +108,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         let references: usize = (1..=cells as u32).map(|n| index.held(NodeId(n))).sum();
         let [dividing, triangulating, assigning, total] = times[w].clone().map(median);
         let mb = |bytes: usize| bytes as f64 / 1e6;
-        let (index_mb, references_mb, scene_mb) = (mb(index.bytes()), mb(references * size_of::<u32>()), mb(scene.memory_bytes()));
+        let (index_mb, references_mb, scene_mb) =
+            (mb(index.bytes()), mb(references * size_of::<u32>()), mb(scene.memory_bytes()));
         vec![
             "measured".into(),
             about.name.as_str().into(),
@@ -125,7 +130,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     Ok((runs.iter().enumerate().filter_map(|(w, r)| Some((w, r.as_deref()?))).map(row).collect(), about))
 }
 
-/// Scene, triangles, cells, references a triangle, seconds, MB of cells, of references and of triangles, per cent.
+/// Scene, triangles, cells, references a triangle, seconds, MB of cells, of references and of triangles, per
+/// cent.
 type Quoted = (&'static str, f64, f64, f64, f64, [f64; 4]);
 const PAPER: [Quoted; 2] = [
     ("City", 500_000.0, 25_000.0, 1.80, 70.0, [2.5, 3.6, 50.0, 12.0]),
@@ -135,7 +141,14 @@ const PAPER: [Quoted; 2] = [
 
 fn paper() -> Vec<Vec<Cell>> {
     let row = |(scene, triangles, cells, references, seconds, memory): Quoted| {
-        let mut row: Vec<Cell> = vec!["paper".into(), scene.into(), triangles.into(), DELAUNAY.label.into(), cells.into(), references.into()];
+        let mut row: Vec<Cell> = vec![
+            "paper".into(),
+            scene.into(),
+            triangles.into(),
+            DELAUNAY.label.into(),
+            cells.into(),
+            references.into(),
+        ];
         row.extend([Cell::Missing, Cell::Missing, Cell::Missing, (1000.0 * seconds).into()]);
         row.extend(memory.map(Cell::from));
         row
@@ -146,10 +159,15 @@ fn paper() -> Vec<Vec<Cell>> {
 fn plots(table: &Table) -> Vec<Plot> {
     let at = |key: &str| table.columns.iter().position(|c| c.key == key).unwrap_or(0);
     let name = |r: usize| {
-        let size = table.number(r, "triangles").map_or(String::new(), |n| format!("{} k", grouped(n / 1000.0, 0)));
+        let size =
+            table.number(r, "triangles").map_or(String::new(), |n| format!("{} k", grouped(n / 1000.0, 0)));
         // A scene of a name that another one has too is called by its size as well.
         let scene = table.shown(r, at("scene"));
-        format!("{}, {size}\n{}", scene.split(',').next().unwrap_or_default(), table.shown(r, at("tessellation")))
+        format!(
+            "{}, {size}\n{}",
+            scene.split(',').next().unwrap_or_default(),
+            table.shown(r, at("tessellation"))
+        )
     };
     let bars = |key: &str, label: &str, role: Role| {
         let points = (0..table.rows.len()).filter_map(|r| Some((r as f64, table.number(r, key)?))).collect();
@@ -186,6 +204,9 @@ mod tests {
         assert_eq!(stages.begun.lock().expect("a list").len(), 4);
         let [dividing, triangulating, assigning, total] = stages.times();
         assert!(dividing >= 0.0 && triangulating >= 0.0 && assigning >= 0.0);
-        assert!(dividing + triangulating + assigning <= total, "{dividing} {triangulating} {assigning} {total}");
+        assert!(
+            dividing + triangulating + assigning <= total,
+            "{dividing} {triangulating} {assigning} {total}"
+        );
     }
 }

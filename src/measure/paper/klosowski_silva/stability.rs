@@ -1,6 +1,7 @@
-//! Section 7: "the visible set is stable, that is, the algorithm does not have major popping artifacts". The paper gives no
-//! figures. Measured between views a step of a walker apart: triangles that are visible in both and drawn in one of them only,
-//! and pixels that show the same triangle in both exact images and are right in one view and wrong in the other.
+//! Section 7: "the visible set is stable, that is, the algorithm does not have major popping artifacts". The
+//! paper gives no figures. Measured between views a step of a walker apart: triangles that are visible in
+//! both and drawn in one of them only, and pixels that show the same triangle in both exact images and are
+//! right in one view and wrong in the other.
 
 use std::sync::Arc;
 
@@ -10,7 +11,9 @@ use crate::drawing::{Plot, Series, Shape};
 use crate::geometry::{PrimId, Vector, View, ViewPath, WALKING_STEP_M};
 use crate::measure::paper::flight::{about, whole_path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
@@ -47,10 +50,14 @@ fn stretches<S: World>(path: &ViewPath<S>, frames: usize) -> Vec<Vec<View<S>>> {
     let total = (length / WALKING_STEP_M).clamp(each as f32, MOST) as usize;
     let walk = path.walked(WALKING_STEP_M, total).views;
     let starts = STARTS.min(frames.div_ceil(2)).max(1);
-    (0..starts).map(|i| (total - each) * i / starts.max(2).saturating_sub(1)).map(|first| walk[first..first + each].to_vec()).collect()
+    (0..starts)
+        .map(|i| (total - each) * i / starts.max(2).saturating_sub(1))
+        .map(|first| walk[first..first + each].to_vec())
+        .collect()
 }
 
-/// What is known of a view: the exact visible set and items, and for each run what of it was drawn and which pixels are wrong.
+/// What is known of a view: the exact visible set and items, and for each run what of it was drawn and which
+/// pixels are wrong.
 struct Known {
     visible: Vec<PrimId>,
     items: Vec<u32>,
@@ -58,9 +65,18 @@ struct Known {
 }
 
 impl Known {
-    fn of<S: World>(judge: &mut Judge, runs: &mut [Box<dyn Run<S>>], scene: &Scene<S>, view: &View<S>) -> Self {
+    fn of<S: World>(
+        judge: &mut Judge,
+        runs: &mut [Box<dyn Run<S>>],
+        scene: &Scene<S>,
+        view: &View<S>,
+    ) -> Self {
         judge.look(scene, view);
-        let mut known = Self { visible: judge.visible.clone(), items: judge.truth.image().item.clone(), of_run: Vec::new() };
+        let mut known = Self {
+            visible: judge.visible.clone(),
+            items: judge.truth.image().item.clone(),
+            of_run: Vec::new(),
+        };
         for run in runs {
             let list = run.cull(view).prims;
             let mut drawn = vec![false; scene.prim_count()];
@@ -97,14 +113,20 @@ impl Sums {
         };
         let both = || a.visible.iter().filter(|p| in_b[p.at()]);
         let of_both = both().count();
-        self.exact_change += percent(a.visible.len() + b.visible.len() - 2 * of_both, a.visible.len() + b.visible.len() - of_both);
+        self.exact_change += percent(
+            a.visible.len() + b.visible.len() - 2 * of_both,
+            a.visible.len() + b.visible.len() - of_both,
+        );
         let kept = |known: &Known, drawn: &[bool]| known.visible.iter().filter(|p| drawn[p.at()]).count();
         let (kept_a, kept_b) = (kept(a, drawn_a), kept(b, drawn_b));
         let kept_both = both().filter(|p| drawn_a[p.at()] && drawn_b[p.at()]).count();
         self.drawn_change += percent(kept_a + kept_b - 2 * kept_both, kept_a + kept_b - kept_both);
         self.popped += percent(both().filter(|p| drawn_a[p.at()] != drawn_b[p.at()]).count(), of_both);
         let same = |i: &usize| a.items[*i] == b.items[*i] && a.items[*i] != Target::NONE;
-        let pixels = percent((0..a.items.len()).filter(same).filter(|&i| wrong_a[i] != wrong_b[i]).count(), a.items.len());
+        let pixels = percent(
+            (0..a.items.len()).filter(same).filter(|&i| wrong_a[i] != wrong_b[i]).count(),
+            a.items.len(),
+        );
         self.pixels += pixels;
         self.worst = self.worst.max(pixels);
         self.pairs += 1;
@@ -115,11 +137,21 @@ impl Sums {
     }
 }
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = whole_path(scene, setup);
     let mut runs = Vec::new();
     for (i, way) in WAYS.into_iter().enumerate() {
-        runs.extend(ready(scene, setup, way, &BUDGETS.map(Most::Percent), &part(progress, 0.1 * i as f32, 0.1 * (i + 1) as f32))?);
+        runs.extend(ready(
+            scene,
+            setup,
+            way,
+            &BUDGETS.map(Most::Percent),
+            &part(progress, 0.1 * i as f32, 0.1 * (i + 1) as f32),
+        )?);
     }
     let mut judge = Judge::new(scene, setup);
     let mut sums = vec![Sums::default(); runs.len()];
@@ -140,7 +172,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let about = about(scene, &path);
     let row = |r: usize| {
         let (way, budget) = (WAYS[r / BUDGETS.len()], BUDGETS[r % BUDGETS.len()]);
-        let text: [Cell; 4] = ["measured".into(), about.name.as_str().into(), way.label.into(), budget.into()];
+        let text: [Cell; 4] =
+            ["measured".into(), about.name.as_str().into(), way.label.into(), budget.into()];
         text.into_iter().chain(sums[r].means().map(Cell::from)).collect()
     };
     Ok(((0..runs.len()).map(row).collect(), about))
@@ -154,7 +187,10 @@ fn plots(table: &Table) -> Vec<Plot> {
             ("popped_pixels_percent", "pixels that pop", "% of the image"),
         ] {
             let series = WAYS.iter().zip(rows.chunks(BUDGETS.len())).map(|(way, rows)| {
-                let points = rows.iter().filter_map(|&r| Some((table.number(r, BUDGET.key)?, table.number(r, key)?))).collect();
+                let points = rows
+                    .iter()
+                    .filter_map(|&r| Some((table.number(r, BUDGET.key)?, table.number(r, key)?)))
+                    .collect();
                 Series::new(way.label, way.role, points)
             });
             plots.push(Plot {
@@ -178,12 +214,20 @@ mod tests {
         let id = |list: &[u32]| list.iter().copied().map(PrimId).collect::<Vec<_>>();
         let set = |list: &[usize]| (0..4).map(|i| list.contains(&i)).collect::<Vec<bool>>();
         // 0 and 1 are visible in both, 2 only before, 3 only after; 1 is drawn before and not after.
-        let a = Known { visible: id(&[0, 1, 2]), items: vec![0, 0, 1, 2], of_run: vec![(set(&[0, 1]), set(&[3]))] };
-        let b = Known { visible: id(&[0, 1, 3]), items: vec![0, 0, 1, 3], of_run: vec![(set(&[0, 3]), set(&[2]))] };
+        let a = Known {
+            visible: id(&[0, 1, 2]),
+            items: vec![0, 0, 1, 2],
+            of_run: vec![(set(&[0, 1]), set(&[3]))],
+        };
+        let b = Known {
+            visible: id(&[0, 1, 3]),
+            items: vec![0, 0, 1, 3],
+            of_run: vec![(set(&[0, 3]), set(&[2]))],
+        };
         let mut sums = Sums::default();
         sums.add(&a, &b, 0);
-        // Visible: 2 of 4 change. Drawn and visible: {0, 1} to {0, 3}, 2 of 3 change. 1 of the 2 visible in both pops.
-        // Pixel 2 shows triangle 1 in both and is wrong after; pixel 3 shows another triangle.
+        // Visible: 2 of 4 change. Drawn and visible: {0, 1} to {0, 3}, 2 of 3 change. 1 of the 2 visible in
+        // both pops. Pixel 2 shows triangle 1 in both and is wrong after; pixel 3 shows another triangle.
         let want = [50.0, 200.0 / 3.0, 50.0, 25.0, 25.0];
         assert!(sums.means().iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", sums.means());
         sums.add(&b, &b, 0);

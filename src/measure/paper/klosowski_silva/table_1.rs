@@ -1,4 +1,5 @@
-//! Table 1: the visible coverage ratio at four budgets, for each order; with the worst frame's wrong pixels (Section 5.2).
+//! Table 1: the visible coverage ratio at four budgets, for each order; with the worst frame's wrong pixels
+//! (Section 5.2).
 
 use std::sync::Arc;
 
@@ -6,7 +7,9 @@ use super::{BUDGETS, BY_CENTROID, DELAUNAY, Judge, Most, OCTREE, ORDER, Way, rea
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::stop_or_go;
-use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part};
+use crate::measure::paper::{
+    Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
+};
 use crate::measure::table::{Cell, Table};
 use crate::scene::{Progress, Scene};
 
@@ -34,9 +37,14 @@ const WAYS: [Way; 3] = [DELAUNAY, OCTREE, BY_CENTROID];
 const FOUND: [&str; 4] = ["found_1_percent", "found_2_percent", "found_5_percent", "found_10_percent"];
 
 /// Scene, ε at each budget, and the most pixels wrong in any frame, of which the budget is not named.
-const PAPER: [(&str, [f64; 4], f64); 2] = [("City", [51.0, 66.0, 80.0, 90.0], 4.0), ("5 Car Body/Engine", [44.0, 55.0, 67.0, 76.0], 12.0)];
+const PAPER: [(&str, [f64; 4], f64); 2] =
+    [("City", [51.0, 66.0, 80.0, 90.0], 4.0), ("5 Car Body/Engine", [44.0, 55.0, 67.0, 76.0], 12.0)];
 
-fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
+fn rows<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    progress: &dyn Progress,
+) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let budgets = BUDGETS.map(Most::Percent);
     let mut runs = Vec::new();
@@ -82,11 +90,19 @@ fn plots(table: &Table) -> Vec<Plot> {
     for (name, rows) in by_scene(table) {
         let mut series: Vec<Series> = Vec::new();
         for (way, &r) in WAYS.iter().zip(&rows) {
-            let points = BUDGETS.into_iter().zip(FOUND).filter_map(|(b, key)| Some((b, table.number(r, key)?))).collect();
+            let points = BUDGETS
+                .into_iter()
+                .zip(FOUND)
+                .filter_map(|(b, key)| Some((b, table.number(r, key)?)))
+                .collect();
             series.push(Series::new(way.label, way.role, points));
         }
         for ((scene, found, _), role) in PAPER.into_iter().zip([Role::Approximated, Role::Partial]) {
-            series.push(Series::new(format!("paper, {scene}"), role, BUDGETS.into_iter().zip(found).collect()));
+            series.push(Series::new(
+                format!("paper, {scene}"),
+                role,
+                BUDGETS.into_iter().zip(found).collect(),
+            ));
         }
         plots.push(Plot {
             title: name,
