@@ -279,9 +279,9 @@ fn films_replay_in_space() {
     films_replay(&solid_scenes());
 }
 
-/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise
-/// while the scenes stay the same. (Before `box_and_objects` and
-/// `thin_slabs` came in `frustum` in flatland had 0.648 and `large-occluders` 0.81.)
+/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise while the
+/// scenes stay the same. (Before `box_and_objects` and `thin_slabs` came in `frustum` in flatland had 0.648
+/// and `large-occluders` 0.81.)
 const FLOORS: [(&str, &str, f64); 12] = [
     ("hierarchical-z", "flatland", 0.35),
     ("hierarchical-z", "space", 0.5),

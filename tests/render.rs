@@ -161,10 +161,10 @@ fn odd_drawings_harm_nothing() {
 fn page(paper: Paper) -> Drawing {
     let mut page = Page { paper, title: "View-frustum culling over a kD-tree".into(), ..Page::default() };
     page.caption =
-        "Frustum culling of scenes2d/street.json, step 412 of 1,093: node 37 lies outside plane 2 \
-                    (−3.5 m), so its 12 walls are \
-                    culled without a further test. ρ = 0.75, height 8, back-face culling on."
-            .into();
+        "Frustum culling of scenes2d/street.json, step 412 of 1,093: node 37 lies outside plane 2 (−3.5 m), \
+                    so its 12 walls are culled without a further test. ρ = 0.75, height 8, back-face culling \
+                    on."
+        .into();
     let mut picture = Drawing { size_pt: vec2(228.0, 150.0), ..Drawing::default() };
     picture.title = "Step 412".into();
     let mut states = Role::STATES.into_iter().cycle();

@@ -148,8 +148,7 @@ pub fn axes(to: &mut Drawing, x: &Axis, y: &Axis, min: Vec2, max: Vec2) -> [Vec2
 const SIZE_PT: f32 = 7.0;
 
 /// As [`axes`], with these marks along x: place from 0 to 1 and label, of several lines if there are line
-/// breaks in it;
-/// `grid`: with a line up from each.
+/// breaks in it; `grid`: with a line up from each.
 pub fn axes_with(
     to: &mut Drawing,
     x_marks: &[(f32, String)],

@@ -179,8 +179,8 @@ fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
     };
     let content = panels(WIDTH_PT, 2, &[0, 1, 2, 4].map(panel));
     let caption = "A kD-tree splits the polygons of a street into halves, alternately along x and y. Each \
-                   box is the bounds of what its \
-                   node holds, so boxes of one level may overlap where a polygon crosses the splitting line.";
+                   box is the bounds of what its node holds, so boxes of one level may overlap where a \
+                   polygon crosses the splitting line.";
     let legend = vec![
         Entry { role: Role::Ink, label: "polygon".into(), swatch: Swatch::Line },
         Entry { role: Role::Evidence, label: "bounds of a node".into(), swatch: Swatch::Line },
@@ -220,10 +220,9 @@ fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
     let panel = |result: &str| flat_panel(&*film, step_of(&*film, result), &look, result.to_owned());
     let content = panels(WIDTH_PT, 3, &["outside", "partial", "inside"].map(panel));
     let caption = "Each node's box (yellow) is tested against the planes of the view frustum, which are \
-                   lines in flatland. Outside: even \
-                   the corner that reaches farthest in is beyond one plane, so all below the node is \
-                   dropped. Partial: a plane cuts the \
-                   box, so its children are looked at. Inside: all below it is kept without another test.";
+                   lines in flatland. Outside: even the corner that reaches farthest in is beyond one plane, \
+                   so all below the node is dropped. Partial: a plane cuts the box, so its children are \
+                   looked at. Inside: all below it is kept without another test.";
     Ok(page("A box against the view frustum", caption, &content))
 }
 
@@ -244,8 +243,8 @@ fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
     let content = panels(WIDTH_PT, 2, &[1, 2, 3, 4].map(panel));
     let caption = format!(
         "View-frustum culling over a kD-tree, {}, first eye of the file, tree-height 8. The traversal goes \
-         down from the root; a node \
-         outside the frustum is dropped with all below it, a node inside or a leaf is kept.",
+         down from the root; a node outside the frustum is dropped with all below it, a node inside or a \
+         leaf is kept.",
         scene.name()
     );
     Ok(page("View-frustum culling, step by step", caption, &content))
@@ -263,10 +262,8 @@ fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
     };
     let content = panels(WIDTH_PT, 3, &["z-buffer", "frustum", "centroid"].map(panel));
     let caption = "The three baselines with their default parameters on the same view. The z-buffer draws \
-                   everything; view-frustum culling \
-                   drops what is outside; centroid ordering draws what is nearest until its budget of 10 % \
-                   is spent, and leaves out the \
-                   rest, visible or not.";
+                   everything; view-frustum culling drops what is outside; centroid ordering draws what is \
+                   nearest until its budget of 10 % is spent, and leaves out the rest, visible or not.";
     Ok(page("Three baselines", caption, &content))
 }
 
@@ -345,9 +342,8 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
     );
     let caption = format!(
         "What the Eye sees of {} triangles. In the item buffer every pixel holds the id of the nearest \
-         triangle (here as a color): the ids \
-         that occur are exactly what is visible at this resolution, and the truth against which every method \
-         is measured.",
+         triangle (here as a color): the ids that occur are exactly what is visible at this resolution, and \
+         the truth against which every method is measured.",
         scene.live().len()
     );
     Ok(page("The truth: an item buffer", caption, &content))

@@ -85,9 +85,8 @@ fn simple_pyramid(_: Tint) -> Result<Drawing, SceneError> {
     let (scene, view) = figure_1()?;
     let (content, _) = pyramid_picture(&scene, &view, None, DepthScale::Linear);
     let caption = "Level 0 is the z-buffer. Each value of the level above is the farthest of the four below \
-                   it, so the single value on top, 9, is \
-                   the farthest depth of the whole image. The values are those of the paper's Figure 1; near \
-                   is dark, far is light.";
+                   it, so the single value on top, 9, is the farthest depth of the whole image. The values \
+                   are those of the paper's Figure 1; near is dark, far is light.";
     Ok(two_columns(
         "Georges 1995, Figure 1: a z-pyramid of three levels",
         vec![],
@@ -110,11 +109,10 @@ fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
         parts.push(picture);
     }
     let caption = "A face whose nearest point is at depth 6 is asked for. Above it covers the left column of \
-                   the upper left quarter: the finest cell \
-                   that covers it holds 9, so nothing is decided; the two samples that the face itself \
-                   covers are 4 and 4, both nearer than 6, so the \
-                   face is hidden. Below it covers the upper row: sample 4 hides it, sample 9 does not, so \
-                   it is visible.";
+                   the upper left quarter: the finest cell that covers it holds 9, so nothing is decided; \
+                   the two samples that the face itself covers are 4 and 4, both nearer than 6, so the face \
+                   is hidden. Below it covers the upper row: sample 4 hides it, sample 9 does not, so it is \
+                   visible.";
     Ok(two_columns(
         "Georges 1995, Figure 2: a face against the pyramid",
         cells(),
@@ -159,10 +157,9 @@ fn office_query(_: Tint) -> Result<Drawing, SceneError> {
     let content = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = format!(
         "The pyramid over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of \
-         the octree has been found hidden. \
-         Cells are numbered in the order in which they were read: where a coarse cell does not decide, the \
-         four below it are read, down to the \
-         samples. Cross-hatched cells were drawn into since they were last read.",
+         the octree has been found hidden. Cells are numbered in the order in which they were read: where a \
+         coarse cell does not decide, the four below it are read, down to the samples. Cross-hatched cells \
+         were drawn into since they were last read.",
         film.scene().live().len(),
         film.events().len()
     );
@@ -174,8 +171,7 @@ fn office_stack(_: Tint) -> Result<Drawing, SceneError> {
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, STACKED, DepthScale::Logarithmic);
     let caption = "The same step with the levels above each other, the image at the bottom: a query begins \
-                   at the finest cell that covers the face, and \
-                   goes down where it must.";
+                   at the finest cell that covers the face, and goes down where it must.";
     Ok(two_columns("The z-pyramid over the image", cells(), caption.into(), &content))
 }
 
@@ -191,9 +187,8 @@ fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
     );
     let strips = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = "Flatland: the image is a line of 64 pixels, its pyramid a strip a level. A cube of the \
-                   quadtree (yellow) is asked for; the lines of sight \
-                   bound the cell that decided, the farthest thing drawn there lies before the cube's \
-                   nearest corner, so the cube is hidden.";
+                   quadtree (yellow) is asked for; the lines of sight bound the cell that decided, the \
+                   farthest thing drawn there lies before the cube's nearest corner, so the cube is hidden.";
     Ok(two_columns(
         "A cube against the pyramid, in flatland",
         legend(&world),
@@ -220,9 +215,8 @@ fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
     };
     let content = panels(super::builtin::WIDTH_PT, 2, &[panel("false", 0), panel("true", 1)]);
     let caption = "A game level from above after a whole frame. Left without coherence: cubes are visited \
-                   front to back and asked one by one. Right the \
-                   second frame with coherence: the cubes that were visible are drawn first, without being \
-                   asked, and the rest is asked against an image \
+                   front to back and asked one by one. Right the second frame with coherence: the cubes that \
+                   were visible are drawn first, without being asked, and the rest is asked against an image \
                    that is almost complete; some segments are drawn that the cubes before them would have \
                    hidden.";
     Ok(page("A quadtree's cubes by state", caption, &content))
@@ -276,11 +270,10 @@ fn timelines(_: Tint) -> Result<Drawing, SceneError> {
         parts.push(picture);
     }
     let caption = "A second frame of an office on a simulated machine of four processors and four renderers. \
-                   By structure, whole parts of the scene go to one \
-                   processor, and some sit idle; by primitive, every processor asks for every structure; \
-                   hybrid, structures are dealt finely, so that near \
-                   ones go to different processors. At the right the share of the frame in which a unit \
-                   works.";
+                   By structure, whole parts of the scene go to one processor, and some sit idle; by \
+                   primitive, every processor asks for every structure; hybrid, structures are dealt finely, \
+                   so that near ones go to different processors. At the right the share of the frame in \
+                   which a unit works.";
     Ok(two_columns(
         "Georges 1995, Section 4.1: three ways to distribute structures",
         vec![],

@@ -1,8 +1,7 @@
 //! (film, step, look) → drawing: every picture in the explorer and in the documentation.
 //!
-//! [`Page`] sets title, legend and caption around a picture. [`world`] draws a step in world
-//! coordinates, [`Sheet`] and [`project`] put it on paper. [`pick()`] finds what lies
-//! under the pointer.
+//! [`Page`] sets title, legend and caption around a picture. [`world`] draws a step in world coordinates,
+//! [`Sheet`] and [`project`] put it on paper. [`pick()`] finds what lies under the pointer.
 
 pub mod axis;
 mod builtin;

@@ -163,9 +163,9 @@ fn blend<S: Space>(keys: [&View<S>; 4], t: f32) -> View<S> {
     View { eye, ..*keys[1] }
 }
 
-/// The figure-8 walkthrough of the papers' experiments: the Gerono lemniscate
-/// `(cos t, sin t cos t)` scaled to `half_extent`, traversed once in `count` steps, looking along the
-/// tangent. Returns position and unit direction in the ground plane.
+/// The figure-8 walkthrough of the papers' experiments: the Gerono lemniscate `(cos t, sin t cos t)` scaled
+/// to `half_extent`, traversed once in `count` steps, looking along the tangent. Returns position and unit
+/// direction in the ground plane.
 pub fn figure_eight(center: DVec2, half_extent: DVec2, count: usize) -> Vec<(DVec2, DVec2)> {
     let at = |k: usize| {
         let t = std::f64::consts::TAU * k as f64 / count.max(1) as f64;

@@ -7,9 +7,9 @@ use crate::scene::Scene;
 /// Share of a material's color that faces seen edge-on keep; the rest grows with the cosine.
 const AMBIENT: f32 = 0.35;
 
-/// The image in the scene's own colors under a light at the eye: material color times
-/// `0.35 + 0.65 |cos|` of the angle between the face's normal and the direction to the eye, both sides
-/// alike. `background` (linear) fills the rest. RGBA, sRGB-encoded, row by row.
+/// The image in the scene's own colors under a light at the eye: material color times `0.35 + 0.65 |cos|` of
+/// the angle between the face's normal and the direction to the eye, both sides alike. `background` (linear)
+/// fills the rest. RGBA, sRGB-encoded, row by row.
 pub fn shade<S: Drawable>(
     target: &Target,
     scene: &Scene<S>,

@@ -1,8 +1,7 @@
 //! Hatches as clipped lines and dots, for readers that have no patterns of their own.
 //!
 //! The phase is fixed to the paper, so the hatches of neighboring areas run on into each other and agree with
-//! the
-//! `<pattern>` of an SVG file. Any simple polygon will do. Cost: lines inside the window times corners.
+//! the `<pattern>` of an SVG file. Any simple polygon will do. Cost: lines inside the window times corners.
 
 use glam::{Vec2, vec2};
 

@@ -3,8 +3,7 @@
 //! A convex one becomes the fan (0, i, i+1), any other is handed to ear clipping along the normal that
 //! Newell's sum gives (Sutherland, Sproull and Schumacker 1974, appendix); signs are exact. Cost: O(n) for a
 //! convex polygon; for others O(n²) with a small factor (ear clipping with a z-order curve: 10 ms for 5,000
-//! corners,
-//! 5 to 9 s for 100,000).
+//! corners, 5 to 9 s for 100,000).
 
 use earcut::Earcut;
 use glam::{DVec2, DVec3};

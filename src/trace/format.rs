@@ -1,14 +1,13 @@
 //! The open trace format: a run as JSON Lines, for any program to write or read.
 //!
 //! Line 1 is the header, `{"trace":1,"scene":…,"method":…,"params":{…},"view":{…}}`; then one object an
-//! event,
-//! `{"step":k,"frame":f,"event":"NodeClassified","line":"Visible:4",…}` with fields named by the method.
-//! `step` k is the state after the first k events of its frame: it starts at 1 and ascends; steps may be left
-//! out (a coarse trace leaves out the lines of pseudocode). `frame` never descends. `line` is the line of
-//! pseudocode that was current. `trace.schema.json` beside this file describes each line; foreign traces
-//! may use any method, events and fields. Numbers are the shortest decimals that read back as the same
-//! 32-bit (else 64-bit) float, so equal runs give equal bytes; what is not finite is `null`.
-//! Cost: O(bytes), one line in memory at a time.
+//! event, `{"step":k,"frame":f,"event":"NodeClassified","line":"Visible:4",…}` with fields named by the
+//! method. `step` k is the state after the first k events of its frame: it starts at 1 and ascends; steps may
+//! be left out (a coarse trace leaves out the lines of pseudocode). `frame` never descends. `line` is the
+//! line of pseudocode that was current. `trace.schema.json` beside this file describes each line; foreign
+//! traces may use any method, events and fields. Numbers are the shortest decimals that read back as the same
+//! 32-bit (else 64-bit) float, so equal runs give equal bytes; what is not finite is `null`. Cost: O(bytes),
+//! one line in memory at a time.
 
 use std::io::{self, BufRead, Read, Write};
 

@@ -187,8 +187,7 @@ pub fn tangent_corners_by<S: Shape>(
 }
 
 /// The two box corners at which planes through an edge touch it, by table and by looking at every corner
-/// (Section 2.1);
-/// `None` where the edge's line meets the box. In flatland `to` is not used.
+/// (Section 2.1); `None` where the edge's line meets the box. In flatland `to` is not used.
 pub fn tangent_corners<S: Shape>(
     from: S::Vector,
     to: S::Vector,

@@ -9,12 +9,10 @@
 //! occluders near it (Section 3.2).
 //!
 //! Departures: occlusion is demanded with a margin, so that it also holds for the pixels of the rasterizer
-//! (see
-//! [`relation`]); where an occluder's own plane cuts a box the relation is partial, not none, since what
+//! (see [`relation`]); where an occluder's own plane cuts a box the relation is partial, not none, since what
 //! lies behind it can be occluded; the jointly occluding set need not be a whole component (see [`joint`]);
 //! occluders are picked from a leaf's longer list by where they are used (see [`selection`]); detail objects
-//! are also tested against the frustum.
-//! Cost: O(occluders · nodes visited); memory O(nodes · occluders).
+//! are also tested against the frustum. Cost: O(occluders · nodes visited); memory O(nodes · occluders).
 
 pub mod anatomy;
 mod explain;

@@ -15,10 +15,9 @@
 //! flows around everything and takes what is behind for as good as what is seen. Two parameters go beyond the
 //! paper by default, for they find more (`cullscope paper klosowski-silva-table-1`): `transfer=whole` hands
 //! on all solidity in place of its part v · n, for through the oblique faces of tetrahedra that part shrinks
-//! from cell to cell;
-//! `update=star-shaped` lets the value stand that came through the face toward the Eye, where in the paper
-//! the latest one replaces it. `transfer=aligned`, `update=latest` is the paper's arithmetic.
-//! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
+//! from cell to cell; `update=star-shaped` lets the value stand that came through the face toward the Eye,
+//! where in the paper the latest one replaces it. `transfer=aligned`, `update=latest` is the paper's
+//! arithmetic. Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod explain;
 mod front;

@@ -44,9 +44,8 @@ pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
     paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, y), vec2(COLUMN_PT, y)]);
     paper.size_pt = vec2(COLUMN_PT, y + 1.0);
     let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps \
-                   through it: the selection of \
-                   occluders, the recursion with view-frustum culling in front, TestOcclusion opened up, and \
-                   the detail objects in Gather.";
+                   through it: the selection of occluders, the recursion with view-frustum culling in front, \
+                   TestOcclusion opened up, and the detail objects in Gather.";
     Ok(page(Paper::Column, "The visibility algorithm", Vec::new(), caption, &paper))
 }
 
@@ -196,13 +195,11 @@ pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Line, "viewing direction V"),
     ];
     let caption = "The area-angle estimates the solid angle that an occluder takes up from the viewpoint P; \
-                   D leads to the occluder's center, and V \
-                   is the direction in which P sees it. The charts compare the two for a square of side 2. \
-                   Like the solid angle it grows \
-                   with the area and falls with the square of the distance and the cosine of obliqueness. \
-                   Nearby it is too large: \
-                   half a side away nearly twice the solid angle, which is 2π at most. That does no harm, \
-                   since such an occluder comes first anyway.";
+                   D leads to the occluder's center, and V is the direction in which P sees it. The charts \
+                   compare the two for a square of side 2. Like the solid angle it grows with the area and \
+                   falls with the square of the distance and the cosine of obliqueness. Nearby it is too \
+                   large: half a side away nearly twice the solid angle, which is 2π at most. That does no \
+                   harm, since such an occluder comes first anyway.";
     Ok(page(Paper::TwoColumns, "Area-angle and solid angle", legend, caption, &paper))
 }
 

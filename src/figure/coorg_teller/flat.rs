@@ -76,10 +76,9 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Dot, "viewpoint"),
     ];
     let caption = "An occluder A and a box T in flatland. A supporting line through an end of A has A and T \
-                   on one side, a separating line \
-                   has them on opposite sides. They and A's own line divide the viewpoints that have A \
-                   before T into three regions: T is \
-                   not occluded by A (1), partially (2), or fully (3). Scene occluder_and_box, first eye.";
+                   on one side, a separating line has them on opposite sides. They and A's own line divide \
+                   the viewpoints that have A before T into three regions: T is not occluded by A (1), \
+                   partially (2), or fully (3). Scene occluder_and_box, first eye.";
     Ok(page(Paper::Column, "Supporting and separating lines", legend, caption, &content))
 }
 
@@ -137,11 +136,9 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Dot, "viewpoint"),
     ];
     let caption = "Two occluders that share the edge E, a point in flatland. From the hatched region neither \
-                   hides the box T, but both do \
-                   together: each of them hides it partially, and they lie on opposite sides of E, so the \
-                   supporting lines through E \
-                   (dotted) need not be satisfied, only those through the outer ends. Scene \
-                   connected_occluders, first eye.";
+                   hides the box T, but both do together: each of them hides it partially, and they lie on \
+                   opposite sides of E, so the supporting lines through E (dotted) need not be satisfied, \
+                   only those through the outer ends. Scene connected_occluders, first eye.";
     Ok(page(Paper::Column, "Occlusion by connected occluders", legend, caption, &content))
 }
 
@@ -226,10 +223,9 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Line, "what P sees of T"),
     ];
     let caption = "A and B share E, but from P both lie on the same side of it: E is on their silhouette. If \
-                   the supporting lines through E \
-                   (dotted) were ignored there, T would be called hidden, yet P sees a corner of it past E. \
-                   So they are ignored only \
-                   where the two occluders lie on opposite sides of E. Scene silhouette_edge, both eyes.";
+                   the supporting lines through E (dotted) were ignored there, T would be called hidden, yet \
+                   P sees a corner of it past E. So they are ignored only where the two occluders lie on \
+                   opposite sides of E. Scene silhouette_edge, both eyes.";
     Ok(page(Paper::Column, "A shared silhouette edge counts", legend, caption, &content))
 }
 

@@ -166,13 +166,11 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Scene, Swatch::Area, "lines made at P2"),
     ];
     let caption = "Nodes of a kD-tree classified against a single occluder O for two viewpoints in a row; \
-                   only the last nodes of each descent \
-                   are filled. The descent ends where a node is occluded as a whole (such as 1) or not at \
-                   all (2), so few nodes are tested. \
-                   Nodes that both descents come to (such as 3) keep their supporting and separating lines, \
-                   which do not depend on where \
-                   the eye stands: at P2 they are only checked. Scene two_viewpoints, both eyes, one \
-                   occluder, tree-height 8.";
+                   only the last nodes of each descent are filled. The descent ends where a node is occluded \
+                   as a whole (such as 1) or not at all (2), so few nodes are tested. Nodes that both \
+                   descents come to (such as 3) keep their supporting and separating lines, which do not \
+                   depend on where the eye stands: at P2 they are only checked. Scene two_viewpoints, both \
+                   eyes, one occluder, tree-height 8.";
     Ok(page(Paper::TwoColumns, "One occluder, two viewpoints in a row", legend, caption, &content))
 }
 
@@ -248,12 +246,10 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Visible, Swatch::Line, "drawn"),
     ];
     let caption = "Detail objects D1 to D3 and the occluders that decide them. The two occluders that look \
-                   largest from the viewpoint P hide \
-                   none of the three. Visibility goes both ways, so the occluders that look large from an \
-                   object toward P are tried too: \
-                   P lies inside both supporting lines of D1 and D2 with the walls before them. D3 is drawn. \
-                   Scene detail_objects, first eye, \
-                   two occluders for each place and direction.";
+                   largest from the viewpoint P hide none of the three. Visibility goes both ways, so the \
+                   occluders that look large from an object toward P are tried too: P lies inside both \
+                   supporting lines of D1 and D2 with the walls before them. D3 is drawn. Scene \
+                   detail_objects, first eye, two occluders for each place and direction.";
     Ok(page(Paper::Column, "Detail objects and the occluders near them", legend, caption, &content))
 }
 

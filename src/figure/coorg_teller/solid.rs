@@ -130,13 +130,11 @@ pub(super) fn joint_occlusion(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Evidence, Swatch::Line, "line of edge e, which T crosses"),
     ];
     let caption = "Three sets of occluders as seen from the viewpoint. In all three they hide the box T \
-                   behind them, though none does alone. \
-                   (a) Connected occluders with a convex silhouette: the plane through the edge they share \
-                   is ignored and T lies inside all \
-                   others, so it is found hidden. (b) Connected, but the silhouette is not convex: T crosses \
-                   the line of edge e, so the test \
-                   fails. (c) Disconnected: no edge is ignored, and the test fails. Both failures are on the \
-                   safe side: T is drawn.";
+                   behind them, though none does alone. (a) Connected occluders with a convex silhouette: \
+                   the plane through the edge they share is ignored and T lies inside all others, so it is \
+                   found hidden. (b) Connected, but the silhouette is not convex: T crosses the line of edge \
+                   e, so the test fails. (c) Disconnected: no edge is ignored, and the test fails. Both \
+                   failures are on the safe side: T is drawn.";
     Ok(page(
         Paper::TwoColumns,
         "Joint occlusion in space, seen from the viewpoint",
@@ -197,9 +195,8 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Partial, Swatch::Dot, "its tangent vertex"),
     ];
     let caption = "The two planes through an edge E of a polygon that touch a box T, each at a tangent \
-                   vertex (dot). The supporting plane has \
-                   the box and the polygon on one side, the separating plane on opposite sides. Arrows point \
-                   to the inside, the polygon's side.";
+                   vertex (dot). The supporting plane has the box and the polygon on one side, the \
+                   separating plane on opposite sides. Arrows point to the inside, the polygon's side.";
     Ok(page(Paper::Column, "Tangent planes through an edge", legend, caption, &content))
 }
 
@@ -246,12 +243,10 @@ pub(super) fn silhouettes(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Faint, Swatch::Line, "other edges of the box"),
     ];
     let caption = "The outline of an axis-aligned box as seen from the origin depends only on where the \
-                   origin lies against the box's three \
-                   slabs: below, inside or above on each axis. Of these 27 places 6 are before a face and \
-                   give 4 corners, 12 beside an edge \
-                   and 8 off a corner give 6; inside there is none. So a table holds them all. Bit a of a \
-                   corner's number says whether it \
-                   lies at the upper end of axis a.";
+                   origin lies against the box's three slabs: below, inside or above on each axis. Of these \
+                   27 places 6 are before a face and give 4 corners, 12 beside an edge and 8 off a corner \
+                   give 6; inside there is none. So a table holds them all. Bit a of a corner's number says \
+                   whether it lies at the upper end of axis a.";
     Ok(page(Paper::TwoColumns, "Silhouettes of a box", legend, caption, &content))
 }
 
@@ -378,11 +373,10 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
     ];
     let caption = format!(
         "A box off whose corner the origin lies, projected from the origin. An occluder's edge that begins \
-         at the origin projects to a point e. \
-         The bits of its code are the signs of dot products with the six directed silhouette lines; the \
-         right-most bit is that of the line \
-         that begins at vertex {}, and so on around. All points of a region have the same tangent vertices, \
-         so a table gives them by the code.",
+         at the origin projects to a point e. The bits of its code are the signs of dot products with the \
+         six directed silhouette lines; the right-most bit is that of the line that begins at vertex {}, and \
+         so on around. All points of a region have the same tangent vertices, so a table gives them by the \
+         code.",
         outline[0]
     );
     Ok(page(Paper::Column, "Codes of the regions around a box", legend, caption, &content))

@@ -80,12 +80,10 @@ pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random"),
     ];
     let caption = "How space is divided into cells, small where much is: a quadtree (in space an octree) is \
-                   built over the end points of the segments, \
-                   down to leaves shorter than 10 % of the longest side (the paper: 5 %). Either its leaves \
-                   are the cells (b), or the triangles of the Delaunay triangulation of \
-                   their centers (c), which are moved at random first, as they lie on a lattice. The corners \
-                   of the region are vertices too. Scene \
-                   bottleneck.";
+                   built over the end points of the segments, down to leaves shorter than 10 % of the \
+                   longest side (the paper: 5 %). Either its leaves are the cells (b), or the triangles of \
+                   the Delaunay triangulation of their centers (c), which are moved at random first, as they \
+                   lie on a lattice. The corners of the region are vertices too. Scene bottleneck.";
     Ok(page(Paper::TwoColumns, "An occupancy-based tessellation", legend, caption, &content))
 }
 
@@ -183,11 +181,10 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Faint, Swatch::Line, "segments of the scene"),
     ];
     let caption = "Leaves of a quadtree are neighbors where they share a side or a part of one, whatever \
-                   their levels; corners do not count. Going up to the \
-                   common ancestor and down again finds neighbors of the same size or larger only: from I to \
-                   A, but not from A to I and J. Here both \
-                   sides of every dividing line are descended together, which gives all pairs, each in both \
-                   directions. Scene bottleneck, leaf-size 10 %.";
+                   their levels; corners do not count. Going up to the common ancestor and down again finds \
+                   neighbors of the same size or larger only: from I to A, but not from A to I and J. Here \
+                   both sides of every dividing line are descended together, which gives all pairs, each in \
+                   both directions. Scene bottleneck, leaf-size 10 %.";
     Ok(page(Paper::TwoColumns, "Neighbors across levels", legend, caption, &content))
 }
 

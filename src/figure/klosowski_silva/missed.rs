@@ -74,11 +74,10 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
     let legend = vec![entry(Role::Wrong, Swatch::Area, "wrong pixel; white ones are right")];
     let caption = format!(
         "A seminar room of {} triangles with a budget of 10 %: above what each order draws (nothing where it \
-         is white), below where that differs from the image of the whole room, in \
-         which {} triangles are visible. Centroid: nearest first; octree and Delaunay: prioritized layers \
-         over these cells. The centroid order finds many \
-         triangles, those of near chairs, and misses large ones far away: few polygons, many pixels. Frame \
-         {FRAME} of the flight, {SIDE} × {SIDE} pixels.",
+         is white), below where that differs from the image of the whole room, in which {} triangles are \
+         visible. Centroid: nearest first; octree and Delaunay: prioritized layers over these cells. The \
+         centroid order finds many triangles, those of near chairs, and misses large ones far away: few \
+         polygons, many pixels. Frame {FRAME} of the flight, {SIDE} × {SIDE} pixels.",
         scene.live().len(),
         seen.len()
     );

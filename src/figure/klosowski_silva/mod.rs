@@ -1,7 +1,6 @@
 //! The figures of Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set
-//! Estimation", IEEE TVCG
-//! 6(2), 2000, made anew by running the method: Figures 2, 3, 6, 7, 9, 13 and 14, in flatland where that
-//! shows it better.
+//! Estimation", IEEE TVCG 6(2), 2000, made anew by running the method: Figures 2, 3, 6, 7, 9, 13 and 14, in
+//! flatland where that shows it better.
 
 mod cells;
 mod missed;

@@ -102,12 +102,10 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random"),
     ];
     let caption = "A car with an engine, cut open along its middle; the near half is left out. An octree is \
-                   built over the vertices, down to leaves shorter \
-                   than 10 % of the car's length (the paper: 5 %); large leaves are empty. Either its leaves \
-                   are the cells (b), or the centers of the \
+                   built over the vertices, down to leaves shorter than 10 % of the car's length (the paper: \
+                   5 %); large leaves are empty. Either its leaves are the cells (b), or the centers of the \
                    leaves, moved at random (c), are the vertices of a Delaunay triangulation, whose \
-                   tetrahedra are the cells (d): small ones in the \
-                   body, large ones around it. Tetrahedra are cut in triangles and quadrangles. Scene \
-                   generate:cars, one car.";
+                   tetrahedra are the cells (d): small ones in the body, large ones around it. Tetrahedra \
+                   are cut in triangles and quadrangles. Scene generate:cars, one car.";
     Ok(page(Paper::TwoColumns, "An occupancy-based tessellation of space", legend, caption, &content))
 }

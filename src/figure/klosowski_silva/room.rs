@@ -241,13 +241,11 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
     ];
     let caption = format!(
         "A seminar room of {} triangles; the traversal has been stopped when a quarter of them was drawn, \
-         and is looked at from outside, the ceiling left \
-         out. Above: what was drawn, and the edges of occupied cells that still wait, as far as no drawn \
-         triangle hides them (leaf-size 14 %). Below: all \
+         and is looked at from outside, the ceiling left out. Above: what was drawn, and the edges of \
+         occupied cells that still wait, as far as no drawn triangle hides them (leaf-size 14 %). Below: all \
          cells in view where a horizontal plane cuts them (leaf-size 7 %). Cells near the Eye and empty ones \
          come first; among the chairs many wait. Cells that reach far out of the room are not shown. Frame \
-         {FRAME} \
-         of the flight.",
+         {FRAME} of the flight.",
         scene.live().len()
     );
     Ok(page(Paper::TwoColumns, "What was projected, seen from outside", legend, caption, &content))

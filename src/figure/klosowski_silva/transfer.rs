@@ -247,9 +247,8 @@ pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
     ];
     let caption = format!(
         "After A has been projected, its solidity ρ(A) is handed on, the more the better the shared side's \
-         normal n agrees with the view direction v, from \
-         the Eye to the center of the cell; |A| counts the segments that meet A, ρ_max is the most of any \
-         cell. B lies straight behind A; C is reached \
+         normal n agrees with the view direction v, from the Eye to the center of the cell; |A| counts the \
+         segments that meet A, ρ_max is the most of any cell. B lies straight behind A; C is reached \
          sideways, so it gets less of ρ(A), but pays the penalty. Numbers of step {} of the run on scene \
          bottleneck, Delaunay cells, leaf-size 10 %.",
         pair[1].step

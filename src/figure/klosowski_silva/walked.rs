@@ -229,13 +229,11 @@ pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Line, "the Eye and its view"),
     ];
     let caption = "The front grows from the cell of the Eye (a), always over its cell of least solidity (b). \
-                   Between two thickets is a bottleneck: cells \
-                   in and behind the thickets have gathered solidity and wait (c), while the front goes on \
-                   through the gap and spreads behind it (d). \
+                   Between two thickets is a bottleneck: cells in and behind the thickets have gathered \
+                   solidity and wait (c), while the front goes on through the gap and spreads behind it (d). \
                    So what is seen through the gap is drawn before what lies deep in the thickets. Cells \
-                   that are reached sideways, not through the \
-                   face that the Eye sees them by, pay a penalty. Scene bottleneck, Delaunay cells, \
-                   leaf-size 13 %, budget 70 segments.";
+                   that are reached sideways, not through the face that the Eye sees them by, pay a penalty. \
+                   Scene bottleneck, Delaunay cells, leaf-size 13 %, budget 70 segments.";
     Ok(page(Paper::TwoColumns, "The traversal, past a bottleneck", legend, caption, &content))
 }
 

@@ -4,8 +4,7 @@
 //! semi-static filter compares the determinant with a constant times the largest coordinates. What it leaves
 //! open is settled by integers if all points lie on a common grid (voxels, centers of octree cells), where
 //! ties are the rule, and by Shewchuk's expansions otherwise. Points are `f32` widened to `f64`: a product of
-//! five coordinates lies between
-//! 2⁻⁷⁴⁵ and 2⁶⁵⁰, so nothing under- or overflows.
+//! five coordinates lies between 2⁻⁷⁴⁵ and 2⁶⁵⁰, so nothing under- or overflows.
 
 use glam::DVec3;
 

@@ -6,12 +6,11 @@
 //! Section 5.
 //!
 //! An [`Experiment`] is a value: a name, and what it runs on each scene. Those of Coorg and Teller walk the
-//! scene's path
-//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a
-//! frame where the method remembers. The paper's models and machines are not ours, so shares and ratios
-//! compare and milliseconds do not. Whatever is measured, the answers of a method that promises to draw all
-//! that is visible are checked: the triangles that an item buffer shows and the method did not draw are
-//! counted (0 expected).
+//! scene's path `figure 8` (where a scene has none, one through its middle), at
+//! [`crate::geometry::WALKING_STEP_M`] a frame where the method remembers. The paper's models and machines
+//! are not ours, so shares and ratios compare and milliseconds do not. Whatever is measured, the answers of a
+//! method that promises to draw all that is visible are checked: the triangles that an item buffer shows and
+//! the method did not draw are counted (0 expected).
 
 mod flight;
 mod georges;
@@ -370,11 +369,10 @@ pub static EXPERIMENTS: &[Experiment] = &[
                   image does not",
         notes: &[
             "Between two views a walker's step apart (4.7 cm), means over the pairs. A triangle pops that is \
-             visible in both views and drawn in one of \
-             them; a pixel pops that shows the same triangle in both exact images and is right in one view \
-             and wrong in the other. A set changes \
-             by its share of those that are in either view's set and not in both. The paper says that \
-             nothing major pops, without figures.",
+             visible in both views and drawn in one of them; a pixel pops that shows the same triangle in \
+             both exact images and is right in one view and wrong in the other. A set changes by its share \
+             of those that are in either view's set and not in both. The paper says that nothing major pops, \
+             without figures.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::STABILITY,
@@ -388,9 +386,8 @@ pub static EXPERIMENTS: &[Experiment] = &[
         summary: "Time of the preprocess by stage, cells, references a triangle, and memory",
         notes: &[
             "Medians of three builds in turn, one thread. A reference takes 4 bytes; cells are all the rest \
-             of the index, neighbors and normals included; the \
-             scene is all that we keep of it. Overhead: cells and references against the scene; in the \
-             paper, against its triangles.",
+             of the index, neighbors and normals included; the scene is all that we keep of it. Overhead: \
+             cells and references against the scene; in the paper, against its triangles.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::PREPROCESS,
@@ -406,8 +403,7 @@ pub static EXPERIMENTS: &[Experiment] = &[
         notes: &[
             FRAMES,
             "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all \
-             that was kept is drawn. At 100 percent all that is in \
-             view is drawn, triangle by triangle.",
+             that was kept is drawn. At 100 percent all that is in view is drawn, triangle by triangle.",
         ],
         varies: &["tessellation", "budget"],
         sweep: &klosowski_silva::OVERHEAD,
@@ -446,21 +442,19 @@ const KLOSOWSKI_SILVA: &str = "10.1109/2945.856993";
 const LARGE: &[&str] = &["generate:city?polygons=500000", "generate:cars"];
 /// How what is found was measured.
 const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each \
-                       frame the share of it that was drawn, then the \
-                       mean over the frames. A pixel is wrong if its color differs from the exact image's.";
+                       frame the share of it that was drawn, then the mean over the frames. A pixel is wrong \
+                       if its color differs from the exact image's.";
 /// What Coorg and Teller's models are likened to.
 const WALKED: &[&str] = &["generate:building", "generate:city"];
 /// How times of whole frames were taken.
 const FRAMES: &str = "Wall-clock times on one thread from the view to the finished image, interleaved; of \
-                      each frame the median of three flights \
-                      along the scene's own path.";
+                      each frame the median of three flights along the scene's own path.";
 
 /// Columns of a terminal that running text takes.
 const TEXT_COLUMNS: usize = 100;
 /// How times were taken.
 const TIMES: &str = "Wall-clock times on one thread, interleaved; of each frame the median of three rounds, \
-                     then the mean over the frames of a \
-                     walk, at walking speed where no other is named.";
+                     then the mean over the frames of a walk, at walking speed where no other is named.";
 
 impl Experiment {
     /// The experiment with this name.
