@@ -3,10 +3,11 @@
 //! `cargo bench --bench film`. A step is reached when everything that the explorer shows of it is known:
 //! counts, states of all nodes, line, call stack, sentence, fields and the evidence's marks.
 
-use cullscope::culling::{Event, Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::drawing::Drawing;
 use cullscope::geometry::{NodeId, PrimId, Solid};
 use cullscope::measure::timing::timed;
+use cullscope::method::{Event, Settings};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, framing_view, load};
 use cullscope::trace::{Moves, Stamps};
 

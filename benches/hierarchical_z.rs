@@ -8,11 +8,12 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
+use cullscope::culling::Methods;
 use cullscope::culling::obscuration::Obscurer;
-use cullscope::culling::{Methods, Run, Settings};
 use cullscope::geometry::{Aabb, NodeId, Solid, View};
 use cullscope::measure::timed;
 use cullscope::measure::timing::{Paired, median, paired};
+use cullscope::method::{Run, Settings};
 use cullscope::raster::{Drawable, Options, Target};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use glam::Vec3;

@@ -8,10 +8,11 @@
 use std::cell::Cell;
 use std::hint::black_box;
 
+use cullscope::culling::Methods;
 use cullscope::culling::anatomy::{Blockers, tangent_corners_by};
-use cullscope::culling::{Methods, Run, Settings};
 use cullscope::geometry::{Aabb, NodeId, Solid, View, WALKING_STEP_M};
 use cullscope::measure::timing::{Paired, paired};
+use cullscope::method::{Run, Settings};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use glam::Vec3;
 

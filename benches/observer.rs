@@ -6,10 +6,11 @@
 
 use std::sync::Arc;
 
-use cullscope::culling::{DrawList, Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::geometry::{Frustum, FrustumTest, NodeId, Solid, View, faces_away};
 use cullscope::index::KdTree;
 use cullscope::measure::timing::{Paired, paired};
+use cullscope::method::{DrawList, Settings};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use glam::Vec3;
 

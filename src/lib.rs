@@ -10,7 +10,8 @@
 //! | 2 | [`drawing`] | a picture as a value |
 //! | 2 | [`raster`] | depth lines and images, item buffers |
 //! | 3 | [`index`] | spatial trees |
-//! | 4 | [`culling`] | the methods and what they say while they work |
+//! | 4 | [`method`] | what a method is: the shape they share, what they report, runs and films |
+//! | 5 | [`culling`] | the methods, and the list of them |
 //! | 5 | [`trace`] | a finished run at any step |
 //! | 5 | [`truth`] | exact visibility, error measures, the checker of certificates |
 //! | 6 | [`figure`] | a step as a drawing |
@@ -28,6 +29,7 @@ pub mod figure;
 pub mod geometry;
 pub mod index;
 pub mod measure;
+pub mod method;
 pub mod raster;
 pub mod render;
 pub mod scene;

@@ -12,9 +12,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use cullscope::culling::{Entry, Event, Film, Methods, Run, Settings, Verdict};
+use cullscope::culling::Methods;
 use cullscope::drawing::Drawing;
 use cullscope::geometry::{Flat, PrimId, Solid, Space, Vector, View};
+use cullscope::method::{Entry, Event, Film, Run, Settings, Verdict};
 use cullscope::raster::{Drawable, Options, Target};
 use cullscope::scene::{AnyScene, LoadOptions, Parts, Quiet, Scene, framing_view, load, random_views};
 use cullscope::trace::{Stamp, Stamps};
@@ -91,7 +92,7 @@ fn solid_scenes() -> Vec<Arc<Scene<Solid>>> {
 
 /// Parameters to run a method with: the defaults, back faces culled, and each whole number at its least.
 fn settings<S: World>(entry: &dyn Entry<S>) -> Vec<Settings> {
-    use cullscope::culling::KnobValue;
+    use cullscope::method::KnobValue;
     let mut all = vec![Settings::default()];
     for (knob, value) in entry.knobs(&Settings::default()).expect("defaults fit") {
         let text = match value {

@@ -8,9 +8,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use cullscope::culling::{Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::geometry::View;
 use cullscope::measure::timing::timed;
+use cullscope::method::Settings;
 use cullscope::raster::{Drawable, Options, Target, shade};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use cullscope::truth::Truth;

@@ -5,9 +5,10 @@
 
 use std::sync::Arc;
 
-use cullscope::culling::{Film, Methods, Settings, Verdict};
+use cullscope::culling::Methods;
 use cullscope::drawing::{Drawing, Layer, Mark, Role, Subject};
 use cullscope::geometry::{Eye, Frustum, MaterialId, NodeId, ObjectId, PrimId, Solid, View};
+use cullscope::method::{Film, Settings, Verdict};
 use cullscope::render::Theme;
 use cullscope::render::gpu::{
     ColorBy, GpuError, Headless, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, Surface,

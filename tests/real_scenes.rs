@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use cullscope::culling::{Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::geometry::{Flat, PrimId, Solid};
+use cullscope::method::Settings;
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
 use cullscope::truth::Truth;
 

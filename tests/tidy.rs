@@ -10,7 +10,8 @@ const ROOMS: &[(&str, u8)] = &[
     ("drawing", 2),
     ("raster", 2),
     ("index", 3),
-    ("culling", 4),
+    ("method", 4),
+    ("culling", 5),
     ("trace", 5),
     ("truth", 5),
     ("figure", 6),
@@ -45,7 +46,7 @@ const WORDS: &[(&str, &[&str], &str)] = &[
 const SHARED: &[&str] = &["depth"];
 
 /// Lines of code that a function may have, so that it fits on a screen.
-const FUNCTION_LINES: usize = 70;
+const FUNCTION_LINES: usize = 90;
 /// Lines that a file may have.
 const FILE_LINES: usize = 900;
 
@@ -127,7 +128,8 @@ fn report(wrong: &[String]) {
 #[test]
 fn nobody_looks_uphill() {
     let mut wrong = Vec::new();
-    for (path, text) in sources("src") {
+    // A room's own tests may ask the list of methods for one.
+    for (path, text) in sources("src").into_iter().filter(|(path, _)| !path.ends_with("tests.rs")) {
         let here = room(&path);
         for (line, there) in rooms_used(&code(&text)) {
             let allowed = there == here

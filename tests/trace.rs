@@ -3,8 +3,9 @@
 use std::io::BufReader;
 use std::sync::Arc;
 
-use cullscope::culling::{Film, Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::geometry::{Solid, View};
+use cullscope::method::{Film, Settings};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, framing_view, load};
 use cullscope::trace::Detail;
 use cullscope::trace::format::{Header, Reader, SCHEMA, TraceError, check, write_film, write_header};
@@ -65,7 +66,7 @@ fn what_is_written_reads_back() {
             assert_eq!((entry.frame, entry.step, entry.event.as_str()), (frame, at as u64 + 1, kind));
             assert_eq!(entry.fields.len(), fields.len());
             for field in fields {
-                use cullscope::culling::Value;
+                use cullscope::method::Value;
                 let got = &entry.fields[field.name];
                 match field.value {
                     // A 32-bit number is written with the digits of 32 bits.

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
-use cullscope::culling::{Film, Methods, Settings};
+use cullscope::culling::Methods;
 use cullscope::drawing::Subject;
 use cullscope::geometry::{Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
+use cullscope::method::{Film, Settings};
 use cullscope::raster::{Drawable, render};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use cullscope::truth::Truth;

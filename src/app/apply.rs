@@ -497,7 +497,7 @@ impl State {
     }
 
     /// Shared so that caches may hold on to it.
-    pub fn pseudocode(&self) -> Arc<[crate::culling::CodeLine]> {
+    pub fn pseudocode(&self) -> Arc<[crate::method::CodeLine]> {
         self.staged().and_then(|s| s.card()).map_or_else(|| Arc::from(vec![]), |c| Arc::from(c.code.to_vec()))
     }
 }

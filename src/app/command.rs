@@ -250,7 +250,7 @@ pub enum Command {
     /// Stops, or no longer stops, at a line of pseudocode.
     BreakLine(u8),
     /// Stops, or no longer stops, at a verdict.
-    BreakVerdict(crate::culling::Verdict),
+    BreakVerdict(crate::method::Verdict),
     /// Stops, or no longer stops, at a node.
     BreakNode(NodeId),
     /// Writes a note to a bookmark.

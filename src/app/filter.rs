@@ -6,9 +6,9 @@
 use std::fmt;
 
 use super::stage::Staged;
-use crate::culling::{Event, Value, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
+use crate::method::{Event, Value, Verdict};
 use crate::trace::subject;
 
 /// A parsed filter.

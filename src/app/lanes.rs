@@ -1,6 +1,6 @@
 //! The timeline: events in lanes, squeezed into as many columns as there are pixels.
 
-use crate::culling::{Event, Verdict};
+use crate::method::{Event, Verdict};
 
 /// A row of the timeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use super::filter::{Filter, FilterError};
 use super::stage::Staged;
-use crate::culling::Event;
+use crate::method::Event;
 use crate::trace::Detail;
 
 /// The rows that are listed.

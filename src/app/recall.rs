@@ -6,9 +6,9 @@ use super::session::{Picked, Session, Shown as Kept, VERSION};
 use super::start::Start;
 use super::state::{Detail, Layout, Shown, State, Surface, Theme};
 use super::tables::{Tables, tables};
-use crate::culling::Settings;
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
+use crate::method::Settings;
 
 impl State {
     /// What is open, as a session.

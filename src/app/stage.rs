@@ -5,9 +5,10 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use crate::culling::{Card, Event, Field, Film, Knob, KnobValue, Methods, Verdict};
+use crate::culling::Methods;
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
+use crate::method::{Card, Event, Field, Film, Knob, KnobValue, Verdict};
 use crate::raster::DepthScale;
 use crate::scene::{Report, Scene, framing_view, write_views};
 use crate::trace::{Counts, Moves, Stamps, State};

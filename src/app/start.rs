@@ -1,6 +1,6 @@
 //! What the explorer starts with.
 
-use crate::culling::Settings;
+use crate::method::Settings;
 
 /// What the explorer starts with; by default, with what was open last.
 #[derive(Clone, Debug, Default, PartialEq)]

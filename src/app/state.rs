@@ -9,9 +9,9 @@ use super::session::{Bookmark, Session};
 use super::stage::Staged;
 use super::undo::History;
 use super::worker::{Busy, Worker};
-use crate::culling::{Settings, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
+use crate::method::{Settings, Verdict};
 use crate::render::theme;
 
 pub use crate::trace::Detail;

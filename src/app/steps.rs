@@ -4,8 +4,8 @@ use super::command::Action;
 use super::filter::{kind_name, subject_at, verdict_of};
 use super::session::Bookmark;
 use super::state::{Breakpoint, Dialog, State};
-use crate::culling::Event;
 use crate::drawing::Subject;
+use crate::method::Event;
 use crate::trace::{Detail, Moves};
 
 impl State {

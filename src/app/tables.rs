@@ -7,10 +7,10 @@ use super::any::Any;
 use super::session::write_file;
 use super::state::{State, Theme};
 use super::worker::Job;
-use crate::culling::Settings;
 use crate::drawing::Drawing;
 use crate::figure::chart;
 use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::method::Settings;
 use crate::render::{self, PngSize, SvgOptions};
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 

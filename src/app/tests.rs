@@ -3,9 +3,9 @@
 use super::recall::spoken_command;
 use super::state::{Breakpoint, Detail, Dialog};
 use super::*;
-use crate::culling::Verdict;
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
+use crate::method::Verdict;
 
 /// A flatland scene that travels inside the program.
 const FLAT: &str = "freedoom_e1m1";

@@ -2,7 +2,7 @@
 
 use super::any::AnyView;
 use super::command::Gesture;
-use crate::culling::Settings;
+use crate::method::Settings;
 
 /// All that culling depends on, beside the scene.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use super::filter::verdict_of;
 use super::stage::Staged;
-use crate::culling::{Event, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
+use crate::method::{Event, Verdict};
 
 /// A sentence of an explanation, with the step that shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]

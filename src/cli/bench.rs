@@ -9,10 +9,11 @@ use glam::Vec3;
 
 use super::error::reason;
 use super::{CliError, methods, output, scene};
+use crate::culling::Methods;
 use crate::culling::obscuration::Obscurer;
-use crate::culling::{Methods, Settings};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
+use crate::method::Settings;
 use crate::raster::{Drawable, Options, Target};
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene};
 

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::culling::SettingError;
+use crate::method::SettingError;
 use crate::scene::SceneError;
 
 /// Why a command failed. Displays as `WHAT: WHY`.

@@ -7,8 +7,8 @@ use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 use super::{CliError, World, output, suggest};
-use crate::culling::{Card, Entry, Knob, KnobValue, Settings};
 use crate::geometry::{Flat, Solid};
+use crate::method::{Card, Entry, Knob, KnobValue, Settings};
 use crate::trace::format::knob_json;
 
 #[derive(clap::Args)]

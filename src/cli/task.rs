@@ -10,10 +10,10 @@ use super::progress::Bar;
 use super::scene::SceneArgs;
 use super::view::ViewArgs;
 use super::{CliError, World, output};
-use crate::culling::{RestoreError, Run};
 use crate::geometry::ViewPath;
 use crate::measure::deadline::paced;
 use crate::measure::timed;
+use crate::method::{RestoreError, Run};
 use crate::scene::{AnyScene, Scene};
 
 /// Options that say what to run, on what, and from where.

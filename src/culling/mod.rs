@@ -6,43 +6,33 @@
 
 mod baseline;
 mod depth;
-mod entry;
-#[cfg(test)]
-mod entry_tests;
-mod event;
-mod evidence;
 mod hierarchical_z;
-mod knobs;
 mod large_occluders;
 mod layered_projection;
-mod method;
 
-pub use entry::{Entry, Film, Recording, RestoreError, Run};
-pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use hierarchical_z::anatomy as obscuration;
-pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
 pub use large_occluders::anatomy;
-pub use method::{Card, CodeLine, DrawList, Field, Limit, Method, Note, Value};
 
 use crate::geometry::{Flat, Solid, Space};
+use crate::method::{Entry, Of};
 
 /// Every method that runs in flatland, in the order of menus.
 pub static FLAT: &[&dyn Entry<Flat>] = &[
-    &entry::Of::<baseline::ZBuffer>::NEW,
-    &entry::Of::<baseline::Frustum>::NEW,
-    &entry::Of::<baseline::Centroid>::NEW,
-    &entry::Of::<large_occluders::LargeOccluders>::NEW,
-    &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
-    &entry::Of::<layered_projection::LayeredProjection>::NEW,
+    &Of::<baseline::ZBuffer>::NEW,
+    &Of::<baseline::Frustum>::NEW,
+    &Of::<baseline::Centroid>::NEW,
+    &Of::<large_occluders::LargeOccluders>::NEW,
+    &Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &Of::<layered_projection::LayeredProjection>::NEW,
 ];
 /// Every method that runs in space, in the order of menus.
 pub static SOLID: &[&dyn Entry<Solid>] = &[
-    &entry::Of::<baseline::ZBuffer>::NEW,
-    &entry::Of::<baseline::Frustum>::NEW,
-    &entry::Of::<baseline::Centroid>::NEW,
-    &entry::Of::<large_occluders::LargeOccluders>::NEW,
-    &entry::Of::<hierarchical_z::HierarchicalZ>::NEW,
-    &entry::Of::<layered_projection::LayeredProjection>::NEW,
+    &Of::<baseline::ZBuffer>::NEW,
+    &Of::<baseline::Frustum>::NEW,
+    &Of::<baseline::Centroid>::NEW,
+    &Of::<large_occluders::LargeOccluders>::NEW,
+    &Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &Of::<layered_projection::LayeredProjection>::NEW,
 ];
 
 /// The methods of a space, for code that is generic over it.

@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use crate::culling::{Film, Verdict};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Frustum, NodeId, Solid, Space, Vector, View};
 use crate::index::Hierarchy;
+use crate::method::{Film, Verdict};
 use crate::scene::{Scene, framing_view};
 use crate::trace::{Stamps, State};
 
@@ -160,8 +160,9 @@ fn emphasized<S: Space>(film: &dyn Film<S>, subject: Subject, role: Role, to: &m
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::culling::{Methods, Settings};
+    use crate::culling::Methods;
     use crate::geometry::Flat;
+    use crate::method::Settings;
     use crate::scene::{Quiet, samples};
 
     #[test]

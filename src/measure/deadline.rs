@@ -11,9 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::timing::Stopwatch;
-use crate::culling::{Budget, DrawList, Knob, KnobValue, Limit, Recording, Run, SettingError, Tally};
 use crate::geometry::{PrimId, View};
 use crate::index::Hierarchy;
+use crate::method::{Budget, DrawList, Knob, KnobValue, Limit, Recording, Run, SettingError, Tally};
 use crate::raster::{Drawable, Options, Target};
 use crate::scene::Scene;
 
@@ -132,7 +132,7 @@ impl<S: Drawable> Paced<S> {
 }
 
 impl<S: Drawable> Run<S> for Paced<S> {
-    fn card(&self) -> &'static crate::culling::Card {
+    fn card(&self) -> &'static crate::method::Card {
         self.run.card()
     }
     fn knobs(&self) -> Vec<(Knob, KnobValue)> {
@@ -176,8 +176,9 @@ impl<S: Drawable> Run<S> for Paced<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::culling::{Methods, Settings};
+    use crate::culling::Methods;
     use crate::geometry::{Flat, Solid};
+    use crate::method::Settings;
     use crate::raster::render;
     use crate::scene::{Quiet, random_views, samples};
 

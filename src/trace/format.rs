@@ -14,8 +14,8 @@ use std::io::{self, BufRead, Read, Write};
 use serde_json::{Map, Value as Json};
 
 use super::Detail;
-use crate::culling::{Event, Field, Film, KnobValue, Value};
 use crate::geometry::Space;
+use crate::method::{Event, Field, Film, KnobValue, Value};
 
 /// The version that this program writes and reads.
 pub const VERSION: u64 = 1;
@@ -119,7 +119,7 @@ pub fn knob_json(value: &KnobValue) -> Json {
     match value {
         KnobValue::Integer(v, _) => Json::from(*v),
         KnobValue::Switch(v) => Json::from(*v),
-        KnobValue::Budget(crate::culling::Budget::Count(n)) => Json::from(*n),
+        KnobValue::Budget(crate::method::Budget::Count(n)) => Json::from(*n),
         KnobValue::Budget(share) => Json::from(share.to_string()),
         KnobValue::Choice(..) => Json::from(value.to_string()),
     }

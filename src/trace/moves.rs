@@ -3,8 +3,8 @@
 //! Step `k` lies between event `k − 1` (the last that happened, the *current* one) and event `k`.
 //! Memory: 8 bytes an event.
 
-use crate::culling::{Event, Verdict};
 use crate::geometry::{NodeId, PrimId};
+use crate::method::{Event, Verdict};
 
 /// How fine a step is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

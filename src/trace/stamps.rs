@@ -4,8 +4,8 @@
 //! decision other than `Partial` stands. Memory: 12 bytes a node, 8 a primitive, 4 more a decided
 //! primitive for the counts.
 
-use crate::culling::{Event, Film, Verdict};
 use crate::geometry::{NodeId, PrimId, Space};
+use crate::method::{Event, Film, Verdict};
 
 /// A decision: the step from which on it holds, and what it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::culling::{Event, Film, Methods, Settings, Verdict};
+use crate::culling::Methods;
 use crate::geometry::{Flat, NodeId, Solid, Space};
+use crate::method::{Event, Film, Settings, Verdict};
 use crate::scene::{Quiet, framing_view, samples};
 
 fn film<S: Methods>(method: &str, seed: u64, n: u32, settings: &[(&str, &str)]) -> Arc<dyn Film<S>> {

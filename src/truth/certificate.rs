@@ -24,10 +24,10 @@ use glam::{DVec2, DVec3};
 
 use super::hidden::Sight;
 use super::widened;
-use crate::culling::{Event, Field, Film, KnobValue, Value, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Vector, View, orient2d, orient3d};
 use crate::index::Hierarchy;
+use crate::method::{Event, Field, Film, KnobValue, Value, Verdict};
 use crate::raster::Drawable;
 use crate::scene::Scene;
 

@@ -6,7 +6,7 @@ use super::icons::{self, Icon};
 use super::inspector::value;
 use super::{Answers, palette};
 use crate::app::{Breakpoint, Command, State};
-use crate::culling::{CodeLine, Event, Verdict};
+use crate::method::{CodeLine, Event, Verdict};
 use crate::trace::Counts;
 
 /// Shows the pseudocode.

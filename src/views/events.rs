@@ -8,8 +8,8 @@ use super::icons::{self, Icon};
 use super::legend::verdict_mark;
 use super::window::Cache;
 use crate::app::{Command, Staged, State, kind_name, subject_at, verdict_of};
-use crate::culling::Event;
 use crate::drawing::Subject;
+use crate::method::Event;
 
 /// Indent of a level.
 const INDENT: f32 = 9.0;

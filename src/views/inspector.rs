@@ -6,8 +6,8 @@ use super::Answers;
 use super::events::spaced;
 use super::why::{capitalized, subject_name};
 use crate::app::{Command, State, short};
-use crate::culling::Value;
 use crate::drawing::Subject;
+use crate::method::Value;
 
 /// A value as a person reads it.
 pub fn value(value: &Value) -> String {

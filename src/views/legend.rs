@@ -5,9 +5,9 @@ use eframe::egui::{self, Sense, vec2};
 use glam::Vec2;
 
 use crate::app::{Any, State};
-use crate::culling::Verdict;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::figure::role_of;
+use crate::method::Verdict;
 use crate::render::screen;
 use crate::trace::State as Known;
 

@@ -5,7 +5,8 @@ use eframe::egui::{self, ScrollArea};
 use super::Answers;
 use super::window::Cache;
 use crate::app::{Action, Any, AnyView, Command, State};
-use crate::culling::{Budget, Knob, KnobValue, Methods};
+use crate::culling::Methods;
+use crate::method::{Budget, Knob, KnobValue};
 
 /// Shows the parameters.
 pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {

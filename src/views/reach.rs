@@ -150,7 +150,7 @@ pub fn look_around(
         response.request_focus();
         let (origin, direction) = ray(&stage.view, rect, at);
         let drawn = |p| {
-            use crate::{culling::Verdict, trace::State as Known};
+            use crate::{method::Verdict, trace::State as Known};
             let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
             matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
         };

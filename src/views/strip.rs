@@ -6,10 +6,10 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 use super::window::Cache;
 use super::{Answers, palette};
 use crate::app::{Any, Command, Stage, State};
-use crate::culling::Verdict;
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
 use crate::geometry::Flat;
+use crate::method::Verdict;
 use crate::trace::State as Known;
 
 /// Height of the strip itself.

@@ -6,9 +6,9 @@ use super::icons::Icon;
 use super::window::Cache;
 use super::{Answers, palette};
 use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes, subject_at, verdict_of};
-use crate::culling::Event;
 use crate::drawing::Subject;
 use crate::figure::role_of;
+use crate::method::Event;
 use crate::trace::{Detail, State as Known};
 
 /// Room for the names of lanes.
@@ -191,10 +191,10 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
         }
         (_, Some(verdict)) => {
             // Form as well as hue: what is kept fills the lane, what is culled hangs in its upper half.
-            let kept = matches!(verdict, crate::culling::Verdict::Visible);
+            let kept = matches!(verdict, crate::method::Verdict::Visible);
             let part = match verdict {
                 _ if kept => rect,
-                crate::culling::Verdict::Partial => rect.shrink2(vec2(0.0, rect.height() * 0.35)),
+                crate::method::Verdict::Partial => rect.shrink2(vec2(0.0, rect.height() * 0.35)),
                 _ => rect.with_max_y(rect.center().y),
             };
             painter.rect_filled(part, 0.0, palette::role(state, role_of(Known::Decided(verdict))));

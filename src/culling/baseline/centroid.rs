@@ -8,12 +8,13 @@
 use std::sync::Arc;
 
 use super::explain::{Distance, Evidence};
-use crate::culling::evidence::{Facing, Tested, middle, prim_faces_away};
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, PrimId, Space, Vector, View};
 use crate::index::Whole;
+use crate::method::evidence::{Facing, Tested, middle, prim_faces_away};
+use crate::method::{
+    Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob,
+};
 use crate::scene::{Progress, Scene};
 
 /// The method.

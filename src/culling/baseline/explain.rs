@@ -1,10 +1,9 @@
 //! The baselines' evidence: as fields, as sentences and as marks in the world.
 
-use crate::culling::event::Tallied;
-use crate::culling::evidence::{Facing, Tested, integer, label, middle, number, outline, short};
-use crate::culling::{Field, Note, Tally};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{PrimId, Space, View};
+use crate::method::evidence::{Facing, Tested, integer, label, middle, number, outline, short};
+use crate::method::{Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What a baseline records.

@@ -10,12 +10,11 @@
 use std::sync::Arc;
 
 use super::explain::Evidence;
-use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, NodeId, Space, View};
 use crate::index::KdTree;
+use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
 use crate::scene::{Progress, Scene};
 
 /// The method.

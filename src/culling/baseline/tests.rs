@@ -1,7 +1,8 @@
 //! The baselines against brute force.
 
-use crate::culling::{Event, Methods, SettingError, Settings, Verdict};
+use crate::culling::Methods;
 use crate::geometry::{Eye, Flat, PrimId, Solid, Space, Vector, View, faces_away};
+use crate::method::{Event, SettingError, Settings, Verdict};
 use crate::scene::{Quiet, Scene, framing_view, samples};
 use std::sync::Arc;
 

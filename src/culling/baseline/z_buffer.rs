@@ -6,12 +6,11 @@
 use std::sync::Arc;
 
 use super::explain::Evidence;
-use crate::culling::evidence::{Facing, prim_faces_away};
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knobs, Method, Observer, Verdict};
 use crate::drawing::Drawing;
 use crate::geometry::{Space, View};
 use crate::index::Whole;
+use crate::method::evidence::{Facing, prim_faces_away};
+use crate::method::{Card, CodeLine, DrawList, Event, Knobs, Method, Observer, Verdict, backface_knob};
 use crate::scene::{Progress, Scene};
 
 /// The method.

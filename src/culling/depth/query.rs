@@ -21,8 +21,8 @@
 //! of its faces.
 
 use super::{Buffer, FaceImage, Faces, footprint};
-use crate::culling::evidence::short;
 use crate::geometry::{Aabb, BoxImage, Footprint, PixelRect, View};
+use crate::method::evidence::short;
 use crate::raster::PyramidCell;
 
 /// How a query ended.

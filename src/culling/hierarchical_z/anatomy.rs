@@ -8,11 +8,10 @@ use glam::Vec3;
 use super::explain::{Asked, Evidence};
 use super::{HierarchicalZ, Memory, Params, picture};
 use crate::culling::depth::{Buffer, FaceImage, Faces, Nobody, Query, hides};
-use crate::culling::entry::params;
-use crate::culling::{DrawList, Method, Recorder, SettingError, Settings, Unobserved};
 use crate::drawing::Drawing;
 use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
 use crate::index::Octree;
+use crate::method::{DrawList, Method, Recorder, SettingError, Settings, Unobserved, params};
 use crate::raster::{DepthScale, Options, Target};
 use crate::scene::{Parts, Progress, Scene, SceneError};
 

@@ -5,11 +5,10 @@ use std::marker::PhantomData;
 use super::line;
 use super::simulation::{Job, Unit, Worked};
 use crate::culling::depth::{Answer, Buffer, Faces, Listener, Read};
-use crate::culling::event::Tallied;
-use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
-use crate::culling::{Event, Field, Note, Observer, Tally, Value};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
+use crate::method::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
+use crate::method::{Event, Field, Note, Observer, Tallied, Tally, Value};
 use crate::raster::{Extent, Options, PyramidCell};
 use crate::scene::Scene;
 

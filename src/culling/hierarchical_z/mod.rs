@@ -28,15 +28,14 @@ use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
 use crate::culling::depth::{
     Answer, Buffer, FaceImage, Faces, Held, Listener, Nobody, Query, footprint, project_sphere,
 };
-use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{
     Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector,
     View, nearest_depth,
 };
 use crate::index::{Octree, OctreeNode, Redistribution, Shape};
+use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
 use crate::raster::{DepthScale, Options, PyramidCell};
 use crate::scene::{Progress, Scene};
 

@@ -8,9 +8,9 @@ use glam::{Vec2, vec2};
 use super::explain::{Evidence, place, units};
 use super::simulation::{Job, Unit, Worked};
 use crate::culling::depth::{Buffer, Faces, Outcome, Read};
-use crate::culling::evidence::short;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
 use crate::geometry::{NodeId, View};
+use crate::method::evidence::short;
 use crate::raster::{DepthScale, PyramidCell, shade_depth};
 
 /// Names of the pictures.

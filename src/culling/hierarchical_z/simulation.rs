@@ -23,14 +23,14 @@ use std::collections::{BinaryHeap, VecDeque};
 use super::explain::{Answered, Asked, Evidence, Rasterized};
 use super::{Params, line};
 use crate::culling::depth::{Answer, Buffer, Faces, Query, footprint};
-use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::{DrawList, Event, Observer, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{
     Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View,
     nearest_depth,
 };
 use crate::index::Octree;
+use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::{DrawList, Event, Observer, Verdict};
 use crate::raster::Options;
 use crate::scene::Scene;
 

@@ -8,8 +8,8 @@ use super::anatomy::figure_1;
 use super::explain::Evidence;
 use super::*;
 use crate::culling::depth::{Outcome, hides};
-use crate::culling::{Recorder, Unobserved};
 use crate::geometry::{Eye, Flat, Solid};
+use crate::method::{Recorder, Unobserved};
 use crate::raster::{Target, render};
 use crate::scene::Parts;
 

@@ -6,11 +6,10 @@ use super::memory::Owner;
 use super::occluders::Occluders;
 use super::relation::{Classified, Decisive, Margin, Occlusion, Planes, Relation, Sight};
 use super::space::{Point, Shape, corner};
-use crate::culling::event::Tallied;
-use crate::culling::evidence::{Facing, Tested, integer, label, number, short};
-use crate::culling::{Field, Note, Tally, Value};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
+use crate::method::evidence::{Facing, Tested, integer, label, number, short};
+use crate::method::{Field, Note, Tallied, Tally, Value};
 use crate::scene::Scene;
 
 /// What the method records.

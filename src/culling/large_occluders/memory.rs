@@ -7,9 +7,9 @@
 
 use super::relation::{Relation, Sight};
 use super::space::Shape;
-use crate::culling::Verdict;
 use crate::geometry::{NodeId, ObjectId};
 use crate::index::KdTree;
+use crate::method::Verdict;
 
 /// Relations that one node or object keeps at most, twice the largest set of active occluders: one set for
 /// the way a walker looks and one for where it looked before.

@@ -36,12 +36,11 @@ use self::occluders::Occluders;
 use self::relation::{Margin, Occlusion, Relation};
 use self::selection::{Selection, largest_from, leaf_at};
 use self::space::Shape;
-use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Space, Vector, View};
 use crate::index::{Hierarchy, KdTree};
+use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
 use crate::scene::{Part, Progress, Scene};
 
 /// The method.

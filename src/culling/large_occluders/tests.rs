@@ -8,8 +8,9 @@ use rand_pcg::rand_core::Rng;
 
 use super::anatomy::{Blockers, Occlusion, outline_seen_from, tangent_corners};
 use super::space::Shape;
-use crate::culling::{Methods, Run, Settings};
+use crate::culling::Methods;
 use crate::geometry::{Aabb, Flat, Solid, Space, Vector, View, orient2d, orient3d};
+use crate::method::{Run, Settings};
 use crate::scene::{
     AnyScene, LoadOptions, Quiet, Scene, example, figure_eight_path, framing_view, load, random_views,
 };

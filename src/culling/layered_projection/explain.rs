@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 
 use super::index::{Index, cell_of, node_of};
 use crate::culling::depth::Answer;
-use crate::culling::event::Tallied;
-use crate::culling::evidence::{Facing, Tested, axes, integer, label, number, short};
-use crate::culling::{Field, Note, Tally, Value};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{CellId, Vector, View};
 use crate::index::tessellation::Cellular;
+use crate::method::evidence::{Facing, Tested, axes, integer, label, number, short};
+use crate::method::{Field, Note, Tallied, Tally, Value};
 use crate::scene::Scene;
 
 /// What the method records.

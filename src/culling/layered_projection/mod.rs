@@ -35,11 +35,12 @@ use self::explain::{Evidence, Seen};
 use self::index::Index;
 use self::walk::Walk;
 use crate::culling::depth::Faces;
-use crate::culling::knobs::backface_knob;
-use crate::culling::{Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Limit, Method, Observer};
 use crate::drawing::Drawing;
 use crate::geometry::View;
 use crate::index::tessellation::Cellular;
+use crate::method::{
+    Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Limit, Method, Observer, backface_knob,
+};
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
 

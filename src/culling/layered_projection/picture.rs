@@ -5,9 +5,9 @@ use glam::vec2;
 
 use super::explain::{Evidence, Seen};
 use super::index::node_of;
-use crate::culling::evidence::short;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::index::tessellation::Cellular;
+use crate::method::evidence::short;
 
 /// Names of the pictures.
 pub const PICTURES: &[&str] = &["front as a list", "solidity of projected cells"];

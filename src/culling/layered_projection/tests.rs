@@ -5,12 +5,11 @@ use std::sync::Arc;
 use super::explain::Evidence;
 use super::index::node_of;
 use super::{LayeredProjection, Params};
-use crate::culling::evidence::prim_faces_away;
-use crate::culling::{
-    Budget, DrawList, Event, Field, Method, Methods, Recorder, Run, Settings, Value, Verdict,
-};
+use crate::culling::Methods;
 use crate::geometry::{CellId, Flat, PrimId, Solid, View};
 use crate::index::tessellation::Cellular;
+use crate::method::evidence::prim_faces_away;
+use crate::method::{Budget, DrawList, Event, Field, Method, Recorder, Run, Settings, Value, Verdict};
 use crate::raster::{Drawable, render};
 use crate::scene::{Quiet, Scene, framing_view, random_views, samples};
 

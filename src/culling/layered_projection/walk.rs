@@ -6,12 +6,12 @@ use super::index::{Index, node_of};
 use super::rest::Rest;
 use super::{Params, line};
 use crate::culling::depth::Faces;
-use crate::culling::evidence::{Facing, Tested, prim_faces_away};
-use crate::culling::{DrawList, Event, Limit, Observer, Verdict};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
 use crate::index::Hierarchy;
 use crate::index::tessellation::{Cellular, Exit, Neighbor, Tessellation};
+use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::{DrawList, Event, Limit, Observer, Verdict};
 use crate::scene::Scene;
 
 /// Primitives that are drawn between two questions whether it is enough.

@@ -5,12 +5,13 @@
 use glam::{DVec3, Vec2, Vec3, vec2};
 
 use super::kit::{COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, entry, page};
+use crate::culling::Methods;
 use crate::culling::anatomy::Blockers;
-use crate::culling::{CodeLine, Methods};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::figure::axis::{Axis, axes};
 use crate::figure::{Paper, Sheet, Swatch, Tint, clip};
 use crate::geometry::{Aabb, Flat, Solid};
+use crate::method::CodeLine;
 use crate::scene::SceneError;
 
 fn code() -> &'static [CodeLine] {

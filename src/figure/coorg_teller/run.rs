@@ -5,11 +5,12 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::kit::{COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, draw_tangent, entry, page};
+use crate::culling::Methods;
 use crate::culling::anatomy::Blockers;
-use crate::culling::{Field, Film, Methods, Run, Settings, Value};
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::{Look, Paper, Swatch, Tint, panels, world};
 use crate::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, View};
+use crate::method::{Field, Film, Run, Settings, Value};
 use crate::scene::{Quiet, Scene, SceneError, example};
 use crate::trace::Stamps;
 
@@ -256,7 +257,7 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod checks {
     use super::*;
-    use crate::culling::Verdict;
+    use crate::method::Verdict;
     use crate::trace::State;
 
     #[test]

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use super::METHOD;
 use super::room::{FRAME, room};
-use crate::culling::{Methods, Settings};
+use crate::culling::Methods;
 use crate::drawing::{Drawing, Pixels, Role};
 use crate::figure::builtin::settings;
 use crate::figure::coorg_teller::kit::{TWO_COLUMNS_PT, entry, page};
 use crate::figure::{Panel, Paper, Picture, Swatch, Tint, panels};
 use crate::geometry::{PrimId, Solid, View};
+use crate::method::Settings;
 use crate::raster::{render, shade, visible};
 use crate::scene::{Quiet, Scene, SceneError};
 

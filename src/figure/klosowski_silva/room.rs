@@ -7,12 +7,12 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::METHOD;
-use crate::culling::{Film, Verdict};
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure::builtin::film;
 use crate::figure::coorg_teller::kit::{TWO_COLUMNS_PT, entry, page, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, Tint, panels};
 use crate::geometry::{Frustum, NodeId, PrimId, Solid, View};
+use crate::method::{Film, Verdict};
 use crate::raster::{Target, render, shade};
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, load};
 use crate::trace::{Stamps, State};

@@ -7,12 +7,12 @@ use glam::{Vec2, vec2};
 
 use super::METHOD;
 use super::walked::{corners, node, number};
-use crate::culling::{Event, Field, Film};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::builtin::{eye, film};
 use crate::figure::coorg_teller::kit::{LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, entry, page};
 use crate::figure::{Paper, Swatch, Tint, panels};
 use crate::geometry::{Aabb, Flat, NodeId};
+use crate::method::{Event, Field, Film};
 use crate::scene::{SceneError, example};
 
 /// Operands and result of a transfer, as its note tells them.
@@ -38,7 +38,7 @@ impl Transfer {
     fn vector(&self, name: &str) -> Vec2 {
         let field = self.fields.iter().find(|f| f.name == name);
         match field.map(|f| &f.value) {
-            Some(crate::culling::Value::List(v)) if v.len() == 2 => vec2(v[0] as f32, v[1] as f32),
+            Some(crate::method::Value::List(v)) if v.len() == 2 => vec2(v[0] as f32, v[1] as f32),
             _ => Vec2::ZERO,
         }
     }

@@ -7,12 +7,12 @@ use std::sync::Arc;
 use glam::{Vec2, vec2};
 
 use super::METHOD;
-use crate::culling::{Event, Field, Film, Value, Verdict};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::figure::builtin::{eye, film};
 use crate::figure::coorg_teller::kit::{Plan, TWO_COLUMNS_PT, entry, page};
 use crate::figure::{Panel, Paper, Swatch, Tint, panels};
 use crate::geometry::{Aabb, Flat, NodeId, Space};
+use crate::method::{Event, Field, Film, Value, Verdict};
 use crate::scene::{SceneError, example};
 use crate::trace::{Stamps, State};
 

@@ -12,12 +12,12 @@ use super::walk::{ROUNDS, stop_or_go};
 use super::{
     CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, method, part,
 };
-use crate::culling::{Run, Settings};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{View, ViewPath};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timed;
 use crate::measure::timing::median;
+use crate::method::{Run, Settings};
 use crate::raster::{Options, Target};
 use crate::scene::{Part, Progress, Scene};
 use crate::truth::Truth;

@@ -29,9 +29,10 @@ use std::sync::Arc;
 use serde_json::{Map, Value as Json, json};
 
 use super::table::{Cell, Column, Table, grouped};
-use crate::culling::{KnobValue, Methods, SettingError, Settings};
+use crate::culling::Methods;
 use crate::drawing::Plot;
 use crate::geometry::{Flat, Solid};
+use crate::method::{KnobValue, SettingError, Settings};
 use crate::raster::Drawable;
 use crate::scene::{AnyScene, Part, Progress, Scene};
 
@@ -523,7 +524,7 @@ impl Experiment {
 }
 
 /// A method that every build has.
-fn method<S: Methods>(key: &str) -> &'static dyn crate::culling::Entry<S> {
+fn method<S: Methods>(key: &str) -> &'static dyn crate::method::Entry<S> {
     S::methods().iter().copied().find(|m| m.card().key == key).unwrap_or(S::methods()[0])
 }
 

@@ -7,11 +7,11 @@ use super::walk::Both;
 use super::{
     CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
 };
-use crate::culling::{Event, Run, Verdict};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{Frustum, FrustumTest, NodeId, View};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::quantile;
+use crate::method::{Event, Run, Verdict};
 use crate::scene::{Progress, Scene};
 
 pub const SWEEP: Sweep = Sweep {

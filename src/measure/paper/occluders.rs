@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use super::walk::{Moment, Site, Stretch, times};
 use super::{CHECKED, MISSED, Measured, PaperError, SCENE, Setup, Sweep, World, by_scene, column, part};
-use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::WALKING_STEP_M;
 use crate::measure::table::{Cell, Table};
 use crate::measure::timed;
+use crate::method::Run;
 use crate::scene::{Progress, Scene};
 
 pub const SWEEP: Sweep = Sweep {

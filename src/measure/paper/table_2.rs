@@ -7,11 +7,11 @@ use super::walk::{Both, Moment, times};
 use super::{
     CHECKED, MISSED, Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
 };
-use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{View, WALKING_STEP_M};
 use crate::measure::table::{Cell, Table};
 use crate::measure::timed;
+use crate::method::Run;
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
 

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use super::{BASELINE, METHOD, Measured, PaperError, Setup, World, method, part};
-use crate::culling::{Run, Settings};
 use crate::geometry::{PrimId, Vector, View, ViewPath};
 use crate::measure::timing::median;
+use crate::method::{Run, Settings};
 use crate::raster::Target;
 use crate::scene::{Part, Progress, Scene, figure_eight_path};
 use crate::truth::Truth;

@@ -8,11 +8,11 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::culling::Verdict;
 use crate::drawing::{Drawing, Layer, Mark, Role};
 use crate::figure::role_of;
 use crate::geometry::{NodeId, PrimId, Solid};
 use crate::index::Hierarchy;
+use crate::method::Verdict;
 use crate::scene::Scene;
 use crate::trace::{Stamp, Stamps, State};
 

@@ -4,7 +4,6 @@
 use std::sync::Arc;
 
 use super::{BUDGETS, BY_CENTROID, DELAUNAY, FRAME, Judge, Most, Way, frame, frustum, mean, ready};
-use crate::culling::Settings;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::{ROUNDS, stop_or_go};
@@ -13,6 +12,7 @@ use crate::measure::paper::{
 };
 use crate::measure::table::{Cell, Table};
 use crate::measure::timing::median;
+use crate::method::Settings;
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
 

@@ -27,10 +27,10 @@ pub use table_1::SWEEP as TABLE_1;
 use std::sync::Arc;
 
 use super::{Column, PaperError, Setup, World, column, method, part};
-use crate::culling::{RestoreError, Run, Settings};
 use crate::drawing::Role;
 use crate::geometry::{PrimId, View};
 use crate::measure::timed;
+use crate::method::{RestoreError, Run, Settings};
 use crate::raster::{Options, Target, shade};
 use crate::scene::{Progress, Scene};
 use crate::truth::Truth;

@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex};
 
 use super::{DELAUNAY, KD_TREE, METHOD, OCTREE, Way, settings};
-use crate::culling::Run;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::NodeId;
 use crate::measure::Stopwatch;
@@ -12,6 +11,7 @@ use crate::measure::paper::walk::ROUNDS;
 use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, column, method, part};
 use crate::measure::table::{Cell, Table, grouped};
 use crate::measure::timing::median;
+use crate::method::Run;
 use crate::scene::{Progress, Scene};
 
 pub const SWEEP: Sweep = Sweep {

@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use super::{BUDGET, BUDGETS, BY_CENTROID, DELAUNAY, Judge, Most, OCTREE, ORDER, Way, ready};
-use crate::culling::Run;
 use crate::drawing::{Plot, Series, Shape};
 use crate::geometry::{PrimId, Vector, View, ViewPath, WALKING_STEP_M};
 use crate::measure::paper::flight::{about, whole_path};
@@ -15,6 +14,7 @@ use crate::measure::paper::{
     Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, by_scene, column, part,
 };
 use crate::measure::table::{Cell, Table};
+use crate::method::Run;
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
 

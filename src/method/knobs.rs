@@ -175,7 +175,7 @@ impl fmt::Display for KnobValue {
 
 /// Collects all parameters with their values.
 #[derive(Default)]
-pub(super) struct Collect(pub Vec<(Knob, KnobValue)>);
+pub(crate) struct Collect(pub Vec<(Knob, KnobValue)>);
 
 impl Knobs for Collect {
     fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32) {
@@ -193,7 +193,7 @@ impl Knobs for Collect {
 }
 
 /// Sets the budget, where there is one.
-pub(super) struct SetBudget(pub Budget);
+pub(crate) struct SetBudget(pub Budget);
 
 impl Knobs for SetBudget {
     fn integer(&mut self, _: Knob, _: RangeInclusive<u32>, _: &mut u32) {}
@@ -205,7 +205,7 @@ impl Knobs for SetBudget {
 }
 
 /// Sets parameters from text.
-pub(super) struct Apply<'a> {
+pub(crate) struct Apply<'a> {
     pub settings: &'a Settings,
     pub error: Option<SettingError>,
 }
@@ -259,7 +259,7 @@ impl Knobs for Apply<'_> {
 }
 
 /// The parameter that every method has.
-pub(super) fn backface_knob(knobs: &mut dyn Knobs, value: &mut bool) {
+pub(crate) fn backface_knob(knobs: &mut dyn Knobs, value: &mut bool) {
     let knob = Knob {
         name: "backface-culling",
         unit: "",

@@ -61,7 +61,7 @@ pub enum Event {
 const _: () = assert!(size_of::<Event>() <= 16, "events are kept by the million");
 
 /// Kind and operands of an event that is not a note.
-pub(super) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, Vec<Field>) {
+pub(crate) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, Vec<Field>) {
     let integer = |name, v: u32| Field { name, value: Value::Integer(v.into()) };
     let word = |name, v: &str| Field { name, value: Value::Word(v.to_owned()) };
     match event {

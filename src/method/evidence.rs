@@ -13,7 +13,7 @@ const LABEL_PT: f32 = 8.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Tested<S: Space> {
     /// Whose box.
-    pub(super) subject: Subject,
+    pub(crate) subject: Subject,
     bounds: Aabb<S::Vector>,
     /// The tests in order, up to the first that says outside.
     tests: [PlaneTest; 6],
@@ -78,18 +78,18 @@ impl<S: Space> Tested<S> {
     }
 
     /// What kind of note this is.
-    pub(super) fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         match self.subject {
             Subject::Node(_) => "NodeClassified",
             Subject::Object(_) => "ObjectClassified",
             _ => "PrimClassified",
         }
     }
-    pub(super) fn tally(&self, tally: &mut Tally) {
+    pub(crate) fn tally(&self, tally: &mut Tally) {
         tally.add("boxes_tested", 1);
         tally.add("planes_tested", self.count.into());
     }
-    pub(super) fn fields(&self) -> Vec<Field> {
+    pub(crate) fn fields(&self) -> Vec<Field> {
         let id = match self.subject {
             Subject::Prim(p) => integer("prim", p.0),
             Subject::Node(id) => integer("node", id.0),
@@ -115,7 +115,7 @@ impl<S: Space> Tested<S> {
         ]
     }
 
-    pub(super) fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let name = self.name();
         let plane = |t: &PlaneTest| Frustum::<S::Vector>::plane_name(t.plane as usize);
         match (self.outside, self.cutting, self.decisive()) {
@@ -152,7 +152,7 @@ impl<S: Space> Tested<S> {
         }
     }
 
-    pub(super) fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    pub(crate) fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
         to.bounds(Layer::Emphasis, Role::Current, self.subject, &self.bounds);
         let Some(test) = self.decisive() else { return };
         let frustum = view.frustum();
@@ -209,13 +209,13 @@ impl Facing {
             eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE),
         }
     }
-    pub(super) fn tally(tally: &mut Tally) {
+    pub(crate) fn tally(tally: &mut Tally) {
         tally.add("orientations_tested", 1);
     }
-    pub(super) fn fields(&self) -> Vec<Field> {
+    pub(crate) fn fields(&self) -> Vec<Field> {
         vec![integer("prim", self.prim.0), number("eye_distance_units", self.eye_distance.into())]
     }
-    pub(super) fn sentence<S: Space>(&self) -> String {
+    pub(crate) fn sentence<S: Space>(&self) -> String {
         let (side, verdict) =
             if self.eye_distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
         format!(
@@ -225,7 +225,7 @@ impl Facing {
             self.prim
         )
     }
-    pub(super) fn draw<S: Space>(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    pub(crate) fn draw<S: Space>(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
         outline(scene, self.prim, to);
         let (center, normal) = (middle(scene, self.prim), scene.normal(self.prim));
         let length = 0.25 * (view.eye.position - center).length() / normal.length().max(f32::MIN_POSITIVE);
@@ -240,19 +240,19 @@ impl Facing {
 }
 
 /// Outlines a primitive as what the step is about.
-pub(super) fn outline<S: Space>(scene: &Scene<S>, prim: PrimId, to: &mut Drawing<S::Vector>) {
+pub(crate) fn outline<S: Space>(scene: &Scene<S>, prim: PrimId, to: &mut Drawing<S::Vector>) {
     let points: Vec<_> = scene.prim_points(prim).collect();
     to.outline(Layer::Emphasis, Role::Current, Subject::Prim(prim), points);
 }
 
 /// Writes beside the evidence.
-pub(super) fn label<V>(to: &mut Drawing<V>, at: V, text: String) {
+pub(crate) fn label<V>(to: &mut Drawing<V>, at: V, text: String) {
     let mark = Mark::Text { at, text, size_pt: LABEL_PT, anchor: Anchor::Start, font: Font::Regular };
     to.push(Layer::Labels, Role::Evidence, Subject::None, mark);
 }
 
 /// A length with as many digits as a person reads.
-pub(super) fn short(v: f32) -> String {
+pub(crate) fn short(v: f32) -> String {
     match v.abs() {
         0.0 => "0".into(),
         a if !(1e-3..1e5).contains(&a) => format!("{v:.1e}"),
@@ -263,28 +263,28 @@ pub(super) fn short(v: f32) -> String {
 }
 
 /// A number as a field.
-pub(super) fn number(name: &'static str, v: f64) -> Field {
+pub(crate) fn number(name: &'static str, v: f64) -> Field {
     Field { name, value: Value::Number(v) }
 }
 
 /// A count or an id as a field.
-pub(super) fn integer(name: &'static str, v: u32) -> Field {
+pub(crate) fn integer(name: &'static str, v: u32) -> Field {
     Field { name, value: Value::Integer(v.into()) }
 }
 
 /// The components of a point.
-pub(super) fn axes<V: Vector>(v: V) -> Value {
+pub(crate) fn axes<V: Vector>(v: V) -> Value {
     Value::List((0..V::AXES).map(|a| v.get(a).into()).collect())
 }
 
 /// Mean of a live primitive's corners.
-pub(super) fn middle<S: Space>(scene: &Scene<S>, prim: PrimId) -> S::Vector {
+pub(crate) fn middle<S: Space>(scene: &Scene<S>, prim: PrimId) -> S::Vector {
     scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32)
 }
 
 /// Whether a live primitive turns its back to the eye.
 #[inline]
-pub(super) fn prim_faces_away<S: Space>(scene: &Scene<S>, eye: S::Vector, prim: PrimId) -> bool {
+pub(crate) fn prim_faces_away<S: Space>(scene: &Scene<S>, eye: S::Vector, prim: PrimId) -> bool {
     let mut corners = [S::Vector::default(); 3];
     for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
         *to = from;

@@ -124,14 +124,14 @@ pub trait Film<S: Space>: Send + Sync {
     fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String>;
 }
 
-pub(super) struct Of<M>(PhantomData<fn() -> M>);
+pub(crate) struct Of<M>(PhantomData<fn() -> M>);
 
 impl<M> Of<M> {
-    pub(super) const NEW: Self = Self(PhantomData);
+    pub(crate) const NEW: Self = Self(PhantomData);
 }
 
 /// A method's parameters as these settings give them.
-pub(super) fn params<S: Space, M: Method<S>>(settings: &Settings) -> Result<M::Params, SettingError> {
+pub(crate) fn params<S: Space, M: Method<S>>(settings: &Settings) -> Result<M::Params, SettingError> {
     let mut params = M::Params::default();
     let known = listed::<S, M>(&params);
     if let Some(key) = settings.0.keys().find(|k| known.iter().all(|(knob, _)| knob.name != k.as_str())) {
