@@ -92,18 +92,13 @@ pub struct Recording<S: Space> {
     pub film: Arc<dyn Film<S>>,
 }
 
-/// A finished recording of one frame. Step `k` is the state after the first `k` events.
-pub trait Film<S: Space>: Send + Sync {
+/// A finished recording of one frame, as far as it does not depend on the space. Step `k` is the state after the
+/// first `k` events.
+pub trait Reel: Send + Sync {
     /// Identity of the method.
     fn card(&self) -> &'static Card;
     /// Parameters with their values.
     fn knobs(&self) -> &[(Knob, KnobValue)];
-    /// The scene.
-    fn scene(&self) -> &Arc<Scene<S>>;
-    /// The view that was culled for.
-    fn view(&self) -> &View<S>;
-    /// The index.
-    fn hierarchy(&self) -> &dyn Hierarchy<S>;
     /// The shared facts, in order.
     fn events(&self) -> &[Event];
     /// Events that happened after the film was full; 0 if the film is whole.
@@ -114,14 +109,24 @@ pub trait Film<S: Space>: Send + Sync {
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
     /// What event `at` did, in a sentence or two.
     fn sentence(&self, at: usize) -> String;
-    /// Draws the method's private state and evidence at a step, in world coordinates.
-    fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
     /// Names of the method's pictures that are not of the world.
     fn pictures(&self) -> &'static [&'static str];
     /// Picture `which < pictures().len()` at a step, in paper coordinates, with depths in gray on this scale.
     fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing;
     /// What is under a point of such a picture, in words.
     fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String>;
+}
+
+/// A finished recording of one frame. A `&dyn Film<S>` is a `&dyn Reel` where the space does not matter.
+pub trait Film<S: Space>: Reel {
+    /// The scene.
+    fn scene(&self) -> &Arc<Scene<S>>;
+    /// The view that was culled for.
+    fn view(&self) -> &View<S>;
+    /// The index.
+    fn hierarchy(&self) -> &dyn Hierarchy<S>;
+    /// Draws the method's private state and evidence at a step, in world coordinates.
+    fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
 }
 
 pub(crate) struct Of<M>(PhantomData<fn() -> M>);
@@ -216,7 +221,7 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
         M::cull(&self.index, &self.scene, view, &self.params, &mut self.memory, &mut list, &mut recorder);
         recorder.events.shrink_to_fit();
         recorder.notes.shrink_to_fit();
-        let film = Reel::<S, M> {
+        let film = FilmOf::<S, M> {
             scene: self.scene.clone(),
             index: self.index.clone(),
             knobs: self.knobs(),
@@ -243,7 +248,7 @@ impl<S: Space, M: Method<S>> Run<S> for Bound<S, M> {
     }
 }
 
-struct Reel<S: Space, M: Method<S>> {
+struct FilmOf<S: Space, M: Method<S>> {
     scene: Arc<Scene<S>>,
     index: Arc<M::Index>,
     knobs: Vec<(Knob, KnobValue)>,
@@ -252,7 +257,7 @@ struct Reel<S: Space, M: Method<S>> {
     states: Mutex<States<M::Dense>>,
 }
 
-impl<S: Space, M: Method<S>> Reel<S, M> {
+impl<S: Space, M: Method<S>> FilmOf<S, M> {
     /// The notes among the first `step` events.
     fn notes_before(&self, step: usize) -> &[M::Note] {
         let events = &self.recorder.events[..step.min(self.recorder.events.len())];
@@ -292,21 +297,12 @@ struct States<D> {
     last: Option<(usize, Arc<D>)>,
 }
 
-impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
+impl<S: Space, M: Method<S>> Reel for FilmOf<S, M> {
     fn card(&self) -> &'static Card {
         const { &M::CARD }
     }
     fn knobs(&self) -> &[(Knob, KnobValue)] {
         &self.knobs
-    }
-    fn scene(&self) -> &Arc<Scene<S>> {
-        &self.scene
-    }
-    fn view(&self) -> &View<S> {
-        &self.view
-    }
-    fn hierarchy(&self) -> &dyn Hierarchy<S> {
-        &*self.index
     }
     fn events(&self) -> &[Event] {
         &self.recorder.events
@@ -342,16 +338,6 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
             Event::DecidedPrim(p, v) => prim_sentence::<S>(p.0, v),
         }
     }
-    fn explain(&self, step: usize, to: &mut Drawing<S::Vector>) {
-        let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let dense =
-            self.dense_after(if size_of::<M::Dense>() == 0 { 0 } else { self.notes_before(step).len() });
-        // A decision is shown together with the evidence right before it.
-        let note = events.iter().rev().take(3).find_map(|e| {
-            if let Event::Noted(i) = e { Some(&self.recorder.notes[*i as usize]) } else { None }
-        });
-        M::explain(&dense, &self.scene, &self.index, &self.view, note, to);
-    }
     fn pictures(&self) -> &'static [&'static str] {
         M::PICTURES
     }
@@ -361,6 +347,28 @@ impl<S: Space, M: Method<S>> Film<S> for Reel<S, M> {
     }
     fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String> {
         M::probe(&self.dense_after(self.notes_before(step).len()), &self.view, which, at)
+    }
+}
+
+impl<S: Space, M: Method<S>> Film<S> for FilmOf<S, M> {
+    fn scene(&self) -> &Arc<Scene<S>> {
+        &self.scene
+    }
+    fn view(&self) -> &View<S> {
+        &self.view
+    }
+    fn hierarchy(&self) -> &dyn Hierarchy<S> {
+        &*self.index
+    }
+    fn explain(&self, step: usize, to: &mut Drawing<S::Vector>) {
+        let events = &self.recorder.events[..step.min(self.recorder.events.len())];
+        let dense =
+            self.dense_after(if size_of::<M::Dense>() == 0 { 0 } else { self.notes_before(step).len() });
+        // A decision is shown together with the evidence right before it.
+        let note = events.iter().rev().take(3).find_map(|e| {
+            if let Event::Noted(i) = e { Some(&self.recorder.notes[*i as usize]) } else { None }
+        });
+        M::explain(&dense, &self.scene, &self.index, &self.view, note, to);
     }
 }
 

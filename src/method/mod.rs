@@ -10,7 +10,7 @@ pub mod evidence;
 mod knobs;
 
 pub use contract::{Card, CodeLine, DrawList, Field, Limit, Method, Note, Value};
-pub use entry::{Entry, Film, Recording, RestoreError, Run};
+pub use entry::{Entry, Film, Recording, Reel, RestoreError, Run};
 pub(crate) use entry::{Of, params};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub(crate) use knobs::backface_knob;
