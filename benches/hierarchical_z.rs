@@ -52,7 +52,7 @@ fn main() {
                 Obscurer::new(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
             let (mut refresh, mut query, mut answers) = (Vec::new(), Vec::new(), Vec::new());
             for view in &views {
-                occluders.render(view);
+                occluders.render(view, false);
                 occluders.touch_all(view);
                 refresh.push(timed(|| occluders.refresh_all()).1);
                 let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(b)).collect::<Vec<_>>());
@@ -99,7 +99,7 @@ fn frames(
         },
         || {
             for view in views {
-                kept = occluders.render(view).prims.len();
+                kept = occluders.render(view, false).prims.len();
                 black_box(occluders.target());
             }
         },
@@ -122,7 +122,7 @@ fn threads(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>]) {
         move || {
             pool.install(|| {
                 for view in views {
-                    black_box(occluders.render(view));
+                    black_box(occluders.render(view, false));
                 }
             });
         }

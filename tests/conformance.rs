@@ -5,6 +5,7 @@
 //! - what is entered is left, the last one first;
 //! - stamps = a naive fold of the events, at every step;
 //! - any way to a step shows the same evidence;
+//! - after the last note of a film its large state is that of the run;
 //! - truth ⊆ answer, and the same image, if the method says that it is conservative;
 //! - it culls at least what it culled before (culling nothing is conservative too);
 //! - every certificate is accepted by the independent checker.
@@ -98,6 +99,7 @@ fn settings<S: World>(entry: &dyn Entry<S>) -> Vec<Settings> {
         let text = match value {
             KnobValue::Switch(on) => (!on).to_string(),
             KnobValue::Integer(_, range) => range.start().to_string(),
+            KnobValue::Real(_, range) => range.start().to_string(),
             KnobValue::Budget(_) => "0".to_owned(),
             // Every other word in turn.
             KnobValue::Choice(chosen, options) => {
@@ -152,6 +154,7 @@ fn watched_runs_decide_the_same<S: World>(scenes: &[Arc<Scene<S>>]) {
             assert_eq!(list, counted.count(view).0, "{what}: counted");
             let film = recorded.record(view, usize::MAX);
             assert_eq!(list, film.list, "{what}: recorded");
+            assert_eq!(recorded.ended_like(&*film.film), Some(true), "{what}: the film ends as the run did");
             assert_eq!(list, capped.record(view, 5).list, "{what}: recorded in part");
             told_is_answered(&*film.film, &list.prims, &what);
             entered_is_left(film.film.events(), &what);
@@ -315,7 +318,7 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                     let mut target = Target::new(&view);
                     S::draw(&mut target, scene, &view, &list.prims, &Options::default());
                     let judged = truth.judge(scene, &view, &list.prims, &target);
-                    if entry.card().conservative {
+                    if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());
                         assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0));
                     }

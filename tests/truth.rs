@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use cullscope::culling::Methods;
 use cullscope::drawing::Subject;
-use cullscope::geometry::{Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
-use cullscope::method::{Film, Settings};
+use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
+use cullscope::method::{self, Film, Settings};
 use cullscope::raster::{Drawable, render};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use cullscope::truth::Truth;
@@ -83,90 +83,55 @@ fn film<S: Methods>(
 }
 
 /// Every way to spoil a certificate that leaves it well-formed.
-fn spoiled(certificate: &Certificate) -> Vec<(&'static str, Certificate)> {
-    let with = |claim| Certificate { claim, ..certificate.clone() };
-    match certificate.claim.clone() {
-        Claim::FacesAway { eye_distance } => vec![
-            ("the sign", with(Claim::FacesAway { eye_distance: -eye_distance })),
-            ("the distance", with(Claim::FacesAway { eye_distance: eye_distance * 1.5 })),
-            (
-                "the primitive",
-                Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() },
-            ),
-            ("the kind of subject", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
+fn spoiled<V: Vector>(certificate: Certificate<V>) -> Vec<(&'static str, Certificate<V>)> {
+    use method::Claim::{FacesAway, Outside};
+    let with = |claim| Certificate { claim, ..certificate };
+    let of = |subject| Certificate { subject, ..certificate };
+    let grown = |v: V, by: f32| V::from_fn(|a| v.get(a) + by);
+    let no_node = ("a node that is none", of(Subject::Node(NodeId(u32::MAX))));
+    match certificate.claim {
+        Claim::Evident(FacesAway { eye_distance }) => {
+            let away = |eye_distance| with(Claim::Evident(FacesAway { eye_distance }));
+            vec![
+                ("the sign", away(-eye_distance)),
+                ("the distance", away(eye_distance * 1.5)),
+                ("the primitive", of(Subject::Prim(PrimId(u32::MAX)))),
+                ("the kind of subject", of(Subject::Node(NodeId(0)))),
+            ]
+        }
+        Claim::Evident(Outside { plane, far_corner, error, bounds }) => {
+            let outside = |plane, far_corner, error, bounds| {
+                with(Claim::Evident(Outside { plane, far_corner, error, bounds }))
+            };
+            let planes = ["left", "right", "bottom", "top", "near", "far"];
+            let opposite = planes[planes.iter().position(|p| *p == plane).expect("a plane") ^ 1];
+            let less = |a: usize| if a == 0 { bounds.min.get(a) - 1.0 } else { bounds.max.get(a) };
+            let smaller = Aabb { max: V::from_fn(less), ..bounds };
+            let larger = Aabb { min: grown(bounds.min, -1e6), max: grown(bounds.max, 1e6) };
+            vec![
+                ("the sign", outside(plane, -far_corner, error, bounds)),
+                ("the distance", outside(plane, far_corner * 1.5 - 1.0, error, bounds)),
+                ("the error", outside(plane, far_corner, -far_corner * 2.0, bounds)),
+                ("a negative error", outside(plane, far_corner, -1e-6, bounds)),
+                ("the plane", outside(opposite, far_corner, error, bounds)),
+                ("a plane that is none", outside("middle", far_corner, error, bounds)),
+                ("the node", of(Subject::Node(NodeId(0)))),
+                no_node,
+                ("a box that is too small", outside(plane, far_corner, error, smaller)),
+                ("a box of another shape", outside(plane, far_corner, error, larger)),
+            ]
+        }
+        // What is hidden is proven where it is decided, from the box of the node or the object.
+        Claim::Evident(method::Claim::Hidden) => panic!("no certificate claims this"),
+        Claim::Behind(bounds) => vec![
+            ("the kind of subject", of(Subject::Prim(PrimId(0)))),
+            no_node,
+            ("an object that is none", of(Subject::Object(ObjectId(u32::MAX)))),
+            ("a box that is too small", with(Claim::Behind(Aabb { max: grown(bounds.max, -1e3), ..bounds }))),
         ],
-        Claim::Beyond { plane, far_corner, error, box_min, box_max } => {
-            let beyond = |far_corner, error, box_min, box_max| Claim::Beyond {
-                plane: plane.clone(),
-                far_corner,
-                error,
-                box_min,
-                box_max,
-            };
-            let named = |plane: &str| Claim::Beyond {
-                plane: plane.into(),
-                far_corner,
-                error,
-                box_min: box_min.clone(),
-                box_max: box_max.clone(),
-            };
-            let opposite = ["left", "right", "bottom", "top", "near", "far"]
-                .iter()
-                .position(|p| *p == plane)
-                .expect("a plane")
-                ^ 1;
-            let mut smaller = box_max.clone();
-            smaller[0] = box_min[0] - 1.0;
-            let grown = |side: &[f64], by: f64| side.iter().map(|v| v + by).collect::<Vec<f64>>();
-            let (lower, larger) = (grown(&box_min, -1e6), grown(&box_max, 1e6));
-            vec![
-                ("the sign", with(beyond(-far_corner, error, box_min.clone(), box_max.clone()))),
-                (
-                    "the distance",
-                    with(beyond(far_corner * 1.5 - 1.0, error, box_min.clone(), box_max.clone())),
-                ),
-                ("the error", with(beyond(far_corner, -far_corner * 2.0, box_min.clone(), box_max.clone()))),
-                ("a negative error", with(beyond(far_corner, -1e-6, box_min.clone(), box_max.clone()))),
-                ("the plane", with(named(["left", "right", "bottom", "top", "near", "far"][opposite]))),
-                ("a plane that is none", with(named("middle"))),
-                ("the node", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
-                (
-                    "a node that is none",
-                    Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() },
-                ),
-                ("a box that is too small", with(beyond(far_corner, error, box_min.clone(), smaller))),
-                ("a box of another shape", with(beyond(far_corner, error, lower, larger))),
-                ("the axes", with(beyond(far_corner, error, vec![0.0], box_max.clone()))),
-            ]
-        }
-        Claim::Behind { box_min, box_max } => {
-            let behind = |box_min: &[f64], by: f64| Claim::Behind {
-                box_min: box_min.to_vec(),
-                box_max: box_max.iter().map(|v| v + by).collect(),
-            };
-            vec![
-                (
-                    "the kind of subject",
-                    Certificate { subject: Subject::Prim(PrimId(0)), ..certificate.clone() },
-                ),
-                (
-                    "a node that is none",
-                    Certificate { subject: Subject::Node(NodeId(u32::MAX)), ..certificate.clone() },
-                ),
-                (
-                    "an object that is none",
-                    Certificate { subject: Subject::Object(ObjectId(u32::MAX)), ..certificate.clone() },
-                ),
-                ("the axes", with(behind(&[0.0], 0.0))),
-                ("a box that is too small", with(behind(&box_min, -1e3))),
-            ]
-        }
         Claim::Unseen => vec![
-            ("the kind of subject", Certificate { subject: Subject::Node(NodeId(0)), ..certificate.clone() }),
-            (
-                "the primitive",
-                Certificate { subject: Subject::Prim(PrimId(u32::MAX)), ..certificate.clone() },
-            ),
+            ("the kind of subject", of(Subject::Node(NodeId(0)))),
+            ("the primitive", of(Subject::Prim(PrimId(u32::MAX)))),
         ],
     }
 }
@@ -186,7 +151,7 @@ fn checker_tells_right_from_wrong<S: Methods + Drawable>(scene: &Arc<Scene<S>>) 
             assert_eq!(check_film(&*film), Ok(shown.len()));
             let checker = Checker::new(scene, film.hierarchy(), &view);
             for certificate in shown.iter().step_by(7) {
-                for (what, altered) in spoiled(certificate) {
+                for (what, altered) in spoiled(*certificate) {
                     assert!(checker.check(&altered).is_err(), "{method}: {what} altered: {altered:?}");
                     tried += 1;
                 }
@@ -196,7 +161,9 @@ fn checker_tells_right_from_wrong<S: Methods + Drawable>(scene: &Arc<Scene<S>>) 
             turned.eye.target = view.eye.position + (view.eye.position - view.eye.target);
             turned.eye.fov *= 0.9;
             let other = Checker::new(scene, film.hierarchy(), &turned);
-            let beyond = |c: &&Certificate| matches!(c.claim, Claim::Beyond { .. });
+            let beyond = |c: &&Certificate<S::Vector>| {
+                matches!(c.claim, Claim::Evident(method::Claim::Outside { .. }))
+            };
             assert!(
                 shown.iter().filter(beyond).all(|c| other.check(c).is_err()),
                 "{method}: an eye that looks the other way"
@@ -228,7 +195,7 @@ fn hidden_is_hidden<S: Methods + Drawable>(
         let film = film(scene, view, "large-occluders", settings);
         let shown = certificates(&*film);
         assert_eq!(check_film(&*film), Ok(shown.len()), "{} from {view:?}", scene.name());
-        claims[0] += shown.iter().filter(|c| matches!(c.claim, Claim::Behind { .. })).count();
+        claims[0] += shown.iter().filter(|c| matches!(c.claim, Claim::Behind(_))).count();
         claims[1] += shown.iter().filter(|c| c.claim == Claim::Unseen).count();
         let (checker, hierarchy) = (Checker::of(&*film), film.hierarchy());
         let visible = Truth::new(scene, one_sided, 1, WHITE).look(scene, view);
@@ -238,10 +205,7 @@ fn hidden_is_hidden<S: Methods + Drawable>(
         }
         let seen = |node: &NodeId| hierarchy.prims(*node).iter().any(|p| visible.binary_search(p).is_ok());
         for node in (0..hierarchy.node_count() as u32).map(NodeId).filter(seen) {
-            let (bounds, corner) = (hierarchy.bounds(node), |v: S::Vector| {
-                (0..S::Vector::AXES).map(|a| f64::from(v.get(a))).collect()
-            });
-            let claim = Claim::Behind { box_min: corner(bounds.min), box_max: corner(bounds.max) };
+            let claim = Claim::Behind(hierarchy.bounds(node));
             let why = checker.check(&Certificate { step: 1, subject: Subject::Node(node), claim });
             assert!(why.is_err(), "{}: node {node:?} is seen from {view:?}", scene.name());
         }

@@ -158,10 +158,7 @@ impl Applied<'_> {
 
 /// Verdict of an event, if it is a decision.
 pub fn verdict_of(event: Event) -> Option<Verdict> {
-    match event {
-        Event::DecidedNode(_, v) | Event::DecidedPrim(_, v) => Some(v),
-        _ => None,
-    }
+    event.verdict()
 }
 
 /// Kind of an event, without making its operands where that can be avoided.

@@ -37,7 +37,7 @@ pub struct Cell {
     /// Deepest nesting, of the walk.
     pub depth: u32,
     /// Its decisions by verdict.
-    pub verdicts: [u32; 6],
+    pub verdicts: [u32; crate::trace::Counts::VERDICTS.len()],
 }
 
 impl Cell {

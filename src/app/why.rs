@@ -159,6 +159,7 @@ pub fn spoken(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Outside => "outside the view (or faces away)",
         Verdict::Hidden => "hidden",
+        Verdict::Presumed => "left out as hidden, which is not proven",
         Verdict::Partial => "partly in view",
         Verdict::Visible => "drawn",
         Verdict::Approximated => "replaced by a stand-in",

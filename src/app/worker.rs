@@ -15,8 +15,8 @@ use super::stage::Recorded;
 use super::tables;
 use crate::culling::Methods;
 use crate::geometry::{Flat, Solid, View};
-use crate::measure::deadline::paced;
-use crate::method::{Run, Settings};
+use crate::measure::deadline::Paced;
+use crate::method::Settings;
 use crate::raster::Drawable;
 use crate::scene::{AnyPath, AnyScene, Progress, Scene};
 use crate::trace::{Moves, Stamps};
@@ -192,11 +192,11 @@ struct Bench {
     serial: u64,
 }
 
-struct Ready<S: Methods> {
+struct Ready<S: Drawable> {
     scene_serial: u64,
     method: String,
     settings: Settings,
-    run: Box<dyn Run<S>>,
+    run: Paced<S>,
 }
 
 impl Bench {
@@ -252,10 +252,7 @@ fn record<S: Methods + Drawable>(
             Err(error) => return Done::RecordFailed(error.to_string()),
             Ok(None) => return Done::Cancelled,
             Ok(Some(run)) => {
-                let run = match paced(run, &request.scene) {
-                    Ok(run) => run,
-                    Err(error) => return Done::RecordFailed(error.to_string()),
-                };
+                let run = Paced::new(run, &request.scene);
                 *ready = Some(Ready {
                     scene_serial: request.scene_serial,
                     method: request.method,

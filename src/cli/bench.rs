@@ -94,7 +94,6 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else {
         return Err(CliError::Interrupted);
     };
-    occluders.draw_depths_only(true);
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
         output::write_file(path, |to| to.write_all(&measured.answers).map(|()| true))?;
@@ -174,7 +173,7 @@ fn measure(
         let (mut render, mut query) = (Vec::new(), Vec::new());
         let mut answers = Vec::new();
         for _ in 0..repeat {
-            render.push(timed(|| occluders.render(view)).1);
+            render.push(timed(|| occluders.render(view, true)).1);
             let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(b)).collect::<Vec<_>>());
             query.push(ms);
             answers = all;

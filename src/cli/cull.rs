@@ -14,8 +14,8 @@ use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::drawing::Role;
 use crate::geometry::{PrimId, View};
+use crate::measure::deadline::Paced;
 use crate::measure::timed;
-use crate::method::{DrawList, Run};
 use crate::raster::{Options, Target, shade};
 use crate::render::Theme;
 use crate::scene::{AnyScene, Progress, Scene};
@@ -100,7 +100,7 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let pool = (args.threads > 1)
         .then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
     let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
-    let mut work = || frames(args, scene, &mut *run, &path.views, &bar);
+    let mut work = || frames(args, scene, &mut run, &path.views, &bar);
     let frames = match &pool {
         Some(pool) => pool.install(&mut work)?,
         None => work()?,
@@ -123,7 +123,7 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
 fn frames<S: World>(
     args: &Args,
     scene: &Scene<S>,
-    run: &mut dyn Run<S>,
+    run: &mut Paced<S>,
     views: &[View<S>],
     bar: &Bar,
 ) -> Result<Vec<Frame>, CliError> {
@@ -141,7 +141,7 @@ fn frames<S: World>(
         if bar.cancelled() {
             return Err(CliError::Interrupted);
         }
-        let (list, cull_ms) = timed(|| run.cull(view));
+        let ((list, stages_ms), cull_ms) = timed(|| run.stages_ms(view));
         let ((), draw_ms) = timed(|| {
             target.clear(view);
             S::draw(&mut target, scene, view, &list.prims, &options);
@@ -157,15 +157,15 @@ fn frames<S: World>(
             drawn_ids: args.ids.then(|| numbers(&list.ascending())),
             cull_ms: rounded(cull_ms),
             draw_ms: rounded(draw_ms),
-            stages_ms: BTreeMap::from([("cull", rounded(cull_ms))]),
+            stages_ms: stages_ms.into_iter().map(|(name, ms)| (name, rounded(ms))).collect(),
             counters: BTreeMap::new(),
             truth,
         });
     }
     run.forget();
     for (frame, view) in frames.iter_mut().zip(views) {
-        let (DrawList { prims }, tally) = run.count(view);
-        debug_assert_eq!(prims.len(), frame.drawn_triangles, "a counted run draws the same");
+        let (list, tally) = run.count(view);
+        debug_assert_eq!(list.prims.len(), frame.drawn_triangles, "a counted run draws the same");
         frame.counters = tally.named();
     }
     Ok(frames)

@@ -106,6 +106,7 @@ fn add<S: World>(list: &mut Vec<Listed>) -> Result<(), CliError> {
 fn param(knob: &Knob, value: &KnobValue) -> Param {
     let (r#type, range) = match value {
         KnobValue::Integer(_, range) => ("integer", json!([range.start(), range.end()])),
+        KnobValue::Real(_, range) => ("real", json!([range.start(), range.end()])),
         KnobValue::Switch(_) => ("switch", json!([false, true])),
         KnobValue::Budget(_) => ("budget", json!(["0", "4294967295", "0%", "100%", "0.001ms", "3600000ms"])),
         KnobValue::Choice(_, options) => ("choice", json!(options)),

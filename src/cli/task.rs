@@ -11,9 +11,9 @@ use super::scene::SceneArgs;
 use super::view::ViewArgs;
 use super::{CliError, World, output};
 use crate::geometry::ViewPath;
-use crate::measure::deadline::paced;
+use crate::measure::deadline::Paced;
 use crate::measure::timed;
-use crate::method::{RestoreError, Run};
+use crate::method::RestoreError;
 use crate::scene::{AnyScene, Scene};
 
 /// Options that say what to run, on what, and from where.
@@ -30,7 +30,7 @@ pub(super) struct Task {
 
 /// A task that can begin.
 pub(super) struct Ready<S: World> {
-    pub run: Box<dyn Run<S>>,
+    pub run: Paced<S>,
     pub path: ViewPath<S>,
     pub build_ms: f64,
     /// Waits and listens for Ctrl-C since before the index was built.
@@ -55,9 +55,9 @@ impl Task {
             Some(bytes) => entry.restore(scene, &settings, bytes, &bar).map_err(|e| self.refused(&e)),
             None => entry.ready(scene, &settings, &bar).map_err(CliError::from),
         });
-        let run = paced(run?.ok_or(CliError::Interrupted)?, scene)?;
+        let run = Paced::new(run?.ok_or(CliError::Interrupted)?, scene);
         if let (Some(path), None) = (&self.preprocess, saved) {
-            let Some(bytes) = run.save() else {
+            let Some(bytes) = run.hierarchy().save() else {
                 return Err(CliError::words(
                     "--preprocess",
                     format!("the method `{}` has nothing that takes long to build", run.card().key),

@@ -47,7 +47,7 @@ pub fn role_of(state: State) -> Role {
         State::Decided(Verdict::Outside) => Role::Outside,
         State::Decided(Verdict::Hidden) => Role::Hidden,
         State::Decided(Verdict::Visible) => Role::Visible,
-        State::Decided(Verdict::Approximated | Verdict::OverBudget) => Role::Approximated,
+        State::Decided(Verdict::Presumed | Verdict::Approximated | Verdict::OverBudget) => Role::Approximated,
     }
 }
 

@@ -40,4 +40,9 @@ pub trait Hierarchy<S: Space>: Send + Sync {
     }
     /// Bytes that the index takes.
     fn bytes(&self) -> usize;
+    /// The part of it that took long to build, as bytes around which its method builds it again; `None` if
+    /// none did.
+    fn save(&self) -> Option<Vec<u8>> {
+        None
+    }
 }

@@ -1,19 +1,19 @@
 //! Budgets in milliseconds: frames that are culled and drawn until a deadline (Klosowski and Silva 2000,
 //! Section 3, <https://doi.org/10.1109/2945.856993>: "time-critical").
 //!
-//! The method tells what it drew every few hundred primitives; that is rasterized at once, and the frame ends
-//! where the next piece, should it take as long as the longest so far, would end behind the deadline. What is
-//! drawn then depends on the machine, so a film is recorded with the number of primitives that the timed
-//! frame drew: it shows that frame, on any machine. [`paced`] gives a run whose budget is a time this
+//! The method reports what it drew every few hundred primitives; that is rasterized at once, and the frame
+//! ends when another piece as slow as the slowest so far would miss the deadline. What is drawn then depends on the machine, so a film is recorded with the number of primitives that the timed
+//! frame drew: it shows that frame, on any machine. [`Paced`] gives a run whose budget is a time this
 //! behavior; [`frame_within`] is one such frame.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
-use super::timing::Stopwatch;
+use super::timing::{Stopwatch, timed};
 use crate::geometry::{PrimId, View};
-use crate::index::Hierarchy;
-use crate::method::{Budget, DrawList, Knob, KnobValue, Limit, Recording, Run, SettingError, Tally};
+use crate::method::{Budget, DrawList, KnobValue, Limit, Recording, Run, Tally};
 use crate::raster::{Drawable, Options, Target};
 use crate::scene::Scene;
 
@@ -21,9 +21,9 @@ use crate::scene::Scene;
 const REMEMBERED: usize = 4096;
 
 /// A frame that ended in time, or nearly.
-pub struct TimedFrame {
+pub struct TimedFrame<S: Drawable> {
     /// What was drawn.
-    pub list: DrawList,
+    pub list: DrawList<S>,
     /// Its image.
     pub image: Target,
     /// From the view to the finished image, milliseconds.
@@ -42,34 +42,28 @@ struct Canvas {
 /// method that cannot be ended draws what it draws.
 pub fn frame_within<S: Drawable>(
     run: &mut dyn Run<S>,
-    scene: &Arc<Scene<S>>,
+    scene: &Scene<S>,
     view: &View<S>,
     mut image: Target,
     ms: f64,
-) -> TimedFrame {
+) -> TimedFrame<S> {
     if (image.width, image.height) != (view.width, view.height) {
         // Memory is fetched before the clock starts.
         image.clear(view);
     }
     let watch = Stopwatch::start();
     image.clear(view);
-    let canvas = Arc::new(Mutex::new(Canvas { image, watch, longest_ms: 0.0, asked_ms: watch.elapsed_ms() }));
-    let limit: Limit = {
-        let (canvas, scene, view) = (canvas.clone(), scene.clone(), *view);
-        Arc::new(move |prims: &[PrimId]| {
-            let mut canvas = canvas.lock().unwrap_or_else(PoisonError::into_inner);
-            S::draw(&mut canvas.image, &scene, &view, prims, &Options::default());
-            let now = canvas.watch.elapsed_ms();
-            canvas.longest_ms = canvas.longest_ms.max(now - canvas.asked_ms);
-            canvas.asked_ms = now;
-            now + canvas.longest_ms >= ms
-        })
+    let canvas = RefCell::new(Canvas { image, watch, longest_ms: 0.0, asked_ms: watch.elapsed_ms() });
+    let limit = |prims: &[PrimId]| {
+        let mut canvas = canvas.borrow_mut();
+        S::draw(&mut canvas.image, scene, view, prims, &Options::default());
+        let now = canvas.watch.elapsed_ms();
+        canvas.longest_ms = canvas.longest_ms.max(now - canvas.asked_ms);
+        canvas.asked_ms = now;
+        now + canvas.longest_ms >= ms
     };
-    run.limit(Some(limit));
-    let list = run.cull(view);
-    run.limit(None);
-    let image = std::mem::take(&mut canvas.lock().unwrap_or_else(PoisonError::into_inner).image);
-    TimedFrame { list, image, ms: watch.elapsed_ms() }
+    let list = run.cull_until(view, Some(&limit));
+    TimedFrame { list, image: canvas.into_inner().image, ms: watch.elapsed_ms() }
 }
 
 /// The milliseconds of a run's budget, if it is a time.
@@ -80,69 +74,36 @@ fn time_of<S: Drawable>(run: &dyn Run<S>) -> Option<f64> {
     })
 }
 
-/// A run that keeps the deadline which its budget names, if it names one.
-///
-/// # Errors
-/// The budget is a time, and the method asks nobody when to end.
-pub fn paced<S: Drawable>(
-    mut run: Box<dyn Run<S>>,
-    scene: &Arc<Scene<S>>,
-) -> Result<Box<dyn Run<S>>, SettingError> {
-    let Some(ms) = time_of(&*run) else { return Ok(run) };
-    if !run.limit(None) {
-        let expected =
-            format!("a number of primitives or a share: `{}` cannot be ended at a deadline", run.card().key);
-        return Err(SettingError::BadValue {
-            key: "budget",
-            value: Budget::Milliseconds(ms as f32).to_string(),
-            expected,
-        });
-    }
-    Ok(Box::new(Paced { run, scene: scene.clone(), ms, image: Target::default(), drawn: Vec::new() }))
-}
-
-struct Paced<S: Drawable> {
+/// A run that keeps the deadline which its budget names, if it names one; in all else it is the run.
+pub struct Paced<S: Drawable> {
     run: Box<dyn Run<S>>,
     scene: Arc<Scene<S>>,
-    ms: f64,
     image: Target,
     /// How many primitives the timed frame of a view drew.
     drawn: Vec<(View<S>, u32)>,
 }
 
-impl<S: Drawable> Paced<S> {
-    /// Does something with the number of primitives that the timed frame of the view drew in place of the
-    /// time.
-    fn counted<T>(&mut self, view: &View<S>, work: impl FnOnce(&mut dyn Run<S>) -> T) -> T {
-        let known = self.drawn.iter().rev().find(|(of, _)| of == view).map(|(_, n)| *n);
-        let count = known.unwrap_or_else(|| self.cull(view).prims.len() as u32);
-        let drawn = AtomicUsize::new(0);
-        // Also ended from outside, as the timed frame was: what a method does after a budget of its own does
-        // not follow.
-        let limit: Limit = Arc::new(move |prims: &[PrimId]| {
-            drawn.fetch_add(prims.len(), Ordering::Relaxed) + prims.len() >= count as usize
-        });
-        self.run.set_budget(Budget::Count(count));
-        self.run.limit(Some(limit));
-        let result = work(&mut *self.run);
-        self.run.limit(None);
-        self.run.set_budget(Budget::Milliseconds(self.ms as f32));
-        result
+impl<S: Drawable> Deref for Paced<S> {
+    type Target = dyn Run<S>;
+    fn deref(&self) -> &(dyn Run<S> + 'static) {
+        &*self.run
+    }
+}
+impl<S: Drawable> DerefMut for Paced<S> {
+    fn deref_mut(&mut self) -> &mut (dyn Run<S> + 'static) {
+        &mut *self.run
     }
 }
 
-impl<S: Drawable> Run<S> for Paced<S> {
-    fn card(&self) -> &'static crate::method::Card {
-        self.run.card()
+impl<S: Drawable> Paced<S> {
+    /// Paces a run on its scene.
+    pub fn new(run: Box<dyn Run<S>>, scene: &Arc<Scene<S>>) -> Self {
+        Self { run, scene: scene.clone(), image: Target::default(), drawn: Vec::new() }
     }
-    fn knobs(&self) -> Vec<(Knob, KnobValue)> {
-        self.run.knobs()
-    }
-    fn hierarchy(&self) -> &dyn Hierarchy<S> {
-        self.run.hierarchy()
-    }
-    fn cull(&mut self, view: &View<S>) -> DrawList {
-        let frame = frame_within(&mut *self.run, &self.scene, view, std::mem::take(&mut self.image), self.ms);
+    /// As [`Run::cull`], until the deadline.
+    pub fn cull(&mut self, view: &View<S>) -> DrawList<S> {
+        let Some(ms) = time_of(&*self.run) else { return self.run.cull(view) };
+        let frame = frame_within(&mut *self.run, &self.scene, view, std::mem::take(&mut self.image), ms);
         self.image = frame.image;
         if self.drawn.len() == REMEMBERED {
             self.drawn.clear();
@@ -150,26 +111,57 @@ impl<S: Drawable> Run<S> for Paced<S> {
         self.drawn.push((*view, frame.list.prims.len() as u32));
         frame.list
     }
-    fn count(&mut self, view: &View<S>) -> (DrawList, Tally) {
-        self.counted(view, |run| run.count(view))
+    /// As [`Paced::cull`], with the time of each stage of the frame by name, milliseconds; a frame that ends at
+    /// a deadline draws as it culls, and has one stage.
+    pub fn stages_ms(&mut self, view: &View<S>) -> (DrawList<S>, BTreeMap<&'static str, f64>) {
+        let mut stages = BTreeMap::new();
+        if time_of(&*self.run).is_some() {
+            let (list, ms) = timed(|| self.cull(view));
+            stages.insert("cull-and-draw", ms);
+            return (list, stages);
+        }
+        let watch = Stopwatch::start();
+        let mut last: Option<(&'static str, f64)> = None;
+        let mut next = |name: Option<&'static str>| {
+            let now = watch.elapsed_ms();
+            if let Some((before, since)) = last.take() {
+                *stages.entry(before).or_default() += now - since;
+            }
+            last = name.map(|name| (name, now));
+        };
+        let list = self.run.stages(view, &mut |name| next(Some(name)));
+        next(None);
+        (list, stages)
     }
-    fn record(&mut self, view: &View<S>, cap: usize) -> Recording<S> {
-        self.counted(view, |run| run.record(view, cap))
+    /// As [`Run::count`], of the frame that [`Paced::cull`] drew.
+    pub fn count(&mut self, view: &View<S>) -> (DrawList<S>, Tally) {
+        self.counted(view, |run, limit| run.count_until(view, limit))
     }
-    fn forget(&mut self) {
-        self.run.forget();
+    /// As [`Run::record`], of the frame that [`Paced::cull`] drew.
+    pub fn record(&mut self, view: &View<S>, cap: usize) -> Recording<S> {
+        self.counted(view, |run, limit| run.record_until(view, limit, cap))
     }
-    fn save(&self) -> Option<Vec<u8>> {
-        self.run.save()
-    }
-    fn remembers(&self) -> bool {
-        self.run.remembers()
-    }
-    fn limit(&mut self, limit: Option<Limit>) -> bool {
-        self.run.limit(limit)
-    }
-    fn set_budget(&mut self, budget: Budget) {
-        self.run.set_budget(budget);
+    /// Does something with the number of primitives that the timed frame of the view drew in place of the
+    /// time.
+    fn counted<T>(
+        &mut self,
+        view: &View<S>,
+        work: impl FnOnce(&mut dyn Run<S>, Option<&Limit<'_>>) -> T,
+    ) -> T {
+        let Some(ms) = time_of(&*self.run) else { return work(&mut *self.run, None) };
+        let known = self.drawn.iter().rev().find(|(of, _)| of == view).map(|(_, n)| *n);
+        let count = known.unwrap_or_else(|| self.cull(view).prims.len() as u32);
+        let drawn = Cell::new(0);
+        // Also ended from outside, as the timed frame was: what a method does after a budget of its own does
+        // not follow.
+        let limit = |prims: &[PrimId]| {
+            drawn.set(drawn.get() + prims.len());
+            drawn.get() >= count as usize
+        };
+        self.run.set_budget(Budget::Count(count));
+        let result = work(&mut *self.run, Some(&limit));
+        self.run.set_budget(Budget::Milliseconds(ms as f32));
+        result
     }
 }
 
@@ -178,7 +170,7 @@ mod tests {
     use super::*;
     use crate::culling::Methods;
     use crate::geometry::{Flat, Solid};
-    use crate::method::Settings;
+    use crate::method::{Knob, Settings};
     use crate::raster::render;
     use crate::scene::{Quiet, random_views, samples};
 
@@ -204,8 +196,7 @@ mod tests {
         let whole = all.cull(&view);
         // At once, and never: whatever the machine does.
         for (budget, is_all) in [("0.000001ms", false), ("1000000ms", true)] {
-            let mut run =
-                paced(ready::<S>("layered-projection", budget, scene), scene).expect("it can be ended");
+            let mut run = Paced::new(ready::<S>("layered-projection", budget, scene), scene);
             let list = run.cull(&view);
             assert_eq!(list.prims, whole.prims[..list.prims.len()]);
             assert_eq!(
@@ -229,7 +220,7 @@ mod tests {
         }
         let asking =
             ready_with("layered-projection", &[("budget", "0.000001ms"), ("queries", "true")], scene);
-        let mut asking = paced(asking, scene).expect("it can be ended");
+        let mut asking = Paced::new(asking, scene);
         let list = asking.cull(&view);
         assert!(list.prims.len() < whole.prims.len(), "a deadline also ends what follows a budget");
         assert_eq!(asking.record(&view, usize::MAX).list, list);
@@ -245,10 +236,10 @@ mod tests {
 
     #[test]
     fn a_method_that_cannot_be_ended_says_so() {
-        let scene = samples::soup::<Flat>(1, 30);
-        let error =
-            paced(ready::<Flat>("centroid", "5ms", &scene), &scene).err().expect("refused").to_string();
-        assert!(error.contains("budget=5ms") && error.contains("centroid"), "{error}");
-        assert!(paced(ready::<Flat>("centroid", "5%", &scene), &scene).is_ok());
+        let settings = |budget: &str| Settings([("budget".to_owned(), budget.to_owned())].into());
+        let knobs = |budget: &str| Flat::method("centroid").expect("listed").knobs(&settings(budget));
+        let error = knobs("5ms").expect_err("refused").to_string();
+        assert!(error.contains("budget=5ms") && error.contains("cannot be ended"), "{error}");
+        assert!(knobs("5%").is_ok());
     }
 }

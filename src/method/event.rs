@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Field, Value};
+use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
 
 /// What was decided about a node (and all below it) or a primitive.
@@ -13,6 +14,8 @@ pub enum Verdict {
     Outside,
     /// In the view volume, behind something.
     Hidden,
+    /// Left out as hidden, though not proven: something that the method does not count may show it.
+    Presumed,
     /// Undecided as a whole: decided piece by piece.
     Partial,
     /// In the answer.
@@ -29,6 +32,7 @@ impl Verdict {
         match self {
             Self::Outside => "outside",
             Self::Hidden => "hidden",
+            Self::Presumed => "presumed",
             Self::Partial => "partial",
             Self::Visible => "visible",
             Self::Approximated => "approximated",
@@ -60,35 +64,68 @@ pub enum Event {
 }
 const _: () = assert!(size_of::<Event>() <= 16, "events are kept by the million");
 
-/// Kind and operands of an event that is not a note.
-pub(crate) fn fields(event: Event, code: &[super::CodeLine]) -> (&'static str, Vec<Field>) {
-    let integer = |name, v: u32| Field { name, value: Value::Integer(v.into()) };
-    let word = |name, v: &str| Field { name, value: Value::Word(v.to_owned()) };
-    match event {
-        Event::FrameBegan => ("FrameBegan", vec![]),
-        Event::Entered(n) => ("NodeEntered", vec![integer("node", n.0)]),
-        Event::Left(n) => ("NodeLeft", vec![integer("node", n.0)]),
-        Event::Queued(n, key) => (
-            "NodeQueued",
-            vec![integer("node", n.0), Field { name: "priority", value: Value::Number(key.into()) }],
-        ),
-        Event::DecidedNode(n, v) => ("NodeDecided", vec![integer("node", n.0), word("verdict", v.name())]),
-        Event::DecidedPrim(p, v) => ("PrimDecided", vec![integer("prim", p.0), word("verdict", v.name())]),
-        Event::Line(i) => ("LineReached", vec![word("text", code[i as usize].text.trim())]),
-        Event::Noted(i) => ("Noted", vec![integer("note", i)]),
+impl Event {
+    /// What happened, in the past tense and camel case; of evidence the note knows better.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::FrameBegan => "FrameBegan",
+            Self::Entered(_) => "NodeEntered",
+            Self::Left(_) => "NodeLeft",
+            Self::Queued(..) => "NodeQueued",
+            Self::DecidedNode(..) => "NodeDecided",
+            Self::DecidedPrim(..) => "PrimDecided",
+            Self::Line(_) => "LineReached",
+            Self::Noted(_) => "Noted",
+        }
+    }
+    /// The node or primitive that it is about; of evidence the note knows better.
+    pub fn subject(&self) -> Subject {
+        match *self {
+            Self::Entered(n) | Self::Left(n) | Self::Queued(n, _) | Self::DecidedNode(n, _) => {
+                Subject::Node(n)
+            }
+            Self::DecidedPrim(p, _) => Subject::Prim(p),
+            Self::FrameBegan | Self::Line(_) | Self::Noted(_) => Subject::None,
+        }
+    }
+    /// The verdict, if it is a decision.
+    pub fn verdict(&self) -> Option<Verdict> {
+        match *self {
+            Self::DecidedNode(_, v) | Self::DecidedPrim(_, v) => Some(v),
+            _ => None,
+        }
+    }
+    /// Its operands by name.
+    pub(super) fn fields(self, code: &[super::CodeLine]) -> Vec<Field> {
+        let integer = |name, v: u32| Field { name, value: Value::Integer(v.into()) };
+        let word = |name, v: &str| Field { name, value: Value::Word(v.to_owned()) };
+        match self {
+            Self::FrameBegan => vec![],
+            Self::Entered(n) | Self::Left(n) => vec![integer("node", n.0)],
+            Self::Queued(n, key) => {
+                vec![integer("node", n.0), Field { name: "priority", value: Value::Number(key.into()) }]
+            }
+            Self::DecidedNode(n, v) => vec![integer("node", n.0), word("verdict", v.name())],
+            Self::DecidedPrim(p, v) => vec![integer("prim", p.0), word("verdict", v.name())],
+            Self::Line(i) => vec![word("text", code[i as usize].text.trim())],
+            Self::Noted(i) => vec![integer("note", i)],
+        }
     }
 }
 
 /// Listens to a run. It cannot answer: nothing is returned and no state is seen, so a watched run and
 /// an unwatched one cannot differ.
 pub trait Observer<Note> {
-    /// Whether anybody hears: for leaving out work that only tells, and for leaving the order of work open,
-    /// where nobody does. Never for what is decided.
+    /// Whether anyone is listening. Use it to skip work that only reports or fixes an order of work; never to
+    /// change a decision.
     const LISTENS: bool = true;
     /// A fact in the shared vocabulary.
     fn event(&mut self, event: Event);
     /// A piece of evidence. The closure runs only if someone is listening.
     fn note(&mut self, note: impl FnOnce() -> Note);
+    /// A stage of the frame begins; the one before ends. For clocks that do not belong here.
+    #[inline(always)]
+    fn stage(&mut self, _name: &'static str) {}
 }
 
 /// Nobody listens; compiles to nothing.

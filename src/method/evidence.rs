@@ -1,7 +1,7 @@
 //! Evidence that several methods record: a box against the frustum, a primitive's orientation; and how
 //! evidence in general is worded and drawn.
 
-use super::{Field, Tally, Value};
+use super::{Claim, Field, Tally, Value};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View, faces_away};
 use crate::scene::Scene;
@@ -13,7 +13,7 @@ const LABEL_PT: f32 = 8.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Tested<S: Space> {
     /// Whose box.
-    pub(crate) subject: Subject,
+    subject: Subject,
     bounds: Aabb<S::Vector>,
     /// The tests in order, up to the first that says outside.
     tests: [PlaneTest; 6],
@@ -77,6 +77,20 @@ impl<S: Space> Tested<S> {
         }
     }
 
+    /// Whose box it is.
+    pub(crate) fn subject(&self) -> Subject {
+        self.subject
+    }
+    /// That it lies outside, if it does.
+    pub(crate) fn claim(&self) -> Option<Claim<S::Vector>> {
+        let test = self.tests().last().filter(|_| self.outside)?;
+        Some(Claim::Outside {
+            plane: Frustum::<S::Vector>::plane_name(test.plane as usize),
+            far_corner: test.far_corner.into(),
+            error: test.error.into(),
+            bounds: self.bounds,
+        })
+    }
     /// What kind of note this is.
     pub(crate) fn kind(&self) -> &'static str {
         match self.subject {
@@ -208,6 +222,13 @@ impl Facing {
             prim,
             eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE),
         }
+    }
+    pub(crate) fn subject(&self) -> Subject {
+        Subject::Prim(self.prim)
+    }
+    /// That it faces away, if it does.
+    pub(crate) fn claim<V>(&self) -> Option<Claim<V>> {
+        (self.eye_distance < 0.0).then(|| Claim::FacesAway { eye_distance: self.eye_distance.into() })
     }
     pub(crate) fn tally(tally: &mut Tally) {
         tally.add("orientations_tested", 1);

@@ -5,6 +5,8 @@ use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use super::Words;
+
 /// What a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Knob {
@@ -34,12 +36,23 @@ impl Knob {
 pub trait Knobs {
     /// A whole number.
     fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32);
+    /// A real number.
+    fn real(&mut self, knob: Knob, range: RangeInclusive<f32>, value: &mut f32);
     /// On or off.
     fn switch(&mut self, knob: Knob, value: &mut bool);
-    /// How much may be drawn.
-    fn budget(&mut self, knob: Knob, value: &mut Budget);
+    /// How much may be drawn; `ends`: whether the method can be ended at a time.
+    fn budget(&mut self, knob: Knob, ends: bool, value: &mut Budget);
     /// One of several words; `value` is an index into `options`.
     fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize);
+}
+
+impl dyn Knobs + '_ {
+    /// One of several words, as the value of an enum.
+    pub(crate) fn words<W: Words>(&mut self, knob: Knob, value: &mut W) {
+        let mut number = value.number();
+        self.choice(knob, W::WORDS, &mut number);
+        *value = W::ALL[number];
+    }
 }
 
 /// How much may be drawn.
@@ -49,12 +62,13 @@ pub enum Budget {
     Count(u32),
     /// A share of the scene's primitives, 0 to 100.
     Percent(f32),
-    /// Until so much time has passed since the frame began, above 0. The one who runs the method keeps it, by
-    /// a [`super::Limit`].
+    /// Milliseconds since the frame began, above 0; enforced by the caller through a [`super::Limit`].
     Milliseconds(f32),
 }
 
 impl Budget {
+    const EXPECTED: &'static str =
+        "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms";
     /// The number of primitives it allows of `total`: a share is rounded up; a time allows all.
     pub fn of(self, total: usize) -> usize {
         match self {
@@ -78,7 +92,7 @@ impl fmt::Display for Budget {
 impl FromStr for Budget {
     type Err = &'static str;
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let expected = "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms";
+        let expected = Budget::EXPECTED;
         if let Some(time) = text.strip_suffix("ms") {
             return time
                 .trim()
@@ -154,6 +168,8 @@ pub enum SettingError {
 pub enum KnobValue {
     /// A whole number in a range.
     Integer(u32, RangeInclusive<u32>),
+    /// A real number in a range.
+    Real(f32, RangeInclusive<f32>),
     /// On or off.
     Switch(bool),
     /// How much may be drawn.
@@ -166,6 +182,7 @@ impl fmt::Display for KnobValue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Integer(v, _) => v.fmt(f),
+            Self::Real(v, _) => v.fmt(f),
             Self::Switch(v) => v.fmt(f),
             Self::Budget(v) => v.fmt(f),
             Self::Choice(v, options) => options[*v].fmt(f),
@@ -181,10 +198,13 @@ impl Knobs for Collect {
     fn integer(&mut self, knob: Knob, range: RangeInclusive<u32>, value: &mut u32) {
         self.0.push((knob, KnobValue::Integer(*value, range)));
     }
+    fn real(&mut self, knob: Knob, range: RangeInclusive<f32>, value: &mut f32) {
+        self.0.push((knob, KnobValue::Real(*value, range)));
+    }
     fn switch(&mut self, knob: Knob, value: &mut bool) {
         self.0.push((knob, KnobValue::Switch(*value)));
     }
-    fn budget(&mut self, knob: Knob, value: &mut Budget) {
+    fn budget(&mut self, knob: Knob, _: bool, value: &mut Budget) {
         self.0.push((knob, KnobValue::Budget(*value)));
     }
     fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
@@ -197,8 +217,9 @@ pub(crate) struct SetBudget(pub Budget);
 
 impl Knobs for SetBudget {
     fn integer(&mut self, _: Knob, _: RangeInclusive<u32>, _: &mut u32) {}
+    fn real(&mut self, _: Knob, _: RangeInclusive<f32>, _: &mut f32) {}
     fn switch(&mut self, _: Knob, _: &mut bool) {}
-    fn budget(&mut self, _: Knob, value: &mut Budget) {
+    fn budget(&mut self, _: Knob, _: bool, value: &mut Budget) {
         *value = self.0;
     }
     fn choice(&mut self, _: Knob, _: &'static [&'static str], _: &mut usize) {}
@@ -235,16 +256,23 @@ impl Knobs for Apply<'_> {
         let expected = || format!("a whole number from {} to {}", range.start(), range.end());
         self.set(knob, expected, |v| range.contains(v), value);
     }
+    fn real(&mut self, knob: Knob, range: RangeInclusive<f32>, value: &mut f32) {
+        let expected = || format!("a number from {} to {}", range.start(), range.end());
+        self.set(knob, expected, |v| range.contains(v), value);
+    }
     fn switch(&mut self, knob: Knob, value: &mut bool) {
         self.set(knob, || "true or false".into(), |_| true, value);
     }
-    fn budget(&mut self, knob: Knob, value: &mut Budget) {
-        self.set(
-            knob,
-            || "a number of primitives such as 2000, a share such as 10%, or a time such as 5ms".into(),
-            |_| true,
-            value,
-        );
+    fn budget(&mut self, knob: Knob, ends: bool, value: &mut Budget) {
+        let expected = || {
+            if ends {
+                Budget::EXPECTED.to_owned()
+            } else {
+                "a number of primitives such as 2000 or a share such as 10%: this method cannot be ended at a time"
+                    .to_owned()
+            }
+        };
+        self.set(knob, expected, |v| ends || !matches!(v, Budget::Milliseconds(_)), value);
     }
     fn choice(&mut self, knob: Knob, options: &'static [&'static str], value: &mut usize) {
         let mut word = options[*value].to_owned();

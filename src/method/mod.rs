@@ -1,17 +1,28 @@
-//! What a method is: the one shape that all methods share, what they report while they work, and how a run becomes
-//! a film. It knows no method; those are in [`crate::culling`].
+//! What a method is: the one shape that all methods share, what they report while they work, and how a run
+//! becomes a film. It knows no method; those are in [`crate::culling`].
 
+mod card;
 mod contract;
-mod entry;
-#[cfg(test)]
-mod entry_tests;
 mod event;
 pub mod evidence;
+mod film;
 mod knobs;
+mod note;
+mod run;
+#[cfg(test)]
+mod tests;
+mod words;
 
-pub use contract::{Card, CodeLine, DrawList, Field, Limit, Method, Note, Value};
-pub use entry::{Entry, Film, Recording, Reel, RestoreError, Run};
-pub(crate) use entry::{Of, params};
+pub(crate) use card::line;
+pub use card::{Card, CodeLine};
+pub(crate) use contract::keeps_nothing;
+pub use contract::{DrawList, Frame, Limit, Method, Moment, Shown, State};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
+pub use film::{Film, Reel, notes};
 pub(crate) use knobs::backface_knob;
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
+pub use note::{Claim, Context, Field, Note, Value};
+pub use run::{Entry, Recording, RestoreError, Run};
+pub(crate) use run::{Of, params};
+pub use words::Words;
+pub(crate) use words::words;

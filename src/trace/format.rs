@@ -118,6 +118,8 @@ pub fn write_header(header: &Header, to: &mut impl Write) -> io::Result<()> {
 pub fn knob_json(value: &KnobValue) -> Json {
     match value {
         KnobValue::Integer(v, _) => Json::from(*v),
+        // As a whole number where it is one, and otherwise with the digits of its 32 bits.
+        KnobValue::Real(v, _) => v.to_string().parse().unwrap_or(Json::Null),
         KnobValue::Switch(v) => Json::from(*v),
         KnobValue::Budget(crate::method::Budget::Count(n)) => Json::from(*n),
         KnobValue::Budget(share) => Json::from(share.to_string()),

@@ -39,16 +39,17 @@ pub struct Counts {
     /// Nodes entered.
     pub nodes_entered: usize,
     /// Primitives by verdict, in the order of [`Counts::VERDICTS`].
-    pub prims: [usize; 6],
+    pub prims: [usize; Self::VERDICTS.len()],
     /// Primitives not decided.
     pub undecided: usize,
 }
 
 impl Counts {
     /// The order of [`Counts::prims`].
-    pub const VERDICTS: [Verdict; 6] = [
+    pub const VERDICTS: [Verdict; 7] = [
         Verdict::Outside,
         Verdict::Hidden,
+        Verdict::Presumed,
         Verdict::Partial,
         Verdict::Visible,
         Verdict::Approximated,
@@ -69,7 +70,7 @@ pub struct Stamps {
     /// Ascending steps of `Entered`.
     entered_steps: Vec<u32>,
     /// Ascending steps of primitives' decisions by verdict.
-    decided_steps: [Vec<u32>; 6],
+    decided_steps: [Vec<u32>; Counts::VERDICTS.len()],
     live: usize,
 }
 

@@ -27,49 +27,28 @@ use super::widened;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Vector, View, orient2d, orient3d};
 use crate::index::Hierarchy;
-use crate::method::{Event, Field, Film, KnobValue, Value, Verdict};
+use crate::method::{self, Event, Film, KnobValue, Verdict};
 use crate::raster::Drawable;
 use crate::scene::Scene;
 
 /// Evidence that something cannot be seen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Certificate {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate<V> {
     /// The step that showed the evidence.
     pub step: usize,
     /// A node, an object or a primitive.
     pub subject: Subject,
     /// What is claimed of it.
-    pub claim: Claim,
+    pub claim: Claim<V>,
 }
 
 /// What a certificate claims.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Claim {
-    /// Its box lies outside a plane of the view volume.
-    Beyond {
-        /// Name of the plane, such as `left`.
-        plane: String,
-        /// Signed distance of the corner that reaches farthest in, world units, negative.
-        far_corner: f64,
-        /// Bound on that distance's error, world units.
-        error: f64,
-        /// Least corner of the box.
-        box_min: Vec<f64>,
-        /// Greatest corner of the box.
-        box_max: Vec<f64>,
-    },
-    /// It turns its back to the eye.
-    FacesAway {
-        /// Signed distance of the eye from its plane, world units, negative.
-        eye_distance: f64,
-    },
-    /// Surfaces that are shown lie before every part of its box.
-    Behind {
-        /// Least corner of the box.
-        box_min: Vec<f64>,
-        /// Greatest corner of the box.
-        box_max: Vec<f64>,
-    },
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Claim<V> {
+    /// What the method's evidence claims: that it is outside, or faces away.
+    Evident(method::Claim<V>),
+    /// Surfaces that are shown lie before every part of this box of it.
+    Behind(Aabb<V>),
     /// It owns no pixel.
     Unseen,
 }
@@ -85,81 +64,29 @@ pub struct Rejection {
 }
 
 /// The certificates of a film, in order.
-pub fn certificates<S: Drawable>(film: &dyn Film<S>) -> Vec<Certificate> {
+pub fn certificates<S: Drawable>(film: &dyn Film<S>) -> Vec<Certificate<S::Vector>> {
     let at = |(i, event): (usize, &Event)| {
-        let step = i + 1;
-        let behind = |subject, bounds| Some(Certificate { step, subject, claim: behind(bounds) });
-        match *event {
-            Event::Noted(_) => {
-                let fields = film.fields(i).1;
-                hidden_object(&fields).map_or_else(
-                    || certificate(step, &fields),
-                    |object| {
-                        behind(
-                            Subject::Object(object),
-                            Aabb::of(
-                                of_object(film.scene(), object).flat_map(|p| film.scene().prim_points(p)),
-                            ),
-                        )
-                    },
-                )
-            }
-            Event::DecidedNode(node, Verdict::Hidden) => {
-                behind(Subject::Node(node), film.hierarchy().bounds(node))
-            }
-            Event::DecidedPrim(prim, Verdict::Hidden) => {
-                Some(Certificate { step, subject: Subject::Prim(prim), claim: Claim::Unseen })
-            }
-            _ => None,
-        }
+        let claim = match *event {
+            Event::Noted(_) => match (film.claim(i)?, film.subject(i)) {
+                (method::Claim::Hidden, Subject::Object(object)) => {
+                    let points = of_object(film.scene(), object).flat_map(|p| film.scene().prim_points(p));
+                    Claim::Behind(Aabb::of(points))
+                }
+                // What is hidden otherwise is proven where it is decided.
+                (method::Claim::Hidden, _) => return None,
+                (claim, _) => Claim::Evident(claim),
+            },
+            Event::DecidedNode(node, Verdict::Hidden) => Claim::Behind(film.hierarchy().bounds(node)),
+            Event::DecidedPrim(_, Verdict::Hidden) => Claim::Unseen,
+            _ => return None,
+        };
+        Some(Certificate { step: i + 1, subject: film.subject(i), claim })
     };
     film.events().iter().enumerate().filter_map(at).collect()
 }
 
-fn behind<V: Vector>(bounds: Aabb<V>) -> Claim {
-    let corner = |v: V| (0..V::AXES).map(|a| f64::from(v.get(a))).collect();
-    Claim::Behind { box_min: corner(bounds.min), box_max: corner(bounds.max) }
-}
-
 fn of_object<S: Drawable>(scene: &Scene<S>, object: ObjectId) -> impl Iterator<Item = PrimId> {
     scene.live().iter().copied().filter(move |&p| scene.object_of(p) == object)
-}
-
-/// The object that a note says is occluded: by one occluder, or by several that it counts.
-fn hidden_object(fields: &[Field]) -> Option<ObjectId> {
-    let get = |name: &str| fields.iter().find(|f| f.name == name).map(|f| &f.value);
-    let Some(Value::Integer(object)) = get("object") else { return None };
-    let full =
-        matches!(get("occlusion"), Some(Value::Word(word)) if word == "full") || get("members").is_some();
-    u32::try_from(*object).ok().filter(|_| full).map(ObjectId)
-}
-
-fn certificate(step: usize, fields: &[Field]) -> Option<Certificate> {
-    let get = |name: &str| fields.iter().find(|f| f.name == name).map(|f| &f.value);
-    let id = |name: &str| if let Some(Value::Integer(v)) = get(name) { u32::try_from(*v).ok() } else { None };
-    let last = |name: &str| if let Some(Value::List(list)) = get(name) { list.last().copied() } else { None };
-    let list = |name: &str| if let Some(Value::List(list)) = get(name) { Some(list.clone()) } else { None };
-    let subject = id("node")
-        .map(|n| Subject::Node(NodeId(n)))
-        .or_else(|| id("object").map(|o| Subject::Object(ObjectId(o))))
-        .or_else(|| id("prim").map(|p| Subject::Prim(PrimId(p))))?;
-    let claim = match (get("result"), get("eye_distance_units")) {
-        (Some(Value::Word(result)), _) if result == "outside" => {
-            let Some(Value::Word(planes)) = get("planes") else { return None };
-            Claim::Beyond {
-                plane: planes.split(' ').next_back()?.to_owned(),
-                far_corner: last("far_corner_units")?,
-                error: last("error_units")?,
-                box_min: list("box_min")?,
-                box_max: list("box_max")?,
-            }
-        }
-        (None, Some(Value::Number(distance))) if *distance < 0.0 => {
-            Claim::FacesAway { eye_distance: *distance }
-        }
-        _ => return None,
-    };
-    Some(Certificate { step, subject, claim })
 }
 
 /// Checks every certificate of a film, and that nothing was called outside without one. Returns how many
@@ -172,7 +99,7 @@ pub fn check_film<S: Drawable>(film: &dyn Film<S>) -> Result<usize, Rejection> {
     let certificates = certificates(film);
     let mut proven = vec![false; film.hierarchy().node_count()];
     for certificate in &certificates {
-        if let (Claim::Behind { .. }, Subject::Node(node)) = (&certificate.claim, certificate.subject) {
+        if let (Claim::Behind(_), Subject::Node(node)) = (&certificate.claim, certificate.subject) {
             let above = std::iter::successors(Some(node), |n| film.hierarchy().parent(*n));
             if above.into_iter().any(|n| proven[n.at()]) {
                 continue;
@@ -181,34 +108,23 @@ pub fn check_film<S: Drawable>(film: &dyn Film<S>) -> Result<usize, Rejection> {
         }
         checker.check(certificate)?;
     }
-    let mut shown = certificates.iter().peekable();
-    let mut proven = Vec::new();
-    let mut objects = vec![false; film.scene().objects().len()];
-    for (i, event) in film.events().iter().enumerate() {
-        let step = i + 1;
-        while shown.peek().is_some_and(|c| c.step <= step) {
-            let subject = shown.next().map(|c| c.subject);
-            if let Some(Subject::Object(object)) = subject {
-                objects[object.at()] = true;
-            }
-            proven.extend(subject);
+    for (at, event) in film.events().iter().enumerate() {
+        if event.verdict() != Some(Verdict::Outside) {
+            continue;
         }
-        let subject = match *event {
-            Event::DecidedNode(n, Verdict::Outside) => Subject::Node(n),
-            Event::DecidedPrim(p, Verdict::Outside) => Subject::Prim(p),
-            _ => continue,
-        };
-        // Evidence stands right before the decision that rests on it; that of an object holds for all its
-        // primitives.
-        let of_object = matches!(subject, Subject::Prim(p) if objects[film.scene().object_of(p).at()]);
-        if !of_object && proven.iter().rev().take(8).all(|s| *s != subject) {
-            return Err(Rejection {
-                step,
-                why: format!("{subject:?} is called outside without a certificate"),
-            });
+        // The evidence of a decision says itself that its subject, or the object of that, is outside.
+        let evidence = film.evidence_of(at).and_then(|evidence| film.claim(evidence));
+        if !matches!(evidence, Some(method::Claim::Outside { .. } | method::Claim::FacesAway { .. })) {
+            let why = format!("{:?} is called outside without a certificate", film.subject(at));
+            return Err(Rejection { step: at + 1, why });
         }
     }
     Ok(certificates.len())
+}
+
+/// The least and the greatest corner of a box.
+fn corners<V: Vector>(bounds: Aabb<V>) -> [DVec3; 2] {
+    [widened(bounds.min), widened(bounds.max)]
 }
 
 /// Checks certificates of one view of one scene.
@@ -290,17 +206,18 @@ impl<'a, S: Drawable> Checker<'a, S> {
     ///
     /// # Errors
     /// What does not hold.
-    pub fn check(&self, certificate: &Certificate) -> Result<(), Rejection> {
-        let checked = match (&certificate.claim, certificate.subject) {
-            (Claim::FacesAway { eye_distance }, Subject::Prim(prim)) if self.is_live(prim) => {
-                self.faces_away(prim, *eye_distance)
+    pub fn check(&self, certificate: &Certificate<S::Vector>) -> Result<(), Rejection> {
+        use method::Claim::{FacesAway, Outside};
+        let checked = match (certificate.claim, certificate.subject) {
+            (Claim::Evident(FacesAway { eye_distance }), Subject::Prim(prim)) if self.is_live(prim) => {
+                self.faces_away(prim, eye_distance)
             }
-            (Claim::Beyond { plane, far_corner, error, box_min, box_max }, subject) => self
+            (Claim::Evident(Outside { plane, far_corner, error, bounds }), subject) => self
                 .points(subject)
-                .and_then(|points| self.beyond(&points, plane, *far_corner, *error, &[box_min, box_max])),
+                .and_then(|points| self.beyond(&points, plane, far_corner, error, corners(bounds))),
             (Claim::Unseen, Subject::Prim(prim)) if self.is_live(prim) => self.sight().unseen(prim),
-            (Claim::Behind { box_min, box_max }, subject @ (Subject::Node(_) | Subject::Object(_))) => {
-                self.prims(subject).and_then(|prims| self.behind(subject, prims, box_min, box_max))
+            (Claim::Behind(bounds), subject @ (Subject::Node(_) | Subject::Object(_))) => {
+                self.prims(subject).and_then(|prims| self.behind(subject, prims, corners(bounds)))
             }
             _ => Err("the subject is not in the scene, or the claim cannot be made of it".into()),
         };
@@ -319,14 +236,8 @@ impl<'a, S: Drawable> Checker<'a, S> {
         &self,
         subject: Subject,
         mut prims: Vec<PrimId>,
-        box_min: &[f64],
-        box_max: &[f64],
+        [low, high]: [DVec3; 2],
     ) -> Result<(), String> {
-        if box_min.len() != S::Vector::AXES || box_max.len() != S::Vector::AXES {
-            return Err("the box has another number of axes than the space".into());
-        }
-        let [low, high] =
-            [box_min, box_max].map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
         let holds = |p: PrimId| {
             self.scene.prim_points(p).map(widened).all(|p| p.cmpge(low).all() && p.cmple(high).all())
         };
@@ -375,16 +286,12 @@ impl<'a, S: Drawable> Checker<'a, S> {
         plane: &str,
         far_corner: f64,
         error: f64,
-        bounds: &[&Vec<f64>; 2],
+        [low, high]: [DVec3; 2],
     ) -> Result<(), String> {
         let Some(Plane { normal, offset, rounding, .. }) = self.planes.iter().find(|p| p.name == plane)
         else {
             return Err(format!("the view volume has no plane `{plane}`"));
         };
-        if bounds.iter().any(|b| b.len() != S::Vector::AXES) {
-            return Err("the box has another number of axes than the space".into());
-        }
-        let [low, high] = bounds.map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
         if points.iter().any(|p| p.cmplt(low).any() || p.cmpgt(high).any()) {
             return Err("the box does not hold everything that it stands for".into());
         }

@@ -71,6 +71,18 @@ fn edit(
                 answers.push(set(v.to_string(), cache.gesture));
             }
         }
+        KnobValue::Real(v, range) => {
+            let mut v = *v;
+            let label = ui.label(&title).on_hover_text(&help);
+            let slider = egui::Slider::new(&mut v, range.clone()).suffix(knob.unit);
+            let response = ui.add(slider).labelled_by(label.id).on_hover_text(&help);
+            if response.drag_started() || (response.changed() && !response.dragged()) {
+                cache.gesture += 1;
+            }
+            if response.changed() {
+                answers.push(set(v.to_string(), cache.gesture));
+            }
+        }
         KnobValue::Choice(chosen, options) => {
             let mut chosen = *chosen;
             let label = ui.label(&title).on_hover_text(&help);

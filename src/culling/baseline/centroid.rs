@@ -13,7 +13,8 @@ use crate::geometry::{self, FrustumTest, PrimId, Space, Vector, View};
 use crate::index::Whole;
 use crate::method::evidence::{Facing, Tested, middle, prim_faces_away};
 use crate::method::{
-    Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob,
+    Budget, Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, Verdict,
+    backface_knob, keeps_nothing,
 };
 use crate::scene::{Progress, Scene};
 
@@ -43,12 +44,22 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Draw:3", text: "  else leave p out" },
 ];
 
+/// Lines that the run reaches.
+mod line {
+    use super::CODE;
+    use crate::method::line;
+    pub const IN_VIEW: u8 = line(CODE, "Order:2");
+    pub const PUT: u8 = line(CODE, "Order:3");
+    pub const DRAW: u8 = line(CODE, "Draw:2");
+    pub const LEAVE_OUT: u8 = line(CODE, "Draw:3");
+}
+
 impl<S: Space> Method<S> for Centroid {
     type Params = Params;
     type Index = Whole<S>;
     type Memory = ();
+    type State = ();
     type Note = Evidence<S>;
-    type Dense = ();
     const CARD: Card = Card {
         key: "centroid",
         name: "Centroid ordering with a budget",
@@ -68,28 +79,35 @@ impl<S: Space> Method<S> for Centroid {
             meaning: "how many primitives are drawn: a number, or a share of the scene such as 10%",
             source: "Klosowski and Silva 2000, Section 4.5",
         };
-        knobs.budget(budget, &mut params.budget);
+        knobs.budget(budget, false, &mut params.budget);
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, _: &Params, _: &dyn Progress) -> Option<Whole<S>> {
-        Some(Whole::new(scene.clone()))
+    fn build(
+        scene: &Arc<Scene<S>>,
+        _: &Params,
+        saved: Option<&[u8]>,
+        _: &dyn Progress,
+    ) -> Result<Option<Whole<S>>, String> {
+        keeps_nothing(saved)?;
+        Ok(Some(Whole::new(scene.clone())))
     }
     fn cull<O: Observer<Evidence<S>>>(
-        _: &Whole<S>,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
+        frame: &Frame<'_, S, Self>,
         (): &mut (),
-        out: &mut DrawList,
+        (): &mut (),
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
+        let Frame { scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
+        watch.stage("order");
         let mut queue = in_view(scene, view, params, watch);
         queue.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let budget = params.budget.of(scene.live().len());
+        watch.stage("draw");
         for (rank, &(squared, prim)) in queue.iter().enumerate() {
             let fits = rank < budget;
-            watch.event(Event::Line(if fits { 4 } else { 5 }));
+            watch.event(Event::Line(if fits { line::DRAW } else { line::LEAVE_OUT }));
             watch.note(move || Evidence::Distance(Distance::of(scene, prim, squared, rank, budget)));
             if fits {
                 out.prims.push(prim);
@@ -97,18 +115,16 @@ impl<S: Space> Method<S> for Centroid {
             watch.event(Event::DecidedPrim(prim, if fits { Verdict::Visible } else { Verdict::OverBudget }));
         }
     }
-    fn dense(_: &Scene<S>, _: &View<S>) {}
-    fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain(
-        (): &(),
-        scene: &Scene<S>,
-        _: &Whole<S>,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        if let Some(note) = note {
-            note.draw(scene, view, to);
+    fn is_conservative(params: &Params) -> bool {
+        // Then nothing is left out.
+        params.budget == Budget::Percent(100.0)
+    }
+}
+
+impl<S: Space> Shown<S> for Centroid {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = moment.note {
+            note.draw(moment.frame.scene, moment.frame.view, to);
         }
     }
 }
@@ -123,7 +139,7 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
     let (frustum, eye) = (view.frustum(), view.eye.position);
     let mut queue = Vec::with_capacity(scene.live().len());
     for &prim in scene.live() {
-        watch.event(Event::Line(1));
+        watch.event(Event::Line(line::IN_VIEW));
         let bounds = scene.prim_bounds(prim);
         let planes = geometry::Frustum::<S::Vector>::ALL;
         let test = frustum.test(&bounds, planes);
@@ -136,7 +152,7 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
             watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else {
-            watch.event(Event::Line(2));
+            watch.event(Event::Line(line::PUT));
             let toward = middle(scene, prim) - eye;
             queue.push((toward.dot(toward), prim));
         }

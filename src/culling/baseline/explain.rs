@@ -3,7 +3,7 @@
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{PrimId, Space, View};
 use crate::method::evidence::{Facing, Tested, integer, label, middle, number, outline, short};
-use crate::method::{Field, Note, Tallied, Tally};
+use crate::method::{Claim, Context, Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What a baseline records.
@@ -101,7 +101,21 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Distance(_) => "CentroidRanked",
         }
     }
-    fn fields(&self) -> Vec<Field> {
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Tested(n) => n.subject(),
+            Self::Facing(n) => n.subject(),
+            Self::Distance(n) => Subject::Prim(n.prim),
+        }
+    }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(),
+            Self::Facing(n) => n.claim(),
+            Self::Distance(_) => None,
+        }
+    }
+    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
         match self {
             Self::Tested(n) => n.fields(),
             Self::Facing(n) => n.fields(),
@@ -115,7 +129,7 @@ impl<S: Space> Note<S> for Evidence<S> {
             }
         }
     }
-    fn sentence(&self, _: &Scene<S>) -> String {
+    fn sentence(&self, _: &Context<'_, S>) -> String {
         match self {
             Self::Tested(n) => n.sentence(),
             Self::Facing(n) => n.sentence::<S>(),

@@ -14,7 +14,10 @@ use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, NodeId, Space, View};
 use crate::index::KdTree;
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
-use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
+use crate::method::{
+    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, Verdict,
+    backface_knob, keeps_nothing,
+};
 use crate::scene::{Progress, Scene};
 
 /// The method.
@@ -47,12 +50,23 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Gather:2", text: "  draw each p of T that faces the eye" },
 ];
 
+/// Lines that the run reaches.
+mod line {
+    use super::CODE;
+    use crate::method::line;
+    pub const TEST: u8 = line(CODE, "Visible:2");
+    pub const OUTSIDE: u8 = line(CODE, "Visible:3");
+    pub const GATHER: u8 = line(CODE, "Visible:6");
+    pub const CHILD: u8 = line(CODE, "Visible:8");
+    pub const DRAW: u8 = line(CODE, "Gather:2");
+}
+
 impl<S: Space> Method<S> for Frustum {
     type Params = Params;
     type Index = KdTree<S::Vector>;
     type Memory = ();
+    type State = ();
     type Note = Evidence<S>;
-    type Dense = ();
     const CARD: Card = Card {
         key: "frustum",
         name: "View-frustum culling over a kD-tree",
@@ -76,39 +90,38 @@ impl<S: Space> Method<S> for Frustum {
         knobs.integer(height, 1..=24, &mut params.tree_height);
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
+    fn build(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self::Index>, String> {
+        keeps_nothing(saved)?;
         progress.report(0.0, "building the kD-tree");
-        KdTree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), params.tree_height, || {
-            progress.cancelled()
-        })
+        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
+        Ok(KdTree::build(boxes, params.tree_height, || progress.cancelled()))
     }
     fn cull<O: Observer<Evidence<S>>>(
-        index: &Self::Index,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
+        frame: &Frame<'_, S, Self>,
         (): &mut (),
-        out: &mut DrawList,
+        (): &mut (),
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
+        let Frame { index, scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
+        watch.stage("visit");
         let frustum = view.frustum();
         let mut walk =
             Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
         walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
     }
-    fn dense(_: &Scene<S>, _: &View<S>) {}
-    fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain(
-        (): &(),
-        scene: &Scene<S>,
-        _: &Self::Index,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        if let Some(note) = note {
-            note.draw(scene, view, to);
+}
+
+impl<S: Space> Shown<S> for Frustum {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = moment.note {
+            note.draw(moment.frame.scene, moment.frame.view, to);
         }
     }
 }
@@ -120,7 +133,7 @@ struct Walk<'a, S: Space, O> {
     view: &'a View<S>,
     frustum: geometry::Frustum<S::Vector>,
     backface_culling: bool,
-    out: &'a mut DrawList,
+    out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
 
@@ -129,7 +142,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let index = self.index;
         let node = &index.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
-        self.watch.event(Event::Line(1));
+        self.watch.event(Event::Line(line::TEST));
         let test = self.frustum.test(&node.bounds, planes);
         let frustum = &self.frustum;
         self.watch.note(move || {
@@ -137,18 +150,18 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         });
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
-                self.watch.event(Event::Line(2));
+                self.watch.event(Event::Line(line::OUTSIDE));
                 self.watch.event(Event::DecidedNode(id, Verdict::Outside));
             }
             (FrustumTest::Partial(cutting), Some(children)) => {
                 self.watch.event(Event::DecidedNode(id, Verdict::Partial));
                 for child in children {
-                    self.watch.event(Event::Line(7));
+                    self.watch.event(Event::Line(line::CHILD));
                     self.visible(child, cutting);
                 }
             }
             (FrustumTest::Inside | FrustumTest::Partial(_), _) => {
-                self.watch.event(Event::Line(5));
+                self.watch.event(Event::Line(line::GATHER));
                 self.gather(id);
                 self.watch.event(Event::DecidedNode(id, Verdict::Visible));
             }
@@ -164,7 +177,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         }
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
-            self.watch.event(Event::Line(9));
+            self.watch.event(Event::Line(line::DRAW));
             let away = prim_faces_away(scene, view.eye.position, prim);
             if away {
                 self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));

@@ -7,10 +7,13 @@ use std::sync::Arc;
 
 use super::explain::Evidence;
 use crate::drawing::Drawing;
-use crate::geometry::{Space, View};
+use crate::geometry::Space;
 use crate::index::Whole;
 use crate::method::evidence::{Facing, prim_faces_away};
-use crate::method::{Card, CodeLine, DrawList, Event, Knobs, Method, Observer, Verdict, backface_knob};
+use crate::method::{
+    Card, CodeLine, DrawList, Event, Frame, Knobs, Method, Moment, Observer, Shown, Verdict, backface_knob,
+    keeps_nothing,
+};
 use crate::scene::{Progress, Scene};
 
 /// The method.
@@ -29,12 +32,20 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Draw:4", text: "  else draw p" },
 ];
 
+/// Lines that the run reaches.
+mod line {
+    use super::CODE;
+    use crate::method::line;
+    pub const SKIP: u8 = line(CODE, "Draw:3");
+    pub const DRAW: u8 = line(CODE, "Draw:4");
+}
+
 impl<S: Space> Method<S> for ZBuffer {
     type Params = Params;
     type Index = Whole<S>;
     type Memory = ();
+    type State = ();
     type Note = Evidence<S>;
-    type Dense = ();
     const CARD: Card = Card {
         key: "z-buffer",
         name: "Plain z-buffer",
@@ -49,43 +60,43 @@ impl<S: Space> Method<S> for ZBuffer {
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, _: &Params, _: &dyn Progress) -> Option<Whole<S>> {
-        Some(Whole::new(scene.clone()))
+    fn build(
+        scene: &Arc<Scene<S>>,
+        _: &Params,
+        saved: Option<&[u8]>,
+        _: &dyn Progress,
+    ) -> Result<Option<Whole<S>>, String> {
+        keeps_nothing(saved)?;
+        Ok(Some(Whole::new(scene.clone())))
     }
     fn cull<O: Observer<Evidence<S>>>(
-        _: &Whole<S>,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
+        frame: &Frame<'_, S, Self>,
         (): &mut (),
-        out: &mut DrawList,
+        (): &mut (),
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
+        let Frame { scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
+        watch.stage("draw");
         for &prim in scene.live() {
             if params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
-                watch.event(Event::Line(2));
+                watch.event(Event::Line(line::SKIP));
                 watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
                 watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {
-                watch.event(Event::Line(3));
+                watch.event(Event::Line(line::DRAW));
                 out.prims.push(prim);
                 watch.event(Event::DecidedPrim(prim, Verdict::Visible));
             }
         }
     }
-    fn dense(_: &Scene<S>, _: &View<S>) {}
-    fn apply((): &mut (), _: &Scene<S>, _: &Evidence<S>) {}
-    fn explain(
-        (): &(),
-        scene: &Scene<S>,
-        _: &Whole<S>,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        if let Some(note) = note {
-            note.draw(scene, view, to);
+}
+
+impl<S: Space> Shown<S> for ZBuffer {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = moment.note {
+            note.draw(moment.frame.scene, moment.frame.view, to);
         }
     }
 }

@@ -21,6 +21,14 @@ pub struct Buffer<S: Drawable> {
     hidden: Vec<PrimId>,
 }
 
+/// Images of the same view with the same pyramid, its stale tiles included.
+impl<S: Drawable> PartialEq for Buffer<S> {
+    fn eq(&self, other: &Self) -> bool {
+        let view = |b: &Self| b.sight.as_ref().map(|s| s.view);
+        view(self) == view(other) && self.target == other.target && self.pyramid == other.pyramid
+    }
+}
+
 impl<S: Drawable> Default for Buffer<S> {
     fn default() -> Self {
         Self { sight: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
@@ -38,12 +46,12 @@ impl<S: Drawable> Buffer<S> {
         self.sight.as_ref()
     }
     /// Empties it for a view.
-    pub fn begin(&mut self, view: &View<S>) {
+    pub fn clear(&mut self, view: &View<S>) {
         self.target.clear(view);
         self.look(view);
     }
     /// The same for depths alone, which queries need: nobody will look at which primitive shows where.
-    pub fn begin_depths(&mut self, view: &View<S>) {
+    pub fn clear_depths(&mut self, view: &View<S>) {
         self.target.clear_depths(view);
         self.look(view);
     }

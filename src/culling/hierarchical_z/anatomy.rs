@@ -11,7 +11,7 @@ use crate::culling::depth::{Buffer, FaceImage, Faces, Nobody, Query, hides};
 use crate::drawing::Drawing;
 use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
 use crate::index::Octree;
-use crate::method::{DrawList, Method, Recorder, SettingError, Settings, Unobserved, params};
+use crate::method::{DrawList, Frame, Method, Recorder, SettingError, Settings, State, Unobserved, params};
 use crate::raster::{DepthScale, Options, Target};
 use crate::scene::{Parts, Progress, Scene, SceneError};
 
@@ -20,7 +20,8 @@ pub struct Obscurer<S: Faces> {
     scene: Arc<Scene<S>>,
     index: Octree<S::Vector>,
     params: Params,
-    memory: Memory<S>,
+    memory: Memory,
+    state: Buffer<S>,
 }
 
 impl<S: Faces> Obscurer<S> {
@@ -34,48 +35,44 @@ impl<S: Faces> Obscurer<S> {
         progress: &dyn Progress,
     ) -> Result<Option<Self>, SettingError> {
         let params = params::<S, HierarchicalZ>(settings)?;
-        let index = <HierarchicalZ as Method<S>>::build(scene, &params, progress);
-        Ok(index.map(|index| Self { scene: scene.clone(), index, params, memory: Memory::default() }))
+        let index = HierarchicalZ::build(scene, &params, None, progress).unwrap_or_default();
+        Ok(index.map(|index| Self {
+            scene: scene.clone(),
+            index,
+            params,
+            memory: Memory::default(),
+            state: Buffer::default(),
+        }))
     }
-    /// Whether only depths are drawn from now on: boxes can be asked for, and the image has no items. Half
-    /// the memory to clear and to fill.
-    pub fn draw_depths_only(&mut self, depths_only: bool) {
-        self.memory.depths_only = depths_only;
-    }
-    /// Draws a frame, with what is remembered of the last one, and brings the pyramid up to date. Returns
-    /// what was drawn.
-    pub fn render(&mut self, view: &View<S>) -> DrawList {
+    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes can
+    /// be asked for, and the image has no items; half the memory to clear and to fill.
+    pub fn render(&mut self, view: &View<S>, depths_only: bool) -> DrawList<S> {
         let mut list = DrawList::default();
-        HierarchicalZ::cull(
-            &self.index,
-            &self.scene,
-            view,
-            &self.params,
-            &mut self.memory,
-            &mut list,
-            &mut Unobserved,
-        );
+        let (index, scene, params) = (&self.index, &*self.scene, &self.params);
+        let frame = Frame { index, scene, view, params, limit: None, depths_only };
+        self.state.begin(&frame);
+        HierarchicalZ::cull(&frame, &mut self.memory, &mut self.state, &mut list, &mut Unobserved);
         list
     }
     /// Forgets earlier frames.
     pub fn forget(&mut self) {
-        self.memory = Memory { depths_only: self.memory.depths_only, ..Memory::default() };
+        self.memory = Memory::default();
     }
     /// Whether a box is hidden by what was drawn last, by its front faces; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {
-        hides(&mut self.memory.scratch.buffer, bounds, Nobody).map(|answer| answer.is_hidden)
+        hides(&mut self.state, bounds, Nobody).map(|answer| answer.is_hidden)
     }
     /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
     pub fn touch_all(&mut self, view: &View<S>) {
-        self.memory.scratch.buffer.touch(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height });
+        self.state.touch(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height });
     }
     /// Brings the whole pyramid up to date.
     pub fn refresh_all(&mut self) {
-        self.memory.scratch.buffer.refresh_all();
+        self.state.refresh_all();
     }
     /// The image that was drawn.
     pub fn target(&self) -> &Target {
-        self.memory.scratch.buffer.target()
+        self.state.target()
     }
 }
 
@@ -88,7 +85,7 @@ pub fn pyramid_picture<S: Faces>(
     scale: DepthScale,
 ) -> (Drawing, bool) {
     let mut buffer = Buffer::default();
-    buffer.begin(view);
+    buffer.clear(view);
     buffer.draw(scene, scene.live(), &Options::default());
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<S>> = Recorder::new(usize::MAX);

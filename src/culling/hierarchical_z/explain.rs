@@ -8,7 +8,7 @@ use crate::culling::depth::{Answer, Buffer, Faces, Listener, Read};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
-use crate::method::{Event, Field, Note, Observer, Tallied, Tally, Value};
+use crate::method::{Claim, Context, Event, Field, Note, Observer, Tallied, Tally, Value};
 use crate::raster::{Extent, Options, PyramidCell};
 use crate::scene::Scene;
 
@@ -110,8 +110,10 @@ pub struct Rasterized {
     /// if it covers no pixel or had to be clipped: then it is drawn without a test.
     pub operands: Option<(Extent, f32)>,
     pub is_hidden: bool,
+    /// Whether the pyramid was asked.
+    pub is_sieved: bool,
     pub backface_culling: bool,
-    /// The part of the image it was drawn in, if not all; then the pyramid was not asked.
+    /// The part of the image it was drawn in, if not all.
     pub window: Option<PixelRect>,
 }
 
@@ -130,9 +132,12 @@ impl<S: Faces> Evidence<S> {
             Self::Rasterized(n) if !n.is_hidden => {
                 let options =
                     Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
-                match n.window {
-                    Some(_) => buffer.draw_all(scene, &[n.prim], &options),
-                    None => _ = buffer.draw(scene, &[n.prim], &options),
+                // One by one leads where the run came to with many at once: what the pyramid holds, and so
+                // what is left out, changes with its refreshes alone.
+                if n.is_sieved {
+                    buffer.draw(scene, &[n.prim], &options);
+                } else {
+                    buffer.draw_all(scene, &[n.prim], &options);
                 }
             }
             _ => {}
@@ -308,7 +313,28 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Worked(n) => n.kind(),
         }
     }
-    fn fields(&self) -> Vec<Field> {
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Listed(n, _) | Self::Unlisted(n) | Self::Read(n, _) => Subject::Node(*n),
+            Self::Tested(n) => n.subject(),
+            Self::Answered(n) => Subject::Node(n.node),
+            Self::Rasterized(n) => Subject::Prim(n.prim),
+            Self::SharedUnseen(prim, _) => Subject::Prim(*prim),
+            Self::Facing(n) => n.subject(),
+            Self::Worked(n) => Subject::Node(n.node),
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll | Self::Checked(_) => {
+                Subject::None
+            }
+        }
+    }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(),
+            Self::Facing(n) => n.claim(),
+            _ => None,
+        }
+    }
+    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
         match self {
             Self::Listed(n, _) | Self::Unlisted(n) => vec![integer("node", n.0)],
             Self::Tested(n) => n.fields(),
@@ -355,7 +381,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Worked(n) => n.fields(),
         }
     }
-    fn sentence(&self, _: &Scene<S>) -> String {
+    fn sentence(&self, _: &Context<'_, S>) -> String {
         match self {
             Self::Listed(n, true) => {
                 format!("Node {n} was visible in the last frame, so it is drawn at once, without a test.")

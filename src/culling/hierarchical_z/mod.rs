@@ -35,7 +35,10 @@ use crate::geometry::{
 };
 use crate::index::{Octree, OctreeNode, Redistribution, Shape};
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
-use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
+use crate::method::{
+    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, Verdict,
+    backface_knob, keeps_nothing,
+};
 use crate::raster::{DepthScale, Options, PyramidCell};
 use crate::scene::{Progress, Scene};
 
@@ -142,8 +145,8 @@ mod line {
 }
 
 /// What is kept from frame to frame.
-#[derive(Clone)]
-pub struct Memory<S: Faces> {
+#[derive(Clone, Default)]
+pub struct Memory {
     /// The visible list, as a mark for each cube.
     listed: Vec<bool>,
     /// Frames since the list was checked.
@@ -152,27 +155,12 @@ pub struct Memory<S: Faces> {
     farthest: f32,
     /// The simulated machine's.
     lists: Lists,
-    /// Whether only depths are drawn: nobody will look at the image.
-    depths_only: bool,
-    scratch: Scratch<S>,
-}
-
-impl<S: Faces> Default for Memory<S> {
-    fn default() -> Self {
-        Self {
-            listed: Vec::new(),
-            frames: 0,
-            farthest: 0.0,
-            lists: Lists::default(),
-            depths_only: false,
-            scratch: Scratch::default(),
-        }
-    }
+    scratch: Scratch,
 }
 
 /// Buffers that frames reuse. A copy of the memory does not hold them.
-struct Scratch<S: Faces> {
-    buffer: Buffer<S>,
+#[derive(Default)]
+struct Scratch {
     /// Shared primitives that this frame has drawn, by id.
     drawn: Vec<bool>,
     /// Cubes that were drawn from the list.
@@ -181,12 +169,7 @@ struct Scratch<S: Faces> {
     prims: Vec<PrimId>,
 }
 
-impl<S: Faces> Default for Scratch<S> {
-    fn default() -> Self {
-        Self { buffer: Buffer::default(), drawn: Vec::new(), cubes: Vec::new(), prims: Vec::new() }
-    }
-}
-impl<S: Faces> Clone for Scratch<S> {
+impl Clone for Scratch {
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -203,9 +186,9 @@ const RAPID_SHIFT: f32 = 1.5;
 impl<S: Faces> Method<S> for HierarchicalZ {
     type Params = Params;
     type Index = Octree<S::Vector>;
-    type Memory = Memory<S>;
+    type Memory = Memory;
+    type State = Buffer<S>;
     type Note = Evidence<S>;
-    type Dense = Buffer<S>;
     const CARD: Card = Card {
         key: "hierarchical-z",
         name: "Hierarchical z-buffer: obscuration culling with octree and z-pyramid",
@@ -298,7 +281,13 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         machine_knobs(&mut params.machine, knobs);
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self::Index> {
+    fn build(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self::Index>, String> {
+        keeps_nothing(saved)?;
         progress.report(0.0, "building the octree");
         let shape = Shape {
             levels: params.tree_levels,
@@ -306,34 +295,27 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             redistribution: Redistribution::ALL[params.redistribution],
             small: params.small_percent as f32 / 100.0,
         };
-        Octree::build(scene.live().iter().map(|&p| (p, scene.prim_bounds(p))), &shape, &|| {
-            progress.cancelled()
-        })
+        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
+        Ok(Octree::build(boxes, &shape, &|| progress.cancelled()))
     }
     fn cull<O: Observer<Evidence<S>>>(
-        index: &Self::Index,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
-        memory: &mut Memory<S>,
-        out: &mut DrawList,
+        frame: &Frame<'_, S, Self>,
+        memory: &mut Memory,
+        buffer: &mut Buffer<S>,
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
+        let Frame { index, scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
         memory.listed.resize(index.nodes().len(), false);
         if !params.coherence {
             memory.listed.fill(false);
         }
-        let Scratch { buffer, drawn, cubes, prims } = &mut memory.scratch;
+        let Scratch { drawn, cubes, prims } = &mut memory.scratch;
         cubes.clear();
         cubes.resize(index.nodes().len(), false);
         drawn.clear();
         drawn.resize(scene.prim_count(), false);
-        if memory.depths_only {
-            buffer.begin_depths(view)
-        } else {
-            buffer.begin(view)
-        }
         if params.machine.processors > 1 {
             Simulation::new(index, scene, view, params, buffer, drawn, &mut memory.lists, out, watch).run();
             return;
@@ -341,7 +323,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         // Not asked of the rasterizer, since each cube's primitives are asked as they are gathered.
         let options = Options { backface_culling: false, threads: threads(), ..Options::default() };
         let frustum = view.frustum();
-        let mut frame = Frame {
+        let mut walk = Walk {
             index,
             scene,
             view,
@@ -361,46 +343,38 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             out,
             watch,
         };
-        frame.run();
-        let check = frame.check_due(memory.farthest, memory.frames + 1);
+        walk.run();
+        let check = walk.check_due(memory.farthest, memory.frames + 1);
         if check.is_due {
-            frame.check(NodeId(0), Frustum::<S::Vector>::ALL);
+            walk.check(NodeId(0), Frustum::<S::Vector>::ALL);
         }
         (memory.frames, memory.farthest) = (if check.is_due { 0 } else { check.frames }, check.farthest[0]);
     }
+}
+
+impl<S: Faces> State<S, HierarchicalZ> for Buffer<S> {
+    // A copy of the images costs as much as drawing about this many primitives.
     const KEYFRAME_NOTES: usize = 1 << 14;
-    const PICTURES: &'static [&'static str] = picture::PICTURES;
-    fn picture(
-        buffer: &Buffer<S>,
-        view: &View<S>,
-        notes: &[Evidence<S>],
-        which: usize,
-        scale: DepthScale,
-    ) -> Drawing {
-        picture::picture(buffer, view, notes, which, scale)
+    fn begin(&mut self, frame: &Frame<'_, S, HierarchicalZ>) {
+        if frame.depths_only { self.clear_depths(frame.view) } else { self.clear(frame.view) }
     }
-    fn probe(buffer: &Buffer<S>, view: &View<S>, which: usize, at: glam::Vec2) -> Option<String> {
-        picture::probe(buffer, view, which, at)
+    fn apply(&mut self, scene: &Scene<S>, note: &Evidence<S>) {
+        note.apply(self, scene);
     }
-    fn dense(_: &Scene<S>, view: &View<S>) -> Buffer<S> {
-        let mut buffer = Buffer::default();
-        buffer.begin(view);
-        buffer
-    }
-    fn apply(buffer: &mut Buffer<S>, scene: &Scene<S>, note: &Evidence<S>) {
-        note.apply(buffer, scene);
-    }
-    fn explain(
-        _: &Buffer<S>,
-        scene: &Scene<S>,
-        _: &Self::Index,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        if let Some(note) = note {
-            note.draw(scene, view, to);
+}
+
+impl<S: Faces> Shown<S> for HierarchicalZ {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        if let Some(note) = moment.note {
+            note.draw(moment.frame.scene, moment.frame.view, to);
         }
+    }
+    const PICTURES: &'static [&'static str] = picture::PICTURES;
+    fn picture(moment: &Moment<'_, S, Self>, which: usize, scale: DepthScale) -> Drawing {
+        picture::picture(moment.state, moment.frame.view, moment.notes, which, scale)
+    }
+    fn probe(moment: &Moment<'_, S, Self>, which: usize, at: glam::Vec2) -> Option<String> {
+        picture::probe(moment.state, moment.frame.view, which, at)
     }
 }
 
@@ -495,8 +469,8 @@ fn threads() -> usize {
     rayon::current_thread_index().map_or(1, |_| rayon::current_num_threads())
 }
 
-/// One frame.
-struct Frame<'a, S: Faces, O> {
+/// The traversal of one frame.
+struct Walk<'a, S: Faces, O> {
     index: &'a Octree<S::Vector>,
     scene: &'a Scene<S>,
     view: &'a View<S>,
@@ -516,11 +490,11 @@ struct Frame<'a, S: Faces, O> {
     passing: Vec<NodeId>,
     /// Cubes that came onto the list.
     added: u32,
-    out: &'a mut DrawList,
+    out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
 
-impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
+impl<S: Faces, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     fn run(&mut self) {
         self.watch.event(Event::Line(line::CLEAR));
         self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
@@ -709,7 +683,8 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
     fn rasterize(&mut self) {
         let threads = if self.prims.len() < PARALLEL_PRIMS { 1 } else { self.options.threads };
         let (scene, options) = (self.scene, &Options { threads, ..self.options });
-        let hidden = if self.params.primitive_test {
+        let is_sieved = self.params.primitive_test;
+        let hidden = if is_sieved {
             self.buffer.draw(scene, self.prims, options).to_vec()
         } else {
             self.buffer.draw_all(scene, self.prims, options);
@@ -726,6 +701,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Frame<'_, S, O> {
                     prim,
                     operands,
                     is_hidden,
+                    is_sieved,
                     backface_culling: options.backface_culling,
                     window: None,
                 })

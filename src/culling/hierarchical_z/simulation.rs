@@ -203,7 +203,7 @@ pub struct Simulation<'a, S: Faces, O> {
     pub buffer: &'a mut Buffer<S>,
     pub drawn: &'a mut [bool],
     pub lists: &'a mut Lists,
-    pub out: &'a mut DrawList,
+    pub out: &'a mut DrawList<S>,
     pub watch: &'a mut O,
     state: State<S>,
 }
@@ -249,7 +249,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         buffer: &'a mut Buffer<S>,
         drawn: &'a mut [bool],
         lists: &'a mut Lists,
-        out: &'a mut DrawList,
+        out: &'a mut DrawList<S>,
         watch: &'a mut O,
     ) -> Self {
         let options = Options { backface_culling: params.backface_culling, ..Options::default() };
@@ -656,6 +656,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
                         prim,
                         operands: None,
                         is_hidden: false,
+                        is_sieved: false,
                         backface_culling: options.backface_culling,
                         window: Some(window),
                     };

@@ -13,11 +13,46 @@ use crate::method::{Recorder, Unobserved};
 use crate::raster::{Target, render};
 use crate::scene::Parts;
 
+/// The method on a scene, with its memory and the state of its last frame.
+#[derive(Clone)]
+struct Tried<'a, S: Faces> {
+    index: &'a Octree<S::Vector>,
+    scene: &'a Scene<S>,
+    params: &'a Params,
+    memory: Memory,
+    buffer: Buffer<S>,
+    depths_only: bool,
+}
+
+impl<'a, S: Faces> Tried<'a, S> {
+    fn new(index: &'a Octree<S::Vector>, scene: &'a Scene<S>, params: &'a Params) -> Self {
+        let (memory, buffer) = (Memory::default(), Buffer::default());
+        Self { index, scene, params, memory, buffer, depths_only: false }
+    }
+    fn frame<'b>(&'b self, view: &'b View<S>) -> Frame<'b, S, HierarchicalZ> {
+        let Self { index, scene, params, depths_only, .. } = *self;
+        Frame { index, scene, view, params, limit: None, depths_only }
+    }
+    fn cull<O: Observer<Evidence<S>>>(&mut self, view: &View<S>, watch: &mut O) -> DrawList<S> {
+        let (mut memory, mut buffer) = (std::mem::take(&mut self.memory), std::mem::take(&mut self.buffer));
+        let (frame, mut list) = (self.frame(view), DrawList::default());
+        buffer.begin(&frame);
+        HierarchicalZ::cull(&frame, &mut memory, &mut buffer, &mut list, watch);
+        (self.memory, self.buffer) = (memory, buffer);
+        list
+    }
+}
+
+fn built<S: Faces>(scene: &Arc<Scene<S>>, params: &Params) -> Octree<S::Vector> {
+    let index = <HierarchicalZ as Method<S>>::build(scene, params, None, &crate::scene::Quiet);
+    index.expect("nothing saved").expect("not cancelled")
+}
+
 /// What a face at depth 6 over some pixels of Figure 1 is told, as level, cell value and outcome.
 fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
     let (scene, view) = figure_1().expect("a valid scene");
     let mut buffer = Buffer::default();
-    buffer.begin(&view);
+    buffer.clear(&view);
     buffer.draw(&scene, scene.live(), &Options::default());
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
@@ -86,7 +121,7 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
             ..view
         };
         let mut buffer = Buffer::default();
-        buffer.begin(&view);
+        buffer.clear(&view);
         for part in scene.live().chunks(25) {
             buffer.draw(&scene, part, &Options::default());
         }
@@ -166,30 +201,21 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     let scene = soup::<S>(&mut rng, 300, make);
     for (form, interval) in [(0, 1), (0, 30), (1, 1), (1, 30)] {
         let params = Params { form, check_interval: interval, leaf_primitives: 4, ..Params::default() };
-        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet)
-            .expect("not cancelled");
-        let (mut memory, mut bare) = (Memory::default(), Memory { depths_only: true, ..Memory::default() });
+        let index = built::<S>(&scene, &params);
+        let mut tried = Tried::new(&index, &scene, &params);
+        let mut bare = Tried { depths_only: true, ..tried.clone() };
         for view in crate::scene::random_views(&scene, 12, 3) {
             for step in 0..4 {
                 let mut view = View { width: 80, height: view.height.min(60), ..view };
                 view.eye.position = view.eye.position + view.eye.forward() * (0.05 * step as f32);
                 view.eye.target = view.eye.position + view.eye.forward();
-                let mut list = DrawList::default();
-                HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut Unobserved);
+                let list = tried.cull(&view, &mut Unobserved);
                 let plain = render(&scene, &view, scene.live());
                 assert_eq!(render(&scene, &view, &list.prims), plain, "form {form}, interval {interval}");
-                assert_eq!(
-                    *memory.scratch.buffer.target(),
-                    plain,
-                    "form {form}, interval {interval}: its own image"
-                );
-                let mut same = DrawList::default();
-                HierarchicalZ::cull(&index, &scene, &view, &params, &mut bare, &mut same, &mut Unobserved);
+                assert_eq!(*tried.buffer.target(), plain, "form {form}, interval {interval}: its own image");
+                let same = bare.cull(&view, &mut Unobserved);
                 assert_eq!(list, same, "form {form}, interval {interval}: by depths alone");
-                assert!(
-                    bare.scratch.buffer.target().item.is_empty()
-                        && bare.scratch.buffer.target().depth == plain.depth
-                );
+                assert!(bare.buffer.target().item.is_empty() && bare.buffer.target().depth == plain.depth);
             }
         }
     }
@@ -217,18 +243,15 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
             ..Machine::default()
         };
         let params = Params { machine, leaf_primitives: 4, check_interval: 3, ..Params::default() };
-        let index = <HierarchicalZ as Method<S>>::build(&scene, &params, &crate::scene::Quiet)
-            .expect("not cancelled");
-        let (mut memory, mut hidden, mut work) = (Memory::default(), 0, 0);
+        let index = built::<S>(&scene, &params);
+        let (mut tried, mut hidden, mut work) = (Tried::new(&index, &scene, &params), 0, 0);
         for view in crate::scene::random_views(&scene, 6, 4) {
             let view = View { width: 300, height: view.height.min(200), ..view };
-            let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
-            let mut same = memory.clone();
-            HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut recorder);
+            let (mut recorder, mut same) = (Recorder::new(usize::MAX), tried.clone());
+            let list = tried.cull(&view, &mut recorder);
             let plain = render(&scene, &view, scene.live());
             assert_eq!(render(&scene, &view, &list.prims), plain, "case {case}");
-            let mut again = DrawList::default();
-            HierarchicalZ::cull(&index, &scene, &view, &params, &mut same, &mut again, &mut Unobserved);
+            let again = same.cull(&view, &mut Unobserved);
             assert_eq!(list, again, "case {case}: a frame is the same again, unobserved");
             let mut told = vec![None; scene.prim_count()];
             for event in &recorder.events {
@@ -242,10 +265,6 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
             drawn.sort_unstable();
             assert_eq!(drawn, list.ascending(), "case {case}: told and answered");
             assert!(told.iter().all(Option::is_some), "case {case}: all is told");
-            // What a film replays is the run's own image.
-            let mut replayed = <HierarchicalZ as Method<S>>::dense(&scene, &view);
-            recorder.notes.iter().for_each(|n| <HierarchicalZ as Method<S>>::apply(&mut replayed, &scene, n));
-            assert_eq!(*replayed.target(), plain, "case {case}: replayed");
             work += work_of_renderers(&recorder.notes, case);
         }
         assert!(hidden > 20 && work > 50, "case {case}: {hidden} hidden, {work} jobs");
@@ -288,7 +307,7 @@ fn a_wall_hides_what_lies_behind_it_only() {
         far: 100.0,
     };
     let mut buffer = Buffer::default();
-    buffer.begin_depths(&View { eye, width: 200, height: 150 });
+    buffer.clear_depths(&View { eye, width: 200, height: 150 });
     buffer.draw(&scene, scene.live(), &Options::default());
     for half in [0.3, 1.0, 4.0] {
         for (x, y) in [(0.0, 0.0), (-3.0, 2.0), (5.0, -4.0), (7.0, 6.0)] {
@@ -327,9 +346,8 @@ fn a_structure_shows_if_one_region_says_so() {
             let machine =
                 Machine { processors: 2, renderers, overlap, farthest_first: false, ..Machine::default() };
             let params = Params { machine, leaf_primitives: 6, ..Params::default() };
-            let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet)
-                .expect("not cancelled");
-            let (mut memory, mut asked) = (Memory::default(), Recorder::new(usize::MAX));
+            let index = built::<Solid>(&scene, &params);
+            let (mut tried, mut asked) = (Tried::new(&index, &scene, &params), Recorder::new(usize::MAX));
             // First the row lies beyond the far plane, so that the wall is on the list alone.
             for far in [8.0, 100.0] {
                 let eye = Eye {
@@ -341,8 +359,7 @@ fn a_structure_shows_if_one_region_says_so() {
                     far,
                 };
                 let view = View { eye, width: 256, height: 128 };
-                let mut list = DrawList::default();
-                HierarchicalZ::cull(&index, &scene, &view, &params, &mut memory, &mut list, &mut asked);
+                let list = tried.cull(&view, &mut asked);
                 assert_eq!(
                     render(&scene, &view, &list.prims),
                     render(&scene, &view, scene.live()),
@@ -366,17 +383,11 @@ fn threads_leave_no_trace() {
     let scene = soup::<Solid>(&mut rng, 6000, |c| c);
     for form in [0, 1] {
         let params = Params { form, ..Params::default() };
-        let index = <HierarchicalZ as Method<Solid>>::build(&scene, &params, &crate::scene::Quiet)
-            .expect("not cancelled");
+        let index = built::<Solid>(&scene, &params);
         let views = crate::scene::random_views(&scene, 5, 4);
         let run = || {
-            let mut memory = Memory::default();
-            let frame = |view: &View<Solid>| {
-                let mut list = DrawList::default();
-                HierarchicalZ::cull(&index, &scene, view, &params, &mut memory, &mut list, &mut Unobserved);
-                list
-            };
-            views.iter().map(frame).collect::<Vec<_>>()
+            let mut tried = Tried::new(&index, &scene, &params);
+            views.iter().map(|view| tried.cull(view, &mut Unobserved)).collect::<Vec<_>>()
         };
         let alone = run();
         for threads in [2, 3] {

@@ -1,16 +1,15 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
-use super::Index;
 use super::joint::{Candidate, Members};
 use super::memory::Owner;
 use super::occluders::Occluders;
 use super::relation::{Classified, Decisive, Margin, Occlusion, Planes, Relation, Sight};
 use super::space::{Point, Shape, corner};
+use super::{Index, LargeOccluders};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, short};
-use crate::method::{Field, Note, Tallied, Tally, Value};
-use crate::scene::Scene;
+use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value};
 
 /// What the method records.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +29,7 @@ pub enum Evidence<S: Shape> {
 /// An occluder was picked, by its area-angle from the eye, from the list of the eye's leaf and direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Chosen {
-    occluder: u32,
+    pub occluder: u32,
     name: PrimId,
     rank: u32,
     area_angle: f32,
@@ -194,13 +193,6 @@ impl Joined {
     }
 }
 
-/// The method's private state at a step: what is active, and who culled what.
-#[derive(Clone, Debug, Default)]
-pub struct Seen {
-    active: Vec<u32>,
-    culled: Vec<(Owner, u32)>,
-}
-
 fn owner_name(owner: Owner) -> String {
     match owner {
         Owner::Node(n) => format!("node {n}"),
@@ -219,18 +211,6 @@ fn owner_subject(owner: Owner) -> Subject {
     match owner {
         Owner::Node(n) => Subject::Node(n),
         Owner::Object(o) => Subject::Object(o),
-    }
-}
-
-impl<S: Shape> Evidence<S> {
-    /// Changes the state that [`draw`] shows.
-    pub fn apply(&self, seen: &mut Seen) {
-        match self {
-            Self::Chosen(n) => seen.active.push(n.occluder),
-            Self::Related(n) if n.occlusion == Occlusion::Full => seen.culled.push((n.owner, n.occluder)),
-            Self::Joined(n) => seen.culled.extend(n.members().iter().map(|&o| (n.owner, o))),
-            _ => {}
-        }
     }
 }
 
@@ -264,7 +244,25 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
         }
     }
-    fn fields(&self) -> Vec<Field> {
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Chosen(n) => Subject::Prim(n.name),
+            Self::Tested(n) => n.subject(),
+            Self::Related(n) => owner_subject(n.owner),
+            Self::Joined(n) => owner_subject(n.owner),
+            Self::Facing(n) => n.subject(),
+        }
+    }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(),
+            Self::Facing(n) => n.claim(),
+            Self::Related(n) => (n.occlusion == Occlusion::Full).then_some(Claim::Hidden),
+            Self::Joined(_) => Some(Claim::Hidden),
+            Self::Chosen(_) => None,
+        }
+    }
+    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
             Self::Chosen(n) => vec![
@@ -313,7 +311,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Facing(n) => n.fields(),
         }
     }
-    fn sentence(&self, _: &Scene<S>) -> String {
+    fn sentence(&self, _: &Context<'_, S>) -> String {
         match self {
             Self::Chosen(n) => format!(
                 "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of \
@@ -342,14 +340,13 @@ impl<S: Shape> Note<S> for Evidence<S> {
 
 /// Draws the active occluders, and the evidence of a note.
 pub fn draw<S: Shape>(
-    seen: &Seen,
-    scene: &Scene<S>,
-    index: &Index<S>,
-    view: &View<S>,
+    active: &[u32],
+    frame: &Frame<'_, S, LargeOccluders>,
     note: Option<&Evidence<S>>,
     to: &mut Drawing<S::Vector>,
 ) {
-    for &id in &seen.active {
+    let Frame { index, scene, view, .. } = *frame;
+    for &id in active {
         outline(index, id, Layer::Evidence, Role::Occluder, to);
     }
     match note {

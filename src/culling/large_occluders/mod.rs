@@ -40,7 +40,10 @@ use crate::drawing::{Drawing, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Space, Vector, View};
 use crate::index::{Hierarchy, KdTree};
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
-use crate::method::{Card, CodeLine, DrawList, Event, Knob, Knobs, Method, Observer, Verdict, backface_knob};
+use crate::method::{
+    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, Verdict,
+    backface_knob,
+};
 use crate::scene::{Part, Progress, Scene};
 
 /// The method.
@@ -215,6 +218,9 @@ impl<S: Shape> Hierarchy<S> for Index<S> {
     fn prims(&self, node: NodeId) -> &[PrimId] {
         self.tree.prims_below(node)
     }
+    fn save(&self) -> Option<Vec<u8>> {
+        Some(self.saved.to_vec())
+    }
     fn bytes(&self) -> usize {
         Hierarchy::<S>::bytes(&self.tree)
             + self.occluders.bytes()
@@ -279,8 +285,8 @@ impl<S: Shape> Method<S> for LargeOccluders {
     type Params = Params;
     type Index = Index<S>;
     type Memory = Memory<S>;
+    type State = Active;
     type Note = Evidence<S>;
-    type Dense = explain::Seen;
     const CARD: Card = Card {
         key: "large-occluders",
         name: "Large occluders",
@@ -331,30 +337,22 @@ impl<S: Shape> Method<S> for LargeOccluders {
         knobs.switch(detail, &mut params.detail_objects);
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Index<S>> {
-        // Without saved bytes nothing can be wrong with them.
-        Index::build(scene, params, None, progress).unwrap_or_default()
-    }
-    fn save(index: &Index<S>) -> Option<Vec<u8>> {
-        Some(index.saved.to_vec())
-    }
-    fn restore(
+    fn build(
         scene: &Arc<Scene<S>>,
         params: &Params,
-        saved: &[u8],
+        saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Index<S>>, String> {
-        Index::build(scene, params, Some(saved), progress)
+        Index::build(scene, params, saved, progress)
     }
     fn cull<O: Observer<Evidence<S>>>(
-        index: &Index<S>,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
+        frame: &Frame<'_, S, Self>,
         memory: &mut Memory<S>,
-        out: &mut DrawList,
+        active: &mut Active,
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
+        let Frame { index, scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
         memory.begin(index.tree.nodes().len(), index.details.len(), index.occluders.len());
         let forward = S::widened(view.eye.forward());
@@ -364,6 +362,7 @@ impl<S: Shape> Method<S> for LargeOccluders {
             view,
             params,
             memory,
+            active,
             out,
             watch,
             frustum: view.frustum(),
@@ -373,25 +372,39 @@ impl<S: Shape> Method<S> for LargeOccluders {
             sets: Vec::new(),
             candidates: Vec::new(),
         };
+        walk.watch.stage("select");
         walk.select();
-        let active = 0..walk.sets.len();
-        walk.visible(NodeId(0), Frustum::<S::Vector>::ALL, active);
+        let set = 0..walk.sets.len();
+        walk.watch.stage("visit");
+        walk.visible(NodeId(0), Frustum::<S::Vector>::ALL, set);
     }
-    fn dense(_: &Scene<S>, _: &View<S>) -> explain::Seen {
-        explain::Seen::default()
+}
+
+/// The occluders that are active in a frame, in the order in which they were chosen.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Active(Vec<u32>);
+
+impl Active {
+    fn choose(&mut self, occluder: u32) {
+        self.0.push(occluder);
     }
-    fn apply(dense: &mut explain::Seen, _: &Scene<S>, note: &Evidence<S>) {
-        note.apply(dense);
+}
+
+impl<S: Shape> State<S, LargeOccluders> for Active {
+    const KEYFRAME_NOTES: usize = 64;
+    fn begin(&mut self, _: &Frame<'_, S, LargeOccluders>) {
+        self.0.clear();
     }
-    fn explain(
-        dense: &explain::Seen,
-        scene: &Scene<S>,
-        index: &Index<S>,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        explain::draw(dense, scene, index, view, note, to);
+    fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
+        if let Evidence::Chosen(n) = note {
+            self.choose(n.occluder);
+        }
+    }
+}
+
+impl<S: Shape> Shown<S> for LargeOccluders {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        explain::draw(&moment.state.0, &moment.frame, moment.note, to);
     }
 }
 
@@ -402,7 +415,8 @@ struct Walk<'a, S: Shape, O> {
     view: &'a View<S>,
     params: &'a Params,
     memory: &'a mut Memory<S>,
-    out: &'a mut DrawList,
+    active: &'a mut Active,
+    out: &'a mut DrawList<S>,
     watch: &'a mut O,
     frustum: Frustum<S::Vector>,
     eye: S::Point,
@@ -447,12 +461,12 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
                     !memory.active.contains(&id),
                 ))
             });
+            self.active.choose(id);
             if self.looks_at(id) {
                 self.sets.push(id);
             }
         }
-        self.memory.active.clear();
-        self.memory.active.extend(list.iter().map(|l| l.0));
+        self.memory.active.clone_from(&self.active.0);
     }
 
     /// Computes how the eye sees an occluder; whether it can hide anything.

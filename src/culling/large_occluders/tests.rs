@@ -385,7 +385,7 @@ fn a_saved_selection_is_the_one_that_was_made_and_fits_nothing_else() {
     let entry = Solid::method("large-occluders").expect("listed");
     let settings = |k: &str| Settings([("occluders".to_owned(), k.to_owned())].into());
     let mut made = run(&scene, &[("occluders", "16")]);
-    let saved = made.save().expect("there is something to save");
+    let saved = made.hierarchy().save().expect("there is something to save");
     let mut restored =
         entry.restore(&scene, &settings("16"), &saved, &Quiet).expect("it fits").expect("not cancelled");
     for view in &scene.paths()[0].views[..12] {

@@ -1,14 +1,14 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
-use std::collections::BTreeMap;
-
+use super::LayeredProjection;
+use super::front::Front;
 use super::index::{Index, cell_of, node_of};
-use crate::culling::depth::Answer;
+use crate::culling::depth::{Answer, Faces};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{CellId, Vector, View};
 use crate::index::tessellation::Cellular;
 use crate::method::evidence::{Facing, Tested, axes, integer, label, number, short};
-use crate::method::{Field, Note, Tallied, Tally, Value};
+use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -136,41 +136,6 @@ pub struct Ended {
     pub spent: bool,
 }
 
-/// The method's private state at a step: the front with the solidity of each cell, and what was projected
-/// last.
-#[derive(Clone, Debug, Default)]
-pub struct Seen {
-    front: BTreeMap<CellId, Queued>,
-    projected: Vec<CellId>,
-    turns: u32,
-}
-
-/// A cell in the front.
-#[derive(Clone, Copy, Debug)]
-pub struct Queued {
-    pub solidity: f32,
-    /// When it was put in.
-    turn: u32,
-    pub is_star_shaped: bool,
-}
-
-impl Seen {
-    fn put(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
-        self.turns += 1;
-        self.front.insert(cell, Queued { solidity, turn: self.turns, is_star_shaped });
-    }
-    /// The front in the order in which it is taken.
-    pub fn in_order(&self) -> Vec<(CellId, Queued)> {
-        let mut all: Vec<_> = self.front.iter().map(|(cell, queued)| (*cell, *queued)).collect();
-        all.sort_by(|(_, a), (_, b)| a.solidity.total_cmp(&b.solidity).then(a.turn.cmp(&b.turn)));
-        all
-    }
-    /// The cells that were projected, in order.
-    pub fn projected(&self) -> &[CellId] {
-        &self.projected
-    }
-}
-
 /// Projected cells that are numbered in a picture; the latest ones.
 const NUMBERED: usize = 64;
 /// The least distance of two labels, as a part of the scene's diagonal.
@@ -181,17 +146,14 @@ const NEXT_IN_SPACE: usize = 24;
 const LABELED: usize = 200;
 
 impl<S: Cellular> Evidence<S> {
-    /// Changes the private state.
-    pub fn apply(&self, seen: &mut Seen) {
+    /// Changes the front as the run did.
+    pub fn apply(&self, front: &mut Front) {
         match self {
-            Self::Seeded(n) => seen.put(n.cell, 0.0, true),
+            Self::Seeded(n) => front.put(n.cell, 0.0, true),
             Self::Transferred(n) if n.keeps => {}
-            Self::Transferred(n) => seen.put(n.b, n.solidity, n.star_shaped),
-            Self::Projected(n) => {
-                seen.front.remove(&n.cell);
-                seen.projected.push(n.cell);
-            }
-            Self::Asked(n) if n.answer.is_hidden => _ = seen.front.remove(&n.cell),
+            Self::Transferred(n) => front.put(n.b, n.solidity, n.star_shaped),
+            Self::Projected(n) => front.project(n.cell),
+            Self::Asked(n) if n.answer.is_hidden => front.leave_out(n.cell),
             _ => {}
         }
     }
@@ -235,7 +197,25 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Ended(_) => "TraversalEnded",
         }
     }
-    fn fields(&self) -> Vec<Field> {
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Seeded(n) => Subject::Node(node_of(n.cell)),
+            Self::Tested(n) => n.subject(),
+            Self::Facing(n) => n.subject(),
+            Self::Transferred(n) => Subject::Node(node_of(n.b)),
+            Self::Projected(n) => Subject::Node(node_of(n.cell)),
+            Self::Asked(n) => Subject::Node(node_of(n.cell)),
+            Self::Bounded(_) | Self::Ended(_) => Subject::None,
+        }
+    }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(),
+            Self::Facing(n) => n.claim(),
+            _ => None,
+        }
+    }
+    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
         let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
@@ -287,7 +267,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             }
         }
     }
-    fn sentence(&self, _: &Scene<S>) -> String {
+    fn sentence(&self, _: &Context<'_, S>) -> String {
         let prims = S::PRIM;
         match self {
             Self::Seeded(n) => seed_sentence(n),
@@ -397,17 +377,11 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
 
 /// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid
 /// first, as far as labels do not meet when the whole scene is shown.
-fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
+fn labels<S: Cellular>(front: &Front, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
     let apart = scene.bounds().diagonal() * LABELS_APART;
-    let projected = seen
-        .projected
-        .iter()
-        .enumerate()
-        .rev()
-        .take(NUMBERED)
-        .map(|(at, &cell)| (cell, format!("#{}", at + 1)));
-    let front =
-        seen.in_order().into_iter().take(LABELED).map(|(cell, queued)| (cell, short(queued.solidity)));
+    let numbered = front.projected().iter().enumerate().rev().take(NUMBERED);
+    let projected = numbered.map(|(at, &cell)| (cell, format!("#{}", at + 1)));
+    let front = front.in_order().into_iter().take(LABELED).map(|q| (q.cell, short(q.solidity)));
     let mut taken: Vec<S::Vector> = Vec::new();
     for (cell, text) in projected.chain(front) {
         let at = index.cells.any().center(cell);
@@ -419,22 +393,19 @@ fn labels<S: Cellular>(seen: &Seen, scene: &Scene<S>, index: &Index<S>, to: &mut
 }
 
 /// Draws the front, the latest projected cells, and the evidence of a note.
-pub fn draw<S: Cellular>(
-    seen: &Seen,
-    scene: &Scene<S>,
-    index: &Index<S>,
-    view: &View<S>,
+pub fn draw<S: Cellular + Faces>(
+    front: &Front,
+    frame: &Frame<'_, S, LayeredProjection>,
     note: Option<&Evidence<S>>,
     to: &mut Drawing<S::Vector>,
 ) {
+    let Frame { index, scene, view, .. } = *frame;
     // In space the edges of many cells hide each other and the scene: those that are next say more.
     let shown = if S::Vector::AXES == 2 { usize::MAX } else { NEXT_IN_SPACE };
-    seen.in_order()
-        .into_iter()
-        .take(shown)
-        .for_each(|(cell, _)| outline(index, cell, Layer::Nodes, Role::Undecided, to));
+    let next = front.in_order().into_iter().take(shown);
+    next.for_each(|queued| outline(index, queued.cell, Layer::Nodes, Role::Undecided, to));
     if S::Vector::AXES == 2 {
-        labels(seen, scene, index, to);
+        labels(front, scene, index, to);
     }
     match note {
         Some(Evidence::Tested(n)) => n.draw(view, to),

@@ -10,11 +10,12 @@ use std::collections::BinaryHeap;
 use crate::geometry::CellId;
 
 /// What is known of a cell in this frame.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct State {
     solidity: f32,
     /// When it was last put in, from 1; 0 if never, [`PROJECTED`] once it was taken out.
     turn: u32,
+    is_star_shaped: bool,
 }
 
 const PROJECTED: u32 = u32::MAX;
@@ -45,18 +46,39 @@ impl PartialEq for Entry {
 }
 impl Eq for Entry {}
 
-/// The queue of one frame.
-#[derive(Clone, Debug)]
+/// The queue of one frame, with what was taken from it.
+#[derive(Clone, Debug, Default)]
 pub struct Front {
     heap: BinaryHeap<Entry>,
     cells: Vec<State>,
     turns: u32,
+    projected: Vec<CellId>,
+}
+
+/// Fronts that will yield the same cells: entries of the heap that were replaced do not count.
+impl PartialEq for Front {
+    fn eq(&self, other: &Self) -> bool {
+        (self.turns, &self.cells, &self.projected) == (other.turns, &other.cells, &other.projected)
+    }
+}
+
+/// A cell in the front.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Queued {
+    pub cell: CellId,
+    pub solidity: f32,
+    /// Whether the Eye sees it through the face by which it was reached.
+    pub is_star_shaped: bool,
 }
 
 impl Front {
-    /// An empty one for so many cells.
-    pub fn new(cells: usize) -> Self {
-        Self { heap: BinaryHeap::new(), cells: vec![State::default(); cells], turns: 0 }
+    /// Empties it for so many cells.
+    pub fn clear(&mut self, cells: usize) {
+        self.heap.clear();
+        self.cells.clear();
+        self.cells.resize(cells, State::default());
+        self.projected.clear();
+        self.turns = 0;
     }
     /// Whether a cell was taken out.
     #[inline]
@@ -65,14 +87,16 @@ impl Front {
     }
     /// The solidity of a cell in the queue.
     pub fn solidity(&self, cell: CellId) -> Option<f32> {
-        let state = self.cells[cell.at()];
-        (state.turn != 0 && state.turn != PROJECTED).then_some(state.solidity)
+        self.is_queued(cell).then(|| self.cells[cell.at()].solidity)
+    }
+    fn is_queued(&self, cell: CellId) -> bool {
+        !matches!(self.cells[cell.at()].turn, 0 | PROJECTED)
     }
     /// Puts a cell in that was not taken out; replaces its earlier entry.
     #[inline]
-    pub fn put(&mut self, cell: CellId, solidity: f32) {
+    pub fn put(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
         self.turns += 1;
-        self.cells[cell.at()] = State { solidity, turn: self.turns };
+        self.cells[cell.at()] = State { solidity, turn: self.turns, is_star_shaped };
         self.heap.push(Entry { solidity, turn: self.turns, cell });
     }
     /// Takes out the cell of least solidity.
@@ -80,12 +104,37 @@ impl Front {
     pub fn take(&mut self) -> Option<(CellId, f32)> {
         loop {
             let entry = self.heap.pop()?;
-            let state = &mut self.cells[entry.cell.at()];
-            if state.turn == entry.turn {
-                state.turn = PROJECTED;
+            if self.cells[entry.cell.at()].turn == entry.turn {
+                self.leave_out(entry.cell);
                 return Some((entry.cell, entry.solidity));
             }
         }
+    }
+    /// A cell that was taken out was projected.
+    pub fn project(&mut self, cell: CellId) {
+        self.leave_out(cell);
+        self.projected.push(cell);
+    }
+    /// A cell is in the queue no longer.
+    #[inline]
+    pub fn leave_out(&mut self, cell: CellId) {
+        self.cells[cell.at()].turn = PROJECTED;
+    }
+    /// The cells in the order in which they will be taken if none is put in again. O(cells).
+    pub fn in_order(&self) -> Vec<Queued> {
+        let cells = (0..self.cells.len() as u32).map(CellId).filter(|&c| self.is_queued(c));
+        let mut all: Vec<(u32, Queued)> = cells
+            .map(|cell| {
+                let State { solidity, turn, is_star_shaped } = self.cells[cell.at()];
+                (turn, Queued { cell, solidity, is_star_shaped })
+            })
+            .collect();
+        all.sort_by(|(turn, a), (later, b)| a.solidity.total_cmp(&b.solidity).then(turn.cmp(later)));
+        all.into_iter().map(|(_, queued)| queued).collect()
+    }
+    /// The cells that were projected, in order.
+    pub fn projected(&self) -> &[CellId] {
+        &self.projected
     }
 }
 
@@ -97,9 +146,10 @@ mod tests {
 
     #[test]
     fn the_least_leaves_first_and_of_equal_ones_the_first() {
-        let mut front = Front::new(5);
+        let mut front = Front::default();
+        front.clear(5);
         for (cell, solidity) in [(0, 2.0), (1, 1.0), (2, 1.0), (3, 0.5), (3, 3.0), (1, 1.0)] {
-            front.put(CellId(cell), solidity);
+            front.put(CellId(cell), solidity, true);
         }
         assert_eq!((front.solidity(CellId(3)), front.solidity(CellId(4))), (Some(3.0), None));
         let order: Vec<_> = std::iter::from_fn(|| front.take()).map(|(c, s)| (c.0, s)).collect();
@@ -110,7 +160,8 @@ mod tests {
     #[test]
     fn it_does_what_a_list_does() {
         let mut rng = Pcg32::new(3, 3);
-        let mut front = Front::new(40);
+        let mut front = Front::default();
+        front.clear(40);
         let mut list: Vec<(CellId, f32)> = Vec::new();
         for _ in 0..4000 {
             let cell = CellId(rng.next_u32() % 40);
@@ -118,7 +169,7 @@ mod tests {
                 let solidity = (rng.next_u32() % 8) as f32;
                 list.retain(|(c, _)| *c != cell);
                 list.push((cell, solidity));
-                front.put(cell, solidity);
+                front.put(cell, solidity, true);
             } else if rng.next_u32().is_multiple_of(20) {
                 // The first of the least.
                 let want = (0..list.len())

@@ -73,10 +73,6 @@ impl<S: Cellular> Index<S> {
         let (cells, assignment) = saved::read(bytes, &Key::of(scene, params), scene)?;
         Ok(Self::of(scene, params, cells, assignment))
     }
-    /// It as bytes.
-    pub fn save(&self) -> Vec<u8> {
-        saved::write(&self.key, &self.cells, &self.assignment)
-    }
     fn of(scene: &Arc<Scene<S>>, params: &Params, cells: Cells<S>, assignment: Assignment) -> Self {
         let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
         let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
@@ -126,6 +122,9 @@ impl<S: Cellular> Hierarchy<S> for Index<S> {
             Cells::Simplices(cells) => cell_of(node).map(|cell| cells.edges(cell)),
             Cells::Boxes(_) => None,
         }
+    }
+    fn save(&self) -> Option<Vec<u8>> {
+        Some(saved::write(&self.key, &self.cells, &self.assignment))
     }
     fn bytes(&self) -> usize {
         self.cells.any().bytes() + self.assignment.bytes()

@@ -31,15 +31,16 @@ mod walk;
 
 use std::sync::Arc;
 
-use self::explain::{Evidence, Seen};
+use self::explain::Evidence;
+use self::front::Front;
 use self::index::Index;
 use self::walk::Walk;
 use crate::culling::depth::Faces;
 use crate::drawing::Drawing;
-use crate::geometry::View;
 use crate::index::tessellation::Cellular;
 use crate::method::{
-    Budget, Card, CodeLine, DrawList, Event, Knob, Knobs, Limit, Method, Observer, backface_knob,
+    Budget, Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
+    backface_knob,
 };
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
@@ -142,11 +143,9 @@ macro_rules! section {
 impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     type Params = Params;
     type Index = Index<S>;
-    /// What ends a frame from outside.
-    type Memory = Option<Limit>;
-    const REMEMBERS: bool = false;
+    type Memory = ();
+    type State = Front;
     type Note = Evidence<S>;
-    type Dense = Seen;
     const CARD: Card = Card {
         key: "layered-projection",
         name: "Prioritized-layered projection",
@@ -158,9 +157,6 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         conservative: false,
         code: CODE,
     };
-    // The front is copied for a keyframe: far longer than an entry of it takes to replay.
-    const KEYFRAME_NOTES: usize = 2048;
-
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         let cells = Knob::new("tessellation", "", "which cells space is divided into", section!("4.3"));
         knobs.choice(cells, Params::TESSELLATIONS, &mut params.tessellation);
@@ -171,7 +167,7 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
              a time such as 5ms",
             section!("3"),
         );
-        knobs.budget(budget, &mut params.budget);
+        knobs.budget(budget, true, &mut params.budget);
         let leaf = Knob::new(
             "leaf-size",
             "%",
@@ -217,54 +213,51 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
         backface_knob(knobs, &mut params.backface_culling);
     }
-    fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Index<S>> {
-        Index::build(scene, params, progress)
-    }
-    fn save(index: &Index<S>) -> Option<Vec<u8>> {
-        Some(index.save())
-    }
-    fn restore(
+    fn build(
         scene: &Arc<Scene<S>>,
         params: &Params,
-        saved: &[u8],
-        _: &dyn Progress,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
     ) -> Result<Option<Index<S>>, String> {
-        Index::restore(scene, params, saved).map(Some)
+        match saved {
+            Some(bytes) => Index::restore(scene, params, bytes).map(Some),
+            None => Ok(Index::build(scene, params, progress)),
+        }
     }
     fn cull<O: Observer<Evidence<S>>>(
-        index: &Index<S>,
-        scene: &Scene<S>,
-        view: &View<S>,
-        params: &Params,
-        limit: &mut Option<Limit>,
-        out: &mut DrawList,
+        frame: &Frame<'_, S, Self>,
+        (): &mut (),
+        front: &mut Front,
+        out: &mut DrawList<S>,
         watch: &mut O,
     ) {
         watch.event(Event::FrameBegan);
-        Walk::new(index, scene, view, params, limit.as_ref(), out, watch).run();
+        Walk::new(frame, front, out, watch).run();
     }
-    fn limit(memory: &mut Option<Limit>, limit: Option<Limit>) -> bool {
-        *memory = limit;
-        true
+    fn is_conservative(params: &Params) -> bool {
+        // Queries decide about all that the budget leaves; a budget of everything leaves nothing.
+        !matches!(params.budget, Budget::Milliseconds(_))
+            && (params.queries || params.budget == Budget::Percent(100.0))
     }
-    fn dense(_: &Scene<S>, _: &View<S>) -> Seen {
-        Seen::default()
+}
+
+impl<S: Cellular + Faces> State<S, LayeredProjection> for Front {
+    // A copy of the front takes far longer than replaying a change of it.
+    const KEYFRAME_NOTES: usize = 2048;
+    fn begin(&mut self, frame: &Frame<'_, S, LayeredProjection>) {
+        self.clear(frame.index.count());
     }
-    fn apply(seen: &mut Seen, _: &Scene<S>, note: &Evidence<S>) {
-        note.apply(seen);
+    fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
+        note.apply(self);
+    }
+}
+
+impl<S: Cellular + Faces> Shown<S> for LayeredProjection {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        explain::draw(moment.state, &moment.frame, moment.note, to);
     }
     const PICTURES: &'static [&'static str] = picture::PICTURES;
-    fn picture(seen: &Seen, _: &View<S>, notes: &[Evidence<S>], which: usize, _: DepthScale) -> Drawing {
-        picture::picture(seen, notes, which)
-    }
-    fn explain(
-        seen: &Seen,
-        scene: &Scene<S>,
-        index: &Index<S>,
-        view: &View<S>,
-        note: Option<&Evidence<S>>,
-        to: &mut Drawing<S::Vector>,
-    ) {
-        explain::draw(seen, scene, index, view, note, to);
+    fn picture(moment: &Moment<'_, S, Self>, which: usize, _: DepthScale) -> Drawing {
+        picture::picture(moment.state, moment.notes, which)
     }
 }

@@ -3,7 +3,8 @@
 
 use glam::vec2;
 
-use super::explain::{Evidence, Seen};
+use super::explain::Evidence;
+use super::front::Front;
 use super::index::node_of;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::index::tessellation::Cellular;
@@ -21,18 +22,18 @@ const TOP_PT: f32 = 24.0;
 const BARS: usize = 240;
 
 /// Draws picture `which`.
-pub fn picture<S: Cellular>(seen: &Seen, notes: &[Evidence<S>], which: usize) -> Drawing {
-    if which == 0 { list(seen, notes) } else { chart::<S>(notes) }
+pub fn picture<S: Cellular>(front: &Front, notes: &[Evidence<S>], which: usize) -> Drawing {
+    if which == 0 { list(front, notes) } else { chart::<S>(notes) }
 }
 
 /// The front in the order in which it will be taken if nothing is put in again, and what was taken last.
-fn list<S: Cellular>(seen: &Seen, notes: &[Evidence<S>]) -> Drawing {
+fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
     let mut to = Drawing::default();
-    let front = seen.in_order();
-    heading(&mut to, 0.0, format!("The front, least solid first: {} cells", front.len()));
-    heading(&mut to, 300.0, format!("Projected, the latest first: {}", seen.projected().len()));
-    let most = front.iter().take(ROWS).map(|(_, q)| q.solidity).fold(f32::MIN_POSITIVE, f32::max);
-    for (row, (cell, queued)) in front.iter().take(ROWS).enumerate() {
+    let queue = front.in_order();
+    heading(&mut to, 0.0, format!("The front, least solid first: {} cells", queue.len()));
+    heading(&mut to, 300.0, format!("Projected, the latest first: {}", front.projected().len()));
+    let most = queue.iter().take(ROWS).map(|q| q.solidity).fold(f32::MIN_POSITIVE, f32::max);
+    for (row, queued) in queue.iter().take(ROWS).enumerate() {
         let y = TOP_PT + ROW_PT * row as f32;
         let how = if queued.is_star_shaped { "" } else { ", penalized" };
         text(
@@ -40,13 +41,13 @@ fn list<S: Cellular>(seen: &Seen, notes: &[Evidence<S>]) -> Drawing {
             0.0,
             y,
             Role::Ink,
-            format!("{}. node {}: {}{how}", row + 1, node_of(*cell), short(queued.solidity)),
+            format!("{}. node {}: {}{how}", row + 1, node_of(queued.cell), short(queued.solidity)),
         );
         let width = 110.0 * queued.solidity / most;
         let role = if queued.is_star_shaped { Role::Undecided } else { Role::Hidden };
-        bar(&mut to, role, Subject::Node(node_of(*cell)), [150.0, y - 7.0, 150.0 + width.max(0.5), y]);
+        bar(&mut to, role, Subject::Node(node_of(queued.cell)), [150.0, y - 7.0, 150.0 + width.max(0.5), y]);
     }
-    let left_out = front.len().saturating_sub(ROWS);
+    let left_out = queue.len().saturating_sub(ROWS);
     if left_out > 0 {
         text(&mut to, 0.0, TOP_PT + ROW_PT * ROWS as f32, Role::Faint, format!("and {left_out} more"));
     }

@@ -21,7 +21,7 @@ pub struct Rest<S: Faces> {
 impl<S: Faces> Rest<S> {
     pub fn new(view: &View<S>) -> Self {
         let mut buffer = Buffer::default();
-        buffer.begin(view);
+        buffer.clear(view);
         Self { buffer, drawn: 0 }
     }
     /// Draws what was added to the frame's primitives.

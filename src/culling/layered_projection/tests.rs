@@ -3,13 +3,16 @@
 use std::sync::Arc;
 
 use super::explain::Evidence;
+use super::front::Front;
 use super::index::node_of;
 use super::{LayeredProjection, Params};
 use crate::culling::Methods;
 use crate::geometry::{CellId, Flat, PrimId, Solid, View};
 use crate::index::tessellation::Cellular;
 use crate::method::evidence::prim_faces_away;
-use crate::method::{Budget, DrawList, Event, Field, Method, Recorder, Run, Settings, Value, Verdict};
+use crate::method::{
+    Budget, DrawList, Event, Field, Frame, Method, Recorder, Run, Settings, State, Value, Verdict,
+};
 use crate::raster::{Drawable, render};
 use crate::scene::{Quiet, Scene, framing_view, random_views, samples};
 
@@ -216,14 +219,19 @@ fn figure_6_written_out() {
     }
     let scene = samples::soup::<Flat>(1, 300);
     let params = Params { tessellation: 0, leaf_size: 30, ..Params::default() };
-    let built = LayeredProjection::build(&scene, &params, &Quiet).expect("not cancelled");
+    let built = LayeredProjection::build(&scene, &params, None, &Quiet);
+    let built = built.expect("nothing saved").expect("not cancelled");
     let cells = built.cells.any();
     let mut view = framing_view::<Flat>(&scene.bounds(), 64, 1);
     view.eye.position = cells.center(index(0));
     view.eye.target = view.eye.position + glam::Vec2::X;
     (view.eye.near, view.eye.fov) = (0.01, 3.0);
-    let (mut list, mut recorder) = (DrawList::default(), Recorder::new(usize::MAX));
-    LayeredProjection::cull(&built, &scene, &view, &params, &mut None, &mut list, &mut recorder);
+    let (mut list, mut recorder, mut front) =
+        (DrawList::default(), Recorder::new(usize::MAX), Front::default());
+    let frame =
+        Frame { index: &built, scene: &scene, view: &view, params: &params, limit: None, depths_only: false };
+    front.begin(&frame);
+    LayeredProjection::cull(&frame, &mut (), &mut front, &mut list, &mut recorder);
     let handed =
         recorder.notes.iter().filter_map(|n| if let Evidence::Transferred(t) = n { Some(t) } else { None });
     let first: Vec<_> = handed.take_while(|t| t.a == index(0)).collect();
@@ -278,7 +286,7 @@ fn what_the_budget_leaves_out_is_told() {
 fn is_saved<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let pairs = [("tessellation", kind), ("leaf-size", "10")];
     let mut made = run(scene, &pairs);
-    let saved = made.save().expect("there is something to save");
+    let saved = made.hierarchy().save().expect("there is something to save");
     let entry = S::method("layered-projection").expect("listed");
     let restore = |pairs: &[(&str, &str)], bytes: &[u8]| {
         entry.restore(scene, &settings(pairs), bytes, &Quiet).map_err(|e| e.to_string())
@@ -287,7 +295,7 @@ fn is_saved<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     for view in views(scene) {
         assert_eq!(made.cull(&view), again.cull(&view), "{kind}");
     }
-    assert_eq!(again.save(), Some(saved.clone()));
+    assert_eq!(again.hierarchy().save(), Some(saved.clone()));
     let refused = |pairs: &[(&str, &str)], bytes: &[u8]| restore(pairs, bytes).err().expect("refused");
     assert!(refused(&[("tessellation", kind)], &saved).contains("leaf-size=10"));
     for at in (0..saved.len()).step_by(saved.len() / 40) {
@@ -324,23 +332,15 @@ fn is_ended_from_outside<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     for view in views(scene) {
         let all = run.cull(&view).prims;
         for most in [1, all.len() / 2, all.len() + 1] {
-            let told = Arc::new(std::sync::Mutex::new(Vec::new()));
-            let listener = told.clone();
-            let limit = move |prims: &[PrimId]| {
-                let mut told = listener.lock().expect("nobody panics");
-                told.extend_from_slice(prims);
-                told.len() >= most
+            let told = std::cell::RefCell::new(Vec::new());
+            let limit = |prims: &[PrimId]| {
+                told.borrow_mut().extend_from_slice(prims);
+                told.borrow().len() >= most
             };
-            assert!(run.limit(Some(Arc::new(limit))));
-            let part = run.cull(&view).prims;
-            assert!(run.limit(None));
+            let part = run.cull_until(&view, Some(&limit)).prims;
             assert_eq!(part, all[..part.len()], "{kind}");
             assert!(part.len() >= most.min(all.len()), "{kind}: {} of {most}", part.len());
-            assert_eq!(
-                *told.lock().expect("nobody panics"),
-                part,
-                "{kind}: all that was drawn was told, once"
-            );
+            assert_eq!(told.into_inner(), part, "{kind}: all that was drawn was told, once");
         }
     }
     assert!(!run.remembers());

@@ -4,20 +4,20 @@ use super::explain::{Asked, Bounded, Ended, Evidence, Origin, Projected, Seeded,
 use super::front::Front;
 use super::index::{Index, node_of};
 use super::rest::Rest;
-use super::{Params, line};
+use super::{LayeredProjection, Params, line};
 use crate::culling::depth::Faces;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
 use crate::index::Hierarchy;
 use crate::index::tessellation::{Cellular, Exit, Neighbor, Tessellation};
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
-use crate::method::{DrawList, Event, Limit, Observer, Verdict};
+use crate::method::{DrawList, Event, Frame, Limit, Observer, Verdict};
 use crate::scene::Scene;
 
 /// Primitives that are drawn between two questions whether it is enough.
 const CHUNK: usize = 256;
 
-/// A budget that grows grows by half, and by so many primitives at least.
+/// A growing budget grows by half, at least by this many primitives.
 const LEAST_GROWTH: usize = 16;
 
 /// Where a cell lies in regard to the view volume.
@@ -57,12 +57,12 @@ pub struct Walk<'a, S: Cellular + Faces, O> {
     view: &'a View<S>,
     frustum: Frustum<S::Vector>,
     params: &'a Params,
-    front: Front,
+    front: &'a mut Front,
     aspects: Vec<Aspect<S::Vector>>,
     /// Which shared primitives are decided.
     marks: Vec<bool>,
     left: usize,
-    limit: Option<&'a Limit>,
+    limit: Option<&'a Limit<'a>>,
     /// Primitives that `limit` knows of, and whether it ended the frame.
     told: usize,
     ended: bool,
@@ -72,20 +72,18 @@ pub struct Walk<'a, S: Cellular + Faces, O> {
     rest: Option<Rest<S>>,
     /// Whether the budget is spent and the rest is asked for.
     asks: bool,
-    out: &'a mut DrawList,
+    out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
 
 impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     pub fn new(
-        index: &'a Index<S>,
-        scene: &'a Scene<S>,
-        view: &'a View<S>,
-        params: &'a Params,
-        limit: Option<&'a Limit>,
-        out: &'a mut DrawList,
+        frame: &Frame<'a, S, LayeredProjection>,
+        front: &'a mut Front,
+        out: &'a mut DrawList<S>,
         watch: &'a mut O,
     ) -> Self {
+        let Frame { index, scene, view, params, limit, .. } = *frame;
         let unseen = Aspect {
             sight: Sight::Unknown,
             exit: Exit::Out,
@@ -99,7 +97,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             view,
             frustum: view.frustum(),
             params,
-            front: Front::new(index.count()),
+            front,
             aspects: vec![unseen; index.count()],
             marks: vec![false; index.assignment.all_shared().len()],
             left: params.budget.of(scene.live().len()),
@@ -119,8 +117,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Entered(NodeId(0)));
         let mut seed = self.seed();
         self.seeds_ahead();
-        while let Some(cell) = seed {
-            self.enqueue(cell, 0.0);
+        while let Some(seeded) = seed {
+            self.grow_from(seeded);
             if self.spread() {
                 break;
             }
@@ -151,8 +149,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             for there in cells.neighbors(cell) {
                 if self.front.is_projected(there.cell) || self.look(there.cell).sight == Sight::Outside {
                     self.watch.event(Event::Line(line::SKIP));
-                } else if let Some(updated) = self.update_solidity(there, &source) {
-                    self.enqueue(there.cell, updated);
+                } else if let Some((solidity, is_star_shaped)) = self.update_solidity(there, &source) {
+                    self.enqueue(there.cell, solidity, is_star_shaped);
                 }
             }
         }
@@ -211,6 +209,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Entered(node));
         self.watch.note(|| Evidence::Asked(Asked { cell, solidity, answer }));
         if answer.is_hidden {
+            self.front.leave_out(cell);
             self.rank += 1;
             self.watch.event(Event::DecidedNode(node, Verdict::Hidden));
         }
@@ -243,16 +242,15 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 
     /// Section 4.2: the cell that holds the Eye, or else the nearest one that is in view.
-    fn seed(&mut self) -> Option<CellId> {
+    fn seed(&mut self) -> Option<Seeded> {
         let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else {
             return self.nearest_unreached();
         };
-        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: 0.0, origin: Origin::Eye }));
-        Some(cell)
+        Some(Seeded { cell, distance: 0.0, origin: Origin::Eye })
     }
     /// The nearest cell in view that holds something and was not projected. Where the front grows over faces
     /// and no number is rounded, there is one at the beginning only.
-    fn nearest_unreached(&mut self) -> Option<CellId> {
+    fn nearest_unreached(&mut self) -> Option<Seeded> {
         let eye = self.view.eye.position;
         let mut best: Option<(f32, CellId)> = None;
         for cell in (0..self.index.count() as u32).map(CellId) {
@@ -268,8 +266,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         let (squared, cell) = best?;
         let origin = if self.rank > 0 { Origin::Again } else { Origin::Nearest };
-        self.watch.note(|| Evidence::Seeded(Seeded { cell, distance: squared.sqrt(), origin }));
-        Some(cell)
+        Some(Seeded { cell, distance: squared.sqrt(), origin })
+    }
+    /// Puts a cell into the front for it to begin at.
+    fn grow_from(&mut self, seeded: Seeded) {
+        self.watch.note(move || Evidence::Seeded(seeded));
+        self.enqueue(seeded.cell, 0.0, true);
     }
     /// Section 6, several seeds: on rays through points spread over the image, the first cells that hold
     /// something.
@@ -282,8 +284,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 ray + row * ((2.0 * spread_out(number, axis) - 1.0) / row.dot(row))
             });
             if let Some((cell, distance)) = self.first_along(ray) {
-                self.watch.note(|| Evidence::Seeded(Seeded { cell, distance, origin: Origin::Ray }));
-                self.enqueue(cell, 0.0);
+                self.grow_from(Seeded { cell, distance, origin: Origin::Ray });
             }
         }
     }
@@ -302,9 +303,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         None
     }
 
-    fn enqueue(&mut self, cell: CellId, solidity: f32) {
+    fn enqueue(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
         self.watch.event(Event::Line(line::ENQUEUE));
-        self.front.put(cell, solidity);
+        self.front.put(cell, solidity, is_star_shaped);
         self.watch.event(Event::Queued(node_of(cell), solidity));
     }
 
@@ -359,7 +360,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 
     /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
-    fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<f32> {
+    fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<(f32, bool)> {
         let seen = self.aspects[b.cell.at()];
         let along =
             if self.params.transfer == Params::WHOLE { 1.0 } else { seen.toward.dot(b.normal).max(0.0) };
@@ -394,7 +395,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if !star_shaped {
             self.watch.event(Event::Line(line::PENALTY));
         }
-        (!keeps).then_some(solidity)
+        (!keeps).then_some((solidity, star_shaped))
     }
 
     /// What is left of the budget, for people: no more than there is.
@@ -428,6 +429,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.rank += 1;
         let (drawn, held, left) =
             ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
+        self.front.project(cell);
         self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left }));
         if sight != Sight::Outside {
             self.watch.event(Event::DecidedNode(node, Verdict::Visible));
@@ -435,7 +437,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Left(node));
     }
 
-    /// Tells whoever limits the frame from outside what was drawn since he was told last; he may end it.
+    /// Reports newly drawn primitives to the limit, which may end the frame.
     fn ask(&mut self) {
         let Some(limit) = self.limit else { return };
         if self.told < self.out.prims.len() && limit(&self.out.prims[self.told..]) {

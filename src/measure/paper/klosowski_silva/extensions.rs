@@ -57,8 +57,9 @@ fn rows<S: World>(
 ) -> Result<(Vec<Vec<Cell>>, Measured), PaperError> {
     let path = path(scene, setup);
     let mut runs = Vec::new();
-    let saved =
-        around(scene, METHOD, &settings::<S>(METHOD, setup, &[])?, None, &part(progress, 0.0, 0.2))?.save();
+    let saved = around(scene, METHOD, &settings::<S>(METHOD, setup, &[])?, None, &part(progress, 0.0, 0.2))?
+        .hierarchy()
+        .save();
     let quick = part(progress, 0.2, 0.3);
     for (budget, (_, form)) in STARTS.iter().flat_map(|b| FORMS.iter().map(move |f| (b, f))) {
         let mut on_top: Vec<(&str, String)> = form.iter().map(|(k, v)| (*k, (*v).to_owned())).collect();

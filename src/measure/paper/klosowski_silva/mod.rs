@@ -106,7 +106,7 @@ fn ready<S: World>(
         }
         let settings = settings::<S>(key, setup, &on_top)?;
         let run = around(scene, key, &settings, saved.as_deref(), &rest)?;
-        saved = saved.or_else(|| run.save());
+        saved = saved.or_else(|| run.hierarchy().save());
         runs.push(run);
     }
     Ok(runs)

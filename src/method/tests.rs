@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use super::entry::Of;
 use super::*;
 use crate::drawing::{Drawing, Layer, Role, Subject};
-use crate::geometry::{Flat, PrimId, View};
+use crate::geometry::{Flat, PrimId};
 use crate::index::Whole;
 use crate::scene::{Progress, Quiet, Scene, framing_view, samples};
 
@@ -25,10 +24,13 @@ impl Note<Flat> for Came {
     fn kind(&self) -> &'static str {
         "Came"
     }
-    fn fields(&self) -> Vec<Field> {
+    fn subject(&self) -> Subject {
+        Subject::Prim(self.0)
+    }
+    fn fields(&self, _: &Context<'_, Flat>) -> Vec<Field> {
         vec![Field { name: "prim", value: Value::Integer(self.0.0.into()) }]
     }
-    fn sentence(&self, _: &Scene<Flat>) -> String {
+    fn sentence(&self, _: &Context<'_, Flat>) -> String {
         format!("{} came.", self.0)
     }
 }
@@ -37,8 +39,8 @@ impl Method<Flat> for Remember {
     type Params = ();
     type Index = Whole<Flat>;
     type Memory = ();
+    type State = Vec<u32>;
     type Note = Came;
-    type Dense = Vec<u32>;
     const CARD: Card = Card {
         key: "remember",
         name: "Remember",
@@ -50,49 +52,48 @@ impl Method<Flat> for Remember {
     };
 
     fn knobs((): &mut (), _: &mut dyn Knobs) {}
-    fn build(scene: &Arc<Scene<Flat>>, (): &(), _: &dyn Progress) -> Option<Whole<Flat>> {
-        Some(Whole::new(scene.clone()))
+    fn build(
+        scene: &Arc<Scene<Flat>>,
+        (): &(),
+        saved: Option<&[u8]>,
+        _: &dyn Progress,
+    ) -> Result<Option<Whole<Flat>>, String> {
+        keeps_nothing(saved)?;
+        Ok(Some(Whole::new(scene.clone())))
     }
     fn cull<O: Observer<Came>>(
-        _: &Whole<Flat>,
-        scene: &Scene<Flat>,
-        view: &View<Flat>,
-        (): &(),
+        frame: &Frame<'_, Flat, Self>,
         (): &mut (),
-        out: &mut DrawList,
+        list: &mut Vec<u32>,
+        out: &mut DrawList<Flat>,
         watch: &mut O,
     ) {
-        let mut dense = Self::dense(scene, view);
-        for &prim in scene.live() {
-            Self::apply(&mut dense, scene, &Came(prim));
+        for &prim in frame.scene.live() {
+            State::<Flat, Self>::apply(list, frame.scene, &Came(prim));
             watch.note(|| Came(prim));
-            out.prims.push(PrimId(dense[dense.len() - 1]));
+            out.prims.push(PrimId(list[list.len() - 1]));
             watch.event(Event::DecidedPrim(prim, Verdict::Visible));
         }
     }
-    fn dense(_: &Scene<Flat>, _: &View<Flat>) -> Vec<u32> {
-        Vec::new()
+}
+
+impl State<Flat, Remember> for Vec<u32> {
+    const KEYFRAME_NOTES: usize = 64;
+    fn begin(&mut self, _: &Frame<'_, Flat, Remember>) {
+        self.clear();
     }
-    fn apply(dense: &mut Vec<u32>, _: &Scene<Flat>, Came(prim): &Came) {
-        dense.push(prim.0);
+    fn apply(&mut self, _: &Scene<Flat>, Came(prim): &Came) {
+        self.push(prim.0);
     }
-    fn explain(
-        dense: &Vec<u32>,
-        scene: &Scene<Flat>,
-        _: &Whole<Flat>,
-        _: &View<Flat>,
-        note: Option<&Came>,
-        to: &mut Drawing<glam::Vec2>,
-    ) {
-        for &p in dense {
-            to.line(
-                Layer::Evidence,
-                Role::Evidence,
-                Subject::Prim(PrimId(p)),
-                scene.prim_points(PrimId(p)).collect::<Vec<_>>(),
-            );
+}
+
+impl Shown<Flat> for Remember {
+    fn explain(moment: &Moment<'_, Flat, Self>, to: &mut Drawing<glam::Vec2>) {
+        for &p in moment.state {
+            let points = moment.frame.scene.prim_points(PrimId(p)).collect::<Vec<_>>();
+            to.line(Layer::Evidence, Role::Evidence, Subject::Prim(PrimId(p)), points);
         }
-        to.title = format!("{:?}", note.map(|n| n.0));
+        to.title = format!("{:?}", moment.note.map(|n| n.0));
     }
 }
 
