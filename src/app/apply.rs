@@ -10,6 +10,7 @@ use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
 use crate::drawing::Subject;
+use crate::render::Format;
 use crate::scene::{AnyPath, AnyScene};
 
 /// Selections that are remembered.
@@ -147,9 +148,9 @@ impl State {
                 None => self.dialog = Dialog::SaveAs,
             },
             Action::SaveAs => self.dialog = Dialog::SaveAs,
-            Action::ExportSvg => self.effects.push(Effect::Export("svg")),
-            Action::ExportPdf => self.effects.push(Effect::Export("pdf")),
-            Action::ExportPng => self.effects.push(Effect::Export("png")),
+            Action::ExportSvg => self.effects.push(Effect::Export(Format::Svg)),
+            Action::ExportPdf => self.effects.push(Effect::Export(Format::Pdf)),
+            Action::ExportPng => self.effects.push(Effect::Export(Format::Png)),
             Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
             Action::Cancel if self.busy().is_some() => {
                 self.worker.cancel();

@@ -12,7 +12,7 @@ use super::worker::{Busy, Worker};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
 use crate::method::{Settings, Verdict};
-use crate::render::theme;
+use crate::render::{Format, theme};
 
 pub use crate::trace::Detail;
 pub use theme::Theme;
@@ -160,7 +160,7 @@ pub enum Effect {
     /// Show the system's dialog to choose a name for the session.
     AskSave,
     /// Write the picture on screen as `svg`, `pdf` or `png`.
-    Export(&'static str),
+    Export(Format),
     /// Put text on the clipboard.
     Copy(String),
     /// Fill the screen, or not.

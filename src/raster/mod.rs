@@ -19,6 +19,7 @@ pub mod reference;
 mod setup;
 mod shade;
 mod simd;
+mod srgb;
 #[cfg(test)]
 mod tests;
 mod vertex;
@@ -26,6 +27,7 @@ mod vertex;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use shade::{DepthScale, shade, shade_depth, shade_with};
 pub use simd::Isa;
+pub use srgb::{srgb, srgb_bytes};
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::Scene;

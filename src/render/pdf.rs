@@ -58,16 +58,7 @@ fn paint_page(surface: Surface, fonts: Vec<PdfFont>, drawing: &Drawing, look: Lo
     let mut canvas = Canvas { surface, fonts, size, look };
     canvas.fill(look.paper(), 1.0);
     canvas.path(&[Vec2::ZERO, Vec2::new(size.x, 0.0), size, Vec2::new(0.0, size.y)], true);
-    let styles = look.styles();
-    let mut pieces = Vec::new();
-    for item in drawing.painted() {
-        let style = &styles[item.role as usize];
-        pieces.clear();
-        piece::pieces(item, style, &mut pieces);
-        for piece in &pieces {
-            canvas.piece(piece, &piece::paint(piece.part, style));
-        }
-    }
+    piece::each_piece(drawing, look, |_, piece, paint| canvas.piece(piece, paint));
     canvas.surface.finish();
 }
 
