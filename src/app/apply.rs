@@ -9,6 +9,7 @@ use super::stage::Stage;
 use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
+use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
 use crate::render::Format;
 use crate::scene::{AnyPath, AnyScene};
@@ -451,7 +452,7 @@ impl State {
         let name = stage.get().scene_name().to_owned();
         let dropped = stage.get().report().dropped_total();
         if !stage.get().methods().iter().any(|m| m.key == self.method) {
-            self.method = "frustum".into();
+            self.method = DEFAULT_METHOD.into();
             self.settings.0.clear();
         }
         // Framed for a window of common shape; the window itself does it again for its own.

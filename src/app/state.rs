@@ -9,6 +9,7 @@ use super::session::{Bookmark, Session};
 use super::stage::Staged;
 use super::undo::History;
 use super::worker::{Busy, Worker};
+use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
 use crate::method::{Settings, Verdict};
@@ -239,11 +240,11 @@ impl Default for State {
 }
 
 impl State {
-    /// Nothing open; the method is the first one that does something.
+    /// Nothing open, and the default method.
     pub fn new() -> Self {
         Self {
             stage: None,
-            method: "frustum".into(),
+            method: DEFAULT_METHOD.into(),
             settings: Settings::default(),
             step: 0,
             detail: Detail::Full,
