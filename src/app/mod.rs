@@ -27,7 +27,7 @@ mod undo;
 mod why;
 mod worker;
 
-#[allow(unused_imports)]
+#[cfg(feature = "gui")]
 pub(crate) use any::each;
 pub use any::{Any, AnyStage, AnyView};
 pub use camera::ObserverCamera;

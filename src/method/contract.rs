@@ -128,7 +128,6 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
         Err("this method keeps no preprocess".into())
     }
     /// The method. There is no second copy of this function.
-    #[allow(clippy::too_many_arguments)]
     fn cull<O: Observer<Self::Note>>(
         index: &Self::Index,
         scene: &Scene<S>,

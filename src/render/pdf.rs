@@ -29,6 +29,9 @@ const RECIPE_FILE: &str = "cullscope-recipe.json";
 const LONGEST_PT: f32 = 14_400.0;
 
 /// A drawing as a PDF file.
+///
+/// # Errors
+/// If PDF allows no page of its size, or the writer refuses it.
 pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> Result<Vec<u8>, RenderError> {
     let look = look.into();
     let size = drawing.size_pt;

@@ -25,6 +25,9 @@ pub enum PngSize {
 }
 
 /// A drawing as a PNG file.
+///
+/// # Errors
+/// If the picture would be empty or too large, or the rasterizer refuses the drawing.
 pub fn png(
     drawing: &Drawing,
     look: impl Into<Look>,
@@ -44,6 +47,9 @@ pub fn png(
 }
 
 /// A drawing as pixels.
+///
+/// # Errors
+/// If the picture would be empty or too large, or the rasterizer refuses the drawing.
 pub fn pixels(drawing: &Drawing, look: impl Into<Look>, size: PngSize) -> Result<Pixels, RenderError> {
     Ok(pixels_of(drawing, look.into(), size)?.0)
 }
