@@ -384,6 +384,9 @@ impl<'a, S: Drawable> Checker<'a, S> {
             return Err("the box has another number of axes than the space".into());
         }
         let [low, high] = bounds.map(|b| DVec3::new(b[0], b[1], b.get(2).copied().unwrap_or(0.0)));
+        if !low.cmple(high).all() {
+            return Err("the box ends before it begins".into());
+        }
         if points.iter().any(|p| p.cmplt(low).any() || p.cmpgt(high).any()) {
             return Err("the box does not hold everything that it stands for".into());
         }
