@@ -173,7 +173,8 @@ fn comments_and_strings_are_told_apart() {
 fn every_form_of_function_is_found() {
     let text = concat!(
         "pub(in crate::a) async fn one<const N: usize>(x: [u8; 4]) -> [u8; N]\nwhere\n    u8: Copy,\n{\n",
-        "    fn two() {}\n}\nconst unsafe fn three() { { } }\ntrait T { fn none(&self); }\nlet f: fn (u32) = g;"
+        "    fn two() {}\n}\nconst unsafe fn three() { { } }\n",
+        "trait T { fn none(&self); }\nlet f: fn (u32) = g;"
     );
     let found: Vec<_> =
         functions(&bare(text)).iter().map(|f| format!("{} {}-{}", f.name, f.from, f.to)).collect();
