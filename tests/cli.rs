@@ -4,6 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use cullscope::culling::Methods;
+use cullscope::geometry::{Flat, Solid};
 use serde_json::Value as Json;
 
 /// A fresh folder of this test's own with a scene of each space in it.
@@ -123,19 +125,34 @@ fn methods_are_listed_with_their_parameters() {
     let listed = json(&done(&here, &["methods", "--json"]));
     let methods = listed["methods"].as_array().expect("a list");
     let names: Vec<_> = methods.iter().map(|m| m["key"].as_str().expect("a key")).collect();
-    assert_eq!(
-        names,
-        ["z-buffer", "frustum", "centroid", "large-occluders", "hierarchical-z", "layered-projection"]
-    );
+    let flat = Flat::methods().iter().map(|m| m.card());
+    let solid = Solid::methods().iter().map(|m| m.card()).filter(|c| Flat::method(c.key).is_none());
+    let cards: Vec<_> = flat.chain(solid).collect();
+    assert_eq!(names, cards.iter().map(|c| c.key).collect::<Vec<_>>());
     for method in methods {
         for param in method["params"].as_array().expect("a list") {
             assert_eq!(keys(param), ["default", "meaning", "name", "range", "source", "type", "unit"]);
         }
     }
-    let frustum = &methods[1]["params"];
+    let frustum = &methods[names.iter().position(|n| *n == "frustum").expect("a method")]["params"];
     assert_eq!((&frustum[0]["name"], &frustum[0]["default"]), (&Json::from("tree-height"), &Json::from(8)));
     assert_eq!(frustum[1]["name"], "backface-culling");
     assert!(done(&here, &["methods"]).contains("--set tree-height=8"));
+}
+
+/// The table of methods in README.md is made from their cards.
+#[test]
+fn the_readme_lists_the_methods() {
+    let mut table = String::from("| method | what it does | source |\n|---|---|---|\n");
+    let listed = json(&done(&folder("readme"), &["methods", "--json"]));
+    for m in listed["methods"].as_array().expect("a list") {
+        let [key, summary, paper] = ["key", "summary", "paper"].map(|k| m[k].as_str().expect("text"));
+        let kind = if m["conservative"] == true { "" } else { " Not conservative." };
+        table += &format!("| `{key}` | {summary}{kind} | {paper} |\n");
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("README.md");
+    let readme = fs::read_to_string(path).expect("README.md");
+    assert!(readme.contains(&table), "README.md needs this table of methods:\n\n{table}");
 }
 
 #[test]

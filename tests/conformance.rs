@@ -269,8 +269,9 @@ fn any_way_leads_to_the_same_step<S: Space>(film: &dyn Film<S>, fresh: &dyn Film
         assert_eq!(draw(film, step), forward[step], "{} at step {step}, backwards", film.card().key);
     }
     for at in 0..last {
-        assert_eq!(film.fields(at), fresh.fields(at));
-        assert!(!film.sentence(at).is_empty() && film.sentence(at) == fresh.sentence(at));
+        let what = format!("{} at event {at}", film.card().key);
+        assert_eq!(film.fields(at), fresh.fields(at), "{what}");
+        assert!(!film.sentence(at).is_empty() && film.sentence(at) == fresh.sentence(at), "{what}");
     }
 }
 
@@ -283,26 +284,36 @@ fn films_replay_in_space() {
     films_replay(&solid_scenes());
 }
 
-/// What a method culls of what cannot be seen, over all scenes of a space: these numbers only rise while the
+/// What a method culls of what cannot be seen, over all scenes of a space: these shares only rise while the
 /// scenes stay the same. (Before `box_and_objects` and `thin_slabs` came in `frustum` in flatland had 0.648
 /// and `large-occluders` 0.81.)
-const FLOORS: [(&str, &str, f64); 12] = [
-    ("hierarchical-z", "flatland", 0.35),
-    ("hierarchical-z", "space", 0.5),
-    ("large-occluders", "flatland", 0.756),
-    ("large-occluders", "space", 0.68),
-    ("layered-projection", "flatland", 0.95),
-    ("layered-projection", "space", 0.95),
-    ("z-buffer", "flatland", 0.0),
-    ("z-buffer", "space", 0.0),
-    ("frustum", "flatland", 0.623),
-    ("frustum", "space", 0.63),
-    ("centroid", "flatland", 0.95),
-    ("centroid", "space", 0.95),
-];
+#[derive(serde::Deserialize)]
+struct Floor {
+    method: String,
+    space: String,
+    share: f64,
+}
+
+/// The rows of a space.
+fn floors<S: World>() -> Vec<Floor> {
+    let all: Vec<Floor> = serde_json::from_str(include_str!("floors.json")).expect("floors.json is a list");
+    for row in &all {
+        assert!([Flat::NAME, Solid::NAME].contains(&&*row.space), "floors.json: no space {}", row.space);
+    }
+    let rows: Vec<Floor> = all.into_iter().filter(|row| row.space == S::NAME).collect();
+    for (i, row) in rows.iter().enumerate() {
+        assert!(S::method(&row.method).is_some(), "floors.json: no method {} in {}", row.method, S::NAME);
+        assert!(
+            rows[..i].iter().all(|other| other.method != row.method),
+            "floors.json: {} twice",
+            row.method
+        );
+    }
+    rows
+}
 
 fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
-    let mut fallen = Vec::new();
+    let (floors, mut fallen) = (floors::<S>(), Vec::new());
     for entry in S::methods() {
         let key = entry.card().key;
         let (mut unseen, mut culled) = (0, 0);
@@ -320,7 +331,7 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                     let judged = truth.judge(scene, &view, &list.prims, &target);
                     if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());
-                        assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0));
+                        assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0), "{key}");
                     }
                     if !one_sided {
                         let seen_and_drawn = judged.visible.len() - judged.missed.len();
@@ -331,9 +342,10 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
             }
         }
         let share = culled as f64 / unseen as f64;
-        let floor = FLOORS.iter().find(|(method, space, _)| *method == key && *space == S::NAME);
-        let (.., floor) = *floor
-            .unwrap_or_else(|| panic!("`{key}` in {} needs a line in FLOORS; it culls {share:.3}", S::NAME));
+        let row = floors.iter().find(|row| row.method == key);
+        let Some(&Floor { share: floor, .. }) = row else {
+            panic!("floors.json: `{key}` in {} needs a row; it culls {share:.3}", S::NAME)
+        };
         if share < floor {
             fallen.push(format!(
                 "{key} in {} culls {share:.4} of what cannot be seen, it culled {floor} before",

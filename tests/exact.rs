@@ -93,11 +93,8 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
     views
 }
 
-/// The methods that draw fewer primitives than all, and promise to miss none.
-const METHODS: [(&str, &[(&str, &str)]); 8] = [
-    ("frustum", &[]),
-    ("large-occluders", &[]),
-    ("hierarchical-z", &[]),
+/// Settings beside the defaults with which a method promises to miss nothing.
+const SETTINGS: [(&str, &[(&str, &str)]); 5] = [
     ("hierarchical-z", &[("coherence", "false"), ("query", "rectangles"), ("redistribution", "split")]),
     ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
     ("hierarchical-z", &[("processors", "4"), ("leaf-primitives", "256")]),
@@ -108,9 +105,12 @@ const METHODS: [(&str, &[(&str, &str)]); 8] = [
     ),
 ];
 
+/// Every method of the list that promises to miss none, and those settings.
 fn check<S: Methods + Drawable>(scene: &Arc<Scene<S>>, views: &[View<S>]) -> (usize, usize) {
-    METHODS
-        .iter()
+    let cards = S::methods().iter().map(|m| m.card());
+    let by_default = cards.filter(|c| c.conservative).map(|c| (c.key, &[][..]));
+    by_default
+        .chain(SETTINGS)
         .map(|(method, pairs)| check_method(method, pairs, scene, views))
         .fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1))
 }

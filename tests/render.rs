@@ -12,7 +12,7 @@ use std::path::Path;
 use cullscope::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
 use cullscope::figure::{Page, Paper, axis, page::legend};
 use cullscope::geometry::PrimId;
-use cullscope::render::{self, Look, PngSize, SvgOptions, Theme, theme::Sight};
+use cullscope::render::{self, Look, PngSize, SvgOptions, Theme, theme::ColorVision};
 use glam::{Vec2, vec2};
 use sample::every_mark;
 
@@ -65,10 +65,10 @@ fn png_is_the_same_each_time_and_shows_every_theme() {
         assert_eq!(bytes, render::png(&d, theme, PngSize::Dpi(144.0), Some(RECIPE)).expect("a picture"));
         look_at(&format!("roles-{}.png", theme.name()), &bytes);
     }
-    for sight in Sight::ALL {
-        let bytes = render::png(&d, Look { theme: Theme::Print, sight }, PngSize::WidthPx(700), None)
+    for vision in ColorVision::ALL {
+        let bytes = render::png(&d, Look { theme: Theme::Print, vision }, PngSize::WidthPx(700), None)
             .expect("a picture");
-        look_at(&format!("sight-{}.png", sight.name()), &bytes);
+        look_at(&format!("vision-{}.png", vision.name()), &bytes);
     }
     let p = render::pixels(&d, Theme::Print, PngSize::WidthPx(420)).expect("a picture");
     assert_eq!((p.width, p.height), (420, 330));

@@ -1,7 +1,18 @@
 //! The walls of the house, checked: who may use whom, words that belong to one room, the shape of files.
 
+mod tidy {
+    pub mod circles;
+    pub mod source;
+}
+
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use cullscope::culling::Methods;
+use cullscope::geometry::{Flat, Solid};
+use tidy::circles::Imports;
+use tidy::source::{bare, code, functions, strings};
 
 /// Rooms with their ranks. A room uses rooms of smaller rank and itself, never a peer.
 const ROOMS: &[(&str, u8)] = &[
@@ -32,12 +43,8 @@ const WORDS: &[(&str, &[&str], &str)] = &[
     ("egui", &["views", "render"], "core rooms know no GUI"),
     ("wgpu", &["views", "render"], "core rooms know no GPU"),
     ("Instant", &["measure", "views"], "a kernel that reads the clock is not reproducible"),
-    ("SystemTime", &["measure"], "a result that knows the date is not reproducible"),
     ("std::fs", &["scene", "cli", "app"], "only the doors touch the disk"),
     ("File::", &["scene", "cli", "app"], "only the doors touch the disk"),
-    ("HashMap", &[], "iteration order is not reproducible: use BTreeMap or an indexed Vec"),
-    ("HashSet", &[], "iteration order is not reproducible: use BTreeSet or an indexed Vec"),
-    ("mul_add", &[], "fused operations round differently from machine to machine"),
     ("Color32::from_rgb", &["render"], "colors live in the theme"),
     ("thread::", &["app", "views", "cli", "measure"], "core rooms also build where there are no threads"),
 ];
@@ -47,6 +54,10 @@ const SHARED: &[&str] = &["depth"];
 
 /// Lines of code that a function may have, so that it fits on a screen.
 const FUNCTION_LINES: usize = 90;
+/// Characters of code that a function may have, without indentation, so that it does not fit by wide lines.
+const FUNCTION_CHARS: usize = 2000;
+/// Characters that a line may have.
+const LINE_CHARS: usize = 110;
 /// Lines that a file may have.
 const FILE_LINES: usize = 900;
 
@@ -87,12 +98,6 @@ fn rank(room: &str) -> u8 {
             panic!("src/{room} is no room: give it a rank in tests/tidy.rs and a line in ARCHITECTURE.md")
         })
         .1
-}
-
-/// The code of a file: comments blanked, unit tests at its end cut off.
-fn code(text: &str) -> String {
-    let body = text.find("#[cfg(test)]\nmod tests {").map_or(text, |at| &text[..at]);
-    body.lines().map(|l| l.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
 
 /// Every room named after `crate::`, with its line, also inside `use crate::{a::…, b::…}`.
@@ -167,7 +172,7 @@ fn words_stay_in_their_rooms() {
 }
 
 #[test]
-fn every_file_says_what_it_is_and_is_not_long() {
+fn every_file_says_what_it_is_and_is_neither_long_nor_wide() {
     let mut wrong = Vec::new();
     for folder in ["src", "tests", "benches"] {
         for (path, text) in sources(folder) {
@@ -176,6 +181,9 @@ fn every_file_says_what_it_is_and_is_not_long() {
             }
             if text.lines().count() > FILE_LINES {
                 wrong.push(format!("{}: over {FILE_LINES} lines", path.display()));
+            }
+            for (i, line) in text.lines().enumerate().filter(|(_, l)| l.chars().count() > LINE_CHARS) {
+                wrong.push(format!("{}:{}: {} characters", path.display(), i + 1, line.chars().count()));
             }
         }
     }
@@ -186,30 +194,13 @@ fn every_file_says_what_it_is_and_is_not_long() {
 fn functions_fit_on_a_screen() {
     let mut wrong = Vec::new();
     for (path, text) in sources("src") {
-        let mut open: Option<(usize, usize, String)> = None;
-        for (i, line) in code(&text).lines().enumerate() {
-            let indent = line.len() - line.trim_start().len();
-            let words = line.trim_start();
-            let begins = [
-                "fn ",
-                "pub fn ",
-                "pub(super) fn ",
-                "pub(crate) fn ",
-                "unsafe fn ",
-                "pub unsafe fn ",
-                "const fn ",
-                "pub const fn ",
-            ];
-            if begins.iter().any(|b| words.starts_with(b)) && !words.ends_with(';') && !words.ends_with('}') {
-                open = Some((i, indent, words.chars().take(50).collect()));
-            } else if let Some((from, depth, name)) = &open
-                && indent == *depth
-                && words.starts_with('}')
-            {
-                if i - from > FUNCTION_LINES {
-                    wrong.push(format!("{}:{}: {} lines: {name}", path.display(), from + 1, i - from));
-                }
-                open = None;
+        let code = code(&text);
+        let chars: Vec<usize> = code.lines().map(|l| l.trim().chars().count()).collect();
+        for f in functions(&bare(&text)) {
+            let (lines, chars) = (f.to - f.from, chars[f.from..f.to].iter().sum::<usize>());
+            if lines > FUNCTION_LINES || chars > FUNCTION_CHARS {
+                let place = format!("{}:{}", path.display(), f.from + 1);
+                wrong.push(format!("{place}: {}: {lines} lines, {chars} characters", f.name));
             }
         }
     }
@@ -217,14 +208,51 @@ fn functions_fit_on_a_screen() {
 }
 
 #[test]
-fn methods_are_strangers_to_each_other() {
-    let culling = root().join("src/culling");
-    let methods: Vec<String> = fs::read_dir(culling)
+fn no_files_import_each_other() {
+    report(&Imports::of(&sources("src")).circles());
+}
+
+/// Outside `culling` and `papers` a method is chosen by what its card says. Rooms below `method` know of
+/// none, so a word is their own there.
+#[test]
+fn methods_are_named_where_they_are_at_home_only() {
+    let flat = Flat::methods().iter().map(|m| m.card().key);
+    let keys: BTreeSet<&str> = flat.chain(Solid::methods().iter().map(|m| m.card().key)).collect();
+    let folders: Vec<String> = method_folders().iter().map(|m| format!("{m}::")).collect();
+    let mut wrong = Vec::new();
+    for (path, text) in sources("src") {
+        let room = room(&path);
+        if path.ends_with("tests.rs")
+            || ["culling", "papers"].contains(&&*room)
+            || rank(&room) < rank("method")
+        {
+            continue;
+        }
+        for (line, key) in strings(&text).iter().filter(|(_, s)| keys.contains(s.as_str())) {
+            wrong.push(format!("{}:{line}: method `{key}`", path.display()));
+        }
+        for (i, line) in bare(&text).lines().enumerate() {
+            for folder in folders.iter().filter(|f| line.contains(f.as_str())) {
+                wrong.push(format!("{}:{}: `{folder}`", path.display(), i + 1));
+            }
+        }
+    }
+    report(&wrong);
+}
+
+/// The folders of `src/culling`.
+fn method_folders() -> Vec<String> {
+    fs::read_dir(root().join("src/culling"))
         .expect("src/culling")
         .map(|e| e.expect("an entry").path())
         .filter(|p| p.is_dir())
         .filter_map(|p| p.file_name().map(|n| n.to_string_lossy().into_owned()))
-        .collect();
+        .collect()
+}
+
+#[test]
+fn methods_are_strangers_to_each_other() {
+    let methods = method_folders();
     assert!(methods.contains(&"baseline".to_owned()));
     let mut wrong = Vec::new();
     for (path, text) in sources("src/culling") {

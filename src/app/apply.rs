@@ -9,7 +9,9 @@ use super::stage::Stage;
 use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
+use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
+use crate::render::Format;
 use crate::scene::{AnyPath, AnyScene};
 
 /// Selections that are remembered.
@@ -147,9 +149,9 @@ impl State {
                 None => self.dialog = Dialog::SaveAs,
             },
             Action::SaveAs => self.dialog = Dialog::SaveAs,
-            Action::ExportSvg => self.effects.push(Effect::Export("svg")),
-            Action::ExportPdf => self.effects.push(Effect::Export("pdf")),
-            Action::ExportPng => self.effects.push(Effect::Export("png")),
+            Action::ExportSvg => self.effects.push(Effect::Export(Format::Svg)),
+            Action::ExportPdf => self.effects.push(Effect::Export(Format::Pdf)),
+            Action::ExportPng => self.effects.push(Effect::Export(Format::Png)),
             Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
             Action::Cancel if self.busy().is_some() => {
                 self.worker.cancel();
@@ -450,7 +452,7 @@ impl State {
         let name = stage.get().scene_name().to_owned();
         let dropped = stage.get().report().dropped_total();
         if !stage.get().methods().iter().any(|m| m.key == self.method) {
-            self.method = "frustum".into();
+            self.method = DEFAULT_METHOD.into();
             self.settings.0.clear();
         }
         // Framed for a window of common shape; the window itself does it again for its own.

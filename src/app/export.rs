@@ -9,12 +9,10 @@ use super::state::{State, Theme};
 use crate::drawing::{Drawing, Pixels};
 use crate::figure::{self, Page, Panel, Paper, Picture, page, panels};
 use crate::geometry::Aabb;
-use crate::render::{self, PngSize, SvgOptions};
+use crate::render::{self, Format};
 
 /// Width of the picture, points: two columns of a paper, 17.5 cm.
 const WIDTH_PT: f32 = 490.0;
-/// Resolution of PNG files, for print.
-const DPI: f32 = 300.0;
 /// Scenes of space up to so many triangles become vectors; larger ones need pixels.
 pub const VECTOR_PRIMS: usize = 5000;
 /// Longest figure file that is searched for a session, bytes.
@@ -65,24 +63,15 @@ impl State {
         Some(page.compose(&content))
     }
 
-    /// Writes the present picture as `svg`, `pdf` or `png` into the working folder and says where.
-    pub fn export(&mut self, format: &str, aspect: f32, pixels: Option<Pixels>) {
+    /// Writes the present picture into the working folder and says where.
+    pub fn export(&mut self, format: Format, aspect: f32, pixels: Option<Pixels>) {
         let Some(drawing) = self.figure(aspect, pixels) else {
             return self.fail("There is nothing to export yet.");
         };
         let recipe = self.session().text();
-        let bytes = match format {
-            "svg" => Ok(render::svg(
-                &drawing,
-                Theme::Print,
-                &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() },
-            )
-            .into_bytes()),
-            "pdf" => render::pdf(&drawing, Theme::Print, Some(&recipe)),
-            _ => render::png(&drawing, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
-        };
+        let bytes = render::export(&drawing, format, Theme::Print, &recipe);
         let scene = self.staged().map_or("figure", |s| s.scene_name()).replace(['/', '\\', ' '], "-");
-        let path = format!("{scene}-{}-step-{}.{format}", self.method, self.step);
+        let path = format!("{scene}-{}-step-{}.{}", self.method, self.step, format.name());
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {
             Ok(()) => self.tell(format!("The figure was written to {path}.")),

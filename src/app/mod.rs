@@ -8,6 +8,7 @@ mod apply;
 mod camera;
 mod command;
 mod export;
+mod file;
 mod filter;
 mod lanes;
 mod open;
@@ -26,12 +27,13 @@ mod undo;
 mod why;
 mod worker;
 
-#[allow(unused_imports)]
+#[cfg(feature = "gui")]
 pub(crate) use any::each;
 pub use any::{Any, AnyStage, AnyView};
 pub use camera::ObserverCamera;
 pub use command::{Action, Command, Gesture, Info, Menu, fuzzy};
 pub use export::VECTOR_PRIMS;
+pub use file::{discard_unfinished, write_whole};
 pub use filter::{kind_name, subject_at, verdict_of};
 pub use lanes::{Cell, Lane, lanes};
 pub use open::{Example, examples};

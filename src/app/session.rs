@@ -1,10 +1,13 @@
 //! The session file: the recipe of what is open, not the film. JSON with a version.
 
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
 
 use super::any::ViewRecord;
 use super::camera::ObserverCamera;
+use super::file::write_whole;
 
 /// Version that this program writes; it reads no later one.
 pub const VERSION: u32 = 1;
@@ -165,15 +168,15 @@ pub enum SessionError {
     },
 }
 
-/// Writes a file beside its place, then puts it there, so that a half-written one never stands.
+/// Writes a file whole or not at all.
 ///
 /// # Errors
 /// If it cannot be written.
 pub fn write_file(path: &str, bytes: &[u8]) -> Result<(), SessionError> {
-    let io = |why| SessionError::Io { path: path.into(), why };
-    let beside = format!("{path}.part");
-    std::fs::write(&beside, bytes).map_err(io)?;
-    std::fs::rename(&beside, path).map_err(io)
+    match write_whole(Path::new(path), |to| to.write_all(bytes).map(|()| true)) {
+        Ok(_) => Ok(()),
+        Err(why) => Err(SessionError::Io { path: path.into(), why }),
+    }
 }
 
 impl Session {

@@ -9,10 +9,11 @@ use super::session::{Bookmark, Session};
 use super::stage::Staged;
 use super::undo::History;
 use super::worker::{Busy, Worker};
+use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
 use crate::method::{Settings, Verdict};
-use crate::render::theme;
+use crate::render::{Format, theme};
 
 pub use crate::trace::Detail;
 pub use theme::Theme;
@@ -160,7 +161,7 @@ pub enum Effect {
     /// Show the system's dialog to choose a name for the session.
     AskSave,
     /// Write the picture on screen as `svg`, `pdf` or `png`.
-    Export(&'static str),
+    Export(Format),
     /// Put text on the clipboard.
     Copy(String),
     /// Fill the screen, or not.
@@ -239,11 +240,11 @@ impl Default for State {
 }
 
 impl State {
-    /// Nothing open; the method is the first one that does something.
+    /// Nothing open, and the default method.
     pub fn new() -> Self {
         Self {
             stage: None,
-            method: "frustum".into(),
+            method: DEFAULT_METHOD.into(),
             settings: Settings::default(),
             step: 0,
             detail: Detail::Full,

@@ -11,13 +11,11 @@ use crate::drawing::Drawing;
 use crate::figure::chart;
 use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::method::Settings;
-use crate::render::{self, PngSize, SvgOptions};
+use crate::render;
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 
 /// Frames a scene: few enough to wait for.
 const FRAMES: usize = 96;
-/// Resolution of PNG files, for print.
-const DPI: f32 = 300.0;
 
 /// What is asked about tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,14 +108,9 @@ impl State {
         let recipe = format!("cullscope paper {} --frames {}", report.name, report.frames);
         let bytes = match format {
             "csv" => Ok(report.table.csv().into_bytes()),
-            "svg" => Ok(render::svg(
-                chart,
-                Theme::Print,
-                &SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() },
-            )
-            .into_bytes()),
-            "pdf" => render::pdf(chart, Theme::Print, Some(&recipe)),
-            _ => render::png(chart, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
+            painted => {
+                painted.parse().and_then(|format| render::export(chart, format, Theme::Print, &recipe))
+            }
         };
         let path = format!("{}.{format}", report.name);
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))

@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::error::reason;
 use super::{CliError, methods, output, scene};
 use crate::culling::Methods;
-use crate::culling::obscuration::Obscurer;
+use crate::culling::obscuration::{METHOD, Obscurer};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::method::Settings;
@@ -44,7 +44,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "WxH", value_parser = super::paper::size)]
     size: [u32; 2],
     /// The method
-    #[arg(long, value_name = "METHOD", default_value = "hierarchical-z", value_parser = ["hierarchical-z"])]
+    #[arg(long, value_name = "METHOD", default_value = METHOD, value_parser = [METHOD])]
     method: String,
     /// A parameter of the method; may be given several times [default: coherence=false backface-culling=true]
     #[arg(long, value_name = "KEY=VALUE")]

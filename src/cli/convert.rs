@@ -12,8 +12,8 @@ use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
 
 use super::{CliError, output};
-use crate::geometry::{Flat, ObjectId, PrimId, Solid, Vector};
-use crate::scene::{AnyScene, Object, Scene, write_views};
+use crate::geometry::{Flat, ObjectId, PrimId, Solid, Vector, View};
+use crate::scene::{AnyScene, Expectation, Object, Scene, write_views};
 
 /// Writes `scene` to `out`; `recentered` keeps its origin subtracted.
 pub(super) fn write(scene: &AnyScene, out: &Path, recentered: bool) -> Result<(), CliError> {
@@ -98,54 +98,12 @@ fn number(value: f32) -> Json {
 
 /// A flatland scene file, one segment a line.
 fn flat_json(scene: &Scene<Flat>) -> String {
-    let about = scene.about();
-    let mut head = Map::new();
-    head.insert("name".into(), scene.name().into());
-    for (key, text) in [
-        ("title", &about.title),
-        ("teaches", &about.teaches),
-        ("source", &about.credit),
-        ("licence", &about.license),
-    ] {
-        if !text.is_empty() {
-            head.insert(key.into(), text.as_str().into());
-        }
-    }
     let ids = |o: usize| {
         (0..scene.prim_count() as u32).filter(move |p| scene.object_of(PrimId(*p)) == ObjectId(o as u32))
     };
     let objects: Vec<Vec<u32>> = (0..scene.objects().len()).map(|o| ids(o).collect()).collect();
-    head.insert("object_names".into(), scene.objects().iter().map(|o| Json::from(&*o.name)).collect());
-    head.insert("colors".into(), colors(scene, &objects));
-    head.insert("motions".into(), motions(scene));
-    for path in scene.paths().iter().filter(|p| p.name == "eyes" || p.name == "walk") {
-        let stand = |v: &crate::geometry::View<Flat>| {
-            let (p, d) = (v.eye.position, v.eye.target - v.eye.position);
-            json!([number(p.x), number(p.y), number(d.x), number(d.y)])
-        };
-        head.insert(path.name.clone(), path.views.iter().map(stand).collect());
-        // The shortest decimal of the angle; one angle serves the whole file.
-        let fov = path.views[0].eye.fov.to_degrees();
-        head.insert("fov_degrees".into(), number((fov * 1e4).round() / 1e4));
-    }
-    head.insert(
-        "expect".into(),
-        about
-            .expect
-            .iter()
-            .map(|e| {
-                let list = |prims: &[PrimId]| prims.iter().map(|p| p.0).collect::<Vec<_>>();
-                let [visible, hidden, outside] = [&e.visible, &e.hidden, &e.outside].map(|prims| list(prims));
-                json!({
-                    "eye": e.eye, "frame": e.frame, "visible": visible, "hidden": hidden, "outside": outside,
-                })
-            })
-            .collect(),
-    );
-    head.retain(|_, v| !v.as_array().is_some_and(Vec::is_empty) && !v.as_object().is_some_and(Map::is_empty));
-
     let mut text = String::from("{\n");
-    for (key, value) in &head {
+    for (key, value) in &head(scene, &objects) {
         let _ = writeln!(text, "{}: {value},", Json::from(key.as_str()));
     }
     let lines = |list: Vec<String>| list.join(",\n");
@@ -162,6 +120,46 @@ fn flat_json(scene: &Scene<Flat>) -> String {
     });
     let _ = writeln!(text, "\"segments\": [\n{}\n]\n}}", lines(segments.collect()));
     text
+}
+
+/// What stands before the objects and segments, without what is empty.
+fn head(scene: &Scene<Flat>, objects: &[Vec<u32>]) -> Map<String, Json> {
+    let about = scene.about();
+    let mut head = Map::new();
+    head.insert("name".into(), scene.name().into());
+    for (key, text) in [
+        ("title", &about.title),
+        ("teaches", &about.teaches),
+        ("source", &about.credit),
+        ("licence", &about.license),
+    ] {
+        if !text.is_empty() {
+            head.insert(key.into(), text.as_str().into());
+        }
+    }
+    head.insert("object_names".into(), scene.objects().iter().map(|o| Json::from(&*o.name)).collect());
+    head.insert("colors".into(), colors(scene, objects));
+    head.insert("motions".into(), motions(scene));
+    for path in scene.paths().iter().filter(|p| p.name == "eyes" || p.name == "walk") {
+        let stand = |v: &View<Flat>| {
+            let (p, d) = (v.eye.position, v.eye.target - v.eye.position);
+            json!([number(p.x), number(p.y), number(d.x), number(d.y)])
+        };
+        head.insert(path.name.clone(), path.views.iter().map(stand).collect());
+        // The shortest decimal of the angle; one angle serves the whole file.
+        let fov = path.views[0].eye.fov.to_degrees();
+        head.insert("fov_degrees".into(), number((fov * 1e4).round() / 1e4));
+    }
+    head.insert("expect".into(), about.expect.iter().map(expectation).collect());
+    head.retain(|_, v| !v.as_array().is_some_and(Vec::is_empty) && !v.as_object().is_some_and(Map::is_empty));
+    head
+}
+
+/// What is expected of one view, as ids.
+fn expectation(e: &Expectation) -> Json {
+    let list = |prims: &[PrimId]| prims.iter().map(|p| p.0).collect::<Vec<_>>();
+    let [visible, hidden, outside] = [&e.visible, &e.hidden, &e.outside].map(|prims| list(prims));
+    json!({ "eye": e.eye, "frame": e.frame, "visible": visible, "hidden": hidden, "outside": outside })
 }
 
 /// Color by object name, of the object's first segment.

@@ -12,12 +12,12 @@ use super::methods::params_json;
 use super::progress::Bar;
 use super::task::{Ready, Task};
 use super::{CliError, World, output};
-use crate::drawing::Role;
+use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, View};
 use crate::measure::deadline::Paced;
 use crate::measure::timed;
 use crate::raster::{Options, Target, shade};
-use crate::render::Theme;
+use crate::render::{Theme, png_pixels};
 use crate::scene::{AnyScene, Progress, Scene};
 use crate::truth::Truth;
 
@@ -148,7 +148,9 @@ fn frames<S: World>(
         });
         if let Some(path) = &args.image {
             let rgba = shade(&target, scene, view, background);
-            output::write_png(&output::numbered(path, i, views.len()), view.width, view.height, &rgba)?;
+            let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
+            let place = output::numbered(path, i, views.len());
+            output::write_file(&place, |to| to.write_all(&png_pixels(&picture)).map(|()| true))?;
         }
         let truth = truth.as_mut().map(|t| truth_report(args, t.judge(scene, view, &list.prims, &target)));
         frames.push(Frame {

@@ -8,9 +8,8 @@ use std::path::PathBuf;
 use super::error::reason;
 use super::progress::Bar;
 use super::{CliError, output, suggest};
-use crate::drawing::Drawing;
 use crate::figure::{BUILTIN, Builtin};
-use crate::render::{self, PngSize, RenderError, SvgOptions, Theme};
+use crate::render::{self, Format, Theme};
 use crate::scene::Progress;
 
 #[derive(clap::Args)]
@@ -39,22 +38,12 @@ pub(super) struct Args {
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
-pub(super) enum Format {
-    Svg,
-    Pdf,
-    Png,
-}
-
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Colors {
     Light,
     Dark,
     Print,
 }
-
-/// Dots an inch of PNG figures: what journals ask for.
-const DPI: f32 = 300.0;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.list {
@@ -82,9 +71,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let drawing = figure.drawing(&|role| theme.flat_linear(role))?;
         let recipe = format!("cullscope figure {} --theme {}", figure.name, theme.name());
         for format in &formats {
-            let (bytes, extension) = bytes(&drawing, theme, *format, &recipe)
+            let bytes = render::export(&drawing, *format, theme, &recipe)
                 .map_err(|e| CliError::work(figure.name, e.to_string()))?;
-            let path = args.out.join(format!("{}.{extension}", figure.name));
+            let path = args.out.join(format!("{}.{}", figure.name, format.name()));
             output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
             output::print(format!("{}\n", path.display()).as_bytes())?;
         }
@@ -108,21 +97,4 @@ fn chosen(args: &Args) -> Result<Vec<&'static Builtin>, CliError> {
         })
     };
     args.names.iter().map(find).collect()
-}
-
-/// A drawing as the bytes of a file, and the file's extension.
-pub(super) fn bytes(
-    drawing: &Drawing,
-    theme: Theme,
-    format: Format,
-    recipe: &str,
-) -> Result<(Vec<u8>, &'static str), RenderError> {
-    Ok(match format {
-        Format::Svg => {
-            let options = SvgOptions { metadata: Some(recipe), ..SvgOptions::default() };
-            (render::svg(drawing, theme, &options).into_bytes(), "svg")
-        }
-        Format::Pdf => (render::pdf(drawing, theme, Some(recipe))?, "pdf"),
-        Format::Png => (render::png(drawing, theme, PngSize::Dpi(DPI), Some(recipe))?, "png"),
-    })
 }

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use super::error::reason;
 use super::methods::{json_text, settings};
 use super::progress::Bar;
-use super::{CliError, figure, output, scene, suggest};
+use super::{CliError, output, scene, suggest};
 use crate::figure::chart;
 use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::raster::Target;
-use crate::render::{RenderError, Theme};
+use crate::render::{self, RenderError, Theme};
 use crate::scene::{AnyScene, LoadOptions, Part};
 
 #[derive(clap::Args)]
@@ -150,19 +150,19 @@ fn recipe(args: &Args, experiment: &Experiment) -> String {
 
 fn write(report: &Report, format: Format, folder: &Path, recipe: &str) -> Result<(), CliError> {
     let failed = |e: RenderError| CliError::work(report.name, e.to_string());
-    let painted = |format| {
+    let painted = |format: render::Format| {
         let drawing = chart(report.title, &report.plots, &report.caption());
-        figure::bytes(&drawing, Theme::Print, format, recipe)
-            .map(|(bytes, extension)| (extension, bytes))
+        render::export(&drawing, format, Theme::Print, recipe)
+            .map(|bytes| (format.name(), bytes))
             .map_err(failed)
     };
     let (extension, bytes) = match format {
         Format::Text => return output::print((report.text() + "\n").as_bytes()),
         Format::Csv => ("csv", report.table.csv().into_bytes()),
         Format::Json => ("json", json_text(&report.json()).into_bytes()),
-        Format::Svg => painted(figure::Format::Svg)?,
-        Format::Pdf => painted(figure::Format::Pdf)?,
-        Format::Png => painted(figure::Format::Png)?,
+        Format::Svg => painted(render::Format::Svg)?,
+        Format::Pdf => painted(render::Format::Pdf)?,
+        Format::Png => painted(render::Format::Png)?,
     };
     let path = folder.join(format!("{}.{extension}", report.name));
     output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;

@@ -6,7 +6,6 @@ use std::sync::{Mutex, Once, PoisonError};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::output;
 use crate::measure::Stopwatch;
 use crate::scene::Progress;
 
@@ -31,7 +30,7 @@ impl Bar {
         LISTENING.call_once(|| {
             let handler = || {
                 if STOP.swap(true, Ordering::Relaxed) {
-                    output::discard_unfinished();
+                    crate::app::discard_unfinished();
                     std::process::exit(1);
                 }
             };

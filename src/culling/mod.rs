@@ -35,6 +35,9 @@ pub static SOLID: &[&dyn Entry<Solid>] = &[
     &Of::<layered_projection::LayeredProjection>::NEW,
 ];
 
+/// Key of the method that a new session begins with: the simplest one that leaves something out.
+pub const DEFAULT_METHOD: &str = "frustum";
+
 /// The methods of a space, for code that is generic over it.
 pub trait Methods: Space {
     /// Its list.

@@ -155,11 +155,13 @@ impl<V: Vector> KdTree<V> {
             let (na, nb) = (&self.nodes[a.at()], &self.nodes[b.at()]);
             assert_eq!(
                 (na.parent, nb.parent, na.level, nb.level),
-                (id.0, id.0, node.level + 1, node.level + 1)
+                (id.0, id.0, node.level + 1, node.level + 1),
+                "node {i} is the parent of its children"
             );
             assert_eq!(
                 (na.first, na.first + na.count, nb.first + nb.count),
-                (node.first, nb.first, node.first + node.count)
+                (node.first, nb.first, node.first + node.count),
+                "the children of node {i} share its primitives"
             );
             assert!(na.count.abs_diff(nb.count) <= 1, "node {i} is balanced");
             let key = |p: &PrimId| {

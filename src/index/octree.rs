@@ -177,7 +177,7 @@ impl<V: Vector> Octree<V> {
 
     /// What stays with a node, which of it is only listed there because its children share it, and what each
     /// child gets.
-    #[allow(clippy::type_complexity)]
+    #[expect(clippy::type_complexity, reason = "three results that are taken apart at once")]
     fn divide(
         &self,
         at: usize,
@@ -320,7 +320,7 @@ impl<V: Vector> Octree<V> {
                     );
                 }
             }
-            assert_eq!(below.len(), node.count as usize);
+            assert_eq!(below.len(), node.count as usize, "node {at} counts what is below it");
         }
     }
     fn is_below(&self, node: usize, above: usize) -> bool {

@@ -12,7 +12,6 @@ pub struct Stopwatch(Instant);
 
 impl Stopwatch {
     /// Starts now.
-    #[allow(clippy::new_without_default)]
     pub fn start() -> Self {
         Self(Instant::now())
     }

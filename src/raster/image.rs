@@ -352,8 +352,8 @@ fn quotient(e: i64, inverse: f64) -> i32 {
     const NUDGE: f64 = 1.0 / (1 << 26) as f64;
     let q = (e as f64 * inverse + NUDGE).clamp(-LIMIT, LIMIT);
     // Truncation rounds down once the value is not negative.
-    // SAFETY: the value lies within 0..=2¹⁷. (The checked conversion is not SIMD.)
-    #[allow(unsafe_code)]
+    // SAFETY: the value lies within 0..=2¹⁷.
+    #[expect(unsafe_code, reason = "the checked conversion is not SIMD")]
     let floor: i32 = unsafe { (q + LIMIT).to_int_unchecked() };
     floor - LIMIT as i32
 }

@@ -19,6 +19,7 @@ pub mod reference;
 mod setup;
 mod shade;
 mod simd;
+mod srgb;
 mod stand_in;
 #[cfg(test)]
 mod tests;
@@ -27,6 +28,7 @@ mod vertex;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use shade::{DepthScale, shade, shade_depth, shade_with};
 pub use simd::Isa;
+pub use srgb::{srgb, srgb_bytes};
 pub use stand_in::StandIn;
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};

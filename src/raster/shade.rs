@@ -1,6 +1,6 @@
 //! A color image of an item image: flat-shaded, one color a primitive.
 
-use super::{Drawable, Target};
+use super::{Drawable, Target, srgb_bytes};
 use crate::geometry::{PrimId, Vector, View};
 use crate::scene::Scene;
 
@@ -27,7 +27,7 @@ pub fn shade_with<S: Drawable>(
     background: [f32; 3],
     mut color: impl FnMut(PrimId) -> [f32; 3],
 ) -> Vec<u8> {
-    let background = encode(background);
+    let background = srgb_bytes(background);
     // Each primitive is shaded once; alpha 0 marks those not met yet.
     let mut palette = vec![[0u8; 4]; scene.prim_count()];
     let mut pixels = Vec::with_capacity(target.item.len() * 4);
@@ -39,7 +39,7 @@ pub fn shade_with<S: Drawable>(
         let entry = &mut palette[item as usize];
         if entry[3] == 0 {
             let light = headlight(scene, view, PrimId(item));
-            *entry = encode(color(PrimId(item)).map(|c| c * light));
+            *entry = srgb_bytes(color(PrimId(item)).map(|c| c * light));
         }
         pixels.extend_from_slice(entry);
     }
@@ -54,16 +54,6 @@ fn headlight<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32
     let lengths = normal.length() * toward.length();
     let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
     AMBIENT + (1.0 - AMBIENT) * cosine
-}
-
-/// Linear color to opaque sRGB (IEC 61966-2-1).
-fn encode(color: [f32; 3]) -> [u8; 4] {
-    let [r, g, b] = color.map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-        (s * 255.0 + 0.5) as u8
-    });
-    [r, g, b, 255]
 }
 
 /// How depths become gray.

@@ -3,7 +3,7 @@
 //! [`Lanes`] is a token that exists only where its instruction set does, so its operations are safe to
 //! call. Every operation is the same IEEE or integer operation per lane on every set (no fused
 //! multiply-add), so the width leaves no trace in the image.
-#![allow(unsafe_code)]
+#![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "intrinsics"))]
 
 /// An instruction set for filling pixels, ascending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -14,6 +14,7 @@ use skrifa::raw::TableProvider;
 use skrifa::{FontRef, GlyphId, MetadataProvider, Tag};
 use subsetter::GlyphRemapper;
 
+use super::number::number;
 use crate::drawing::{Font, metrics};
 
 /// A TrueType file with the given characters only; `None` if the font has none of them.
@@ -125,7 +126,7 @@ impl Pen<'_> {
         for (i, (x, y)) in points.iter().enumerate() {
             let gap = if i == 0 { "" } else { " " };
             let (x, y) = (self.at.x + x * self.scale, self.at.y - y * self.scale);
-            let _ = write!(self.out, "{gap}{} {}", super::svg::number(x), super::svg::number(y));
+            let _ = write!(self.out, "{gap}{} {}", number(x), number(y));
         }
     }
 }

@@ -4,21 +4,26 @@
 //! in `piece.rs`, so that all readers show the same picture. Every file format carries the recipe of the
 //! figure, which [`recipe`] reads back.
 
+pub mod color_vision;
+mod export;
 mod face;
 #[cfg(feature = "gui")]
 pub mod gpu;
 mod hatch;
+mod number;
 mod pdf;
 mod piece;
+mod png;
 mod raster;
 #[cfg(feature = "gui")]
 pub mod screen;
-pub mod sight;
 mod svg;
 pub mod theme;
 
+pub use export::{Format, export};
 pub use pdf::pdf;
-pub use raster::{PngSize, pixels, png, png_pixels};
+pub use png::png_pixels;
+pub use raster::{PngSize, pixels, png};
 pub use svg::{SvgOptions, svg};
 pub use theme::{Look, Theme};
 
@@ -44,6 +49,9 @@ pub enum RenderError {
     /// The rasterizer refused the drawing.
     #[error("the picture could not be rasterized: {0}")]
     Picture(String),
+    /// There is no such format of figures.
+    #[error("`{0}` is no format of figures: expected svg, pdf or png")]
+    Format(String),
     /// The PDF writer refused the drawing.
     #[error("the PDF file could not be written: {0}")]
     Pdf(String),
@@ -52,7 +60,7 @@ pub enum RenderError {
 /// The recipe that a figure file carries, whichever of the formats it has; `None` if there is none.
 pub fn recipe(bytes: &[u8]) -> Option<String> {
     if bytes.starts_with(b"\x89PNG") {
-        return raster::recipe(bytes);
+        return png::recipe(bytes);
     }
     if bytes.starts_with(b"%PDF") {
         return pdf::recipe(bytes);

@@ -29,6 +29,9 @@ const RECIPE_FILE: &str = "cullscope-recipe.json";
 const LONGEST_PT: f32 = 14_400.0;
 
 /// A drawing as a PDF file.
+///
+/// # Errors
+/// If PDF allows no page of its size, or the writer refuses it.
 pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> Result<Vec<u8>, RenderError> {
     let look = look.into();
     let size = drawing.size_pt;
@@ -58,16 +61,7 @@ fn paint_page(surface: Surface, fonts: Vec<PdfFont>, drawing: &Drawing, look: Lo
     let mut canvas = Canvas { surface, fonts, size, look };
     canvas.fill(look.paper(), 1.0);
     canvas.path(&[Vec2::ZERO, Vec2::new(size.x, 0.0), size, Vec2::new(0.0, size.y)], true);
-    let styles = look.styles();
-    let mut pieces = Vec::new();
-    for item in drawing.painted() {
-        let style = &styles[item.role as usize];
-        pieces.clear();
-        piece::pieces(item, style, &mut pieces);
-        for piece in &pieces {
-            canvas.piece(piece, &piece::paint(piece.part, style));
-        }
-    }
+    piece::each_piece(drawing, look, |_, piece, paint| canvas.piece(piece, paint));
     canvas.surface.finish();
 }
 

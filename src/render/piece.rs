@@ -7,9 +7,9 @@ use std::borrow::Cow;
 
 use glam::Vec2;
 
-use crate::drawing::{Anchor, Font, Item, Layer, Mark, Pixels, Role, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Item, Layer, Mark, Pixels, Role, metrics};
 
-use super::theme::{Hatch, Rgb, SIGN_PT, Style};
+use super::theme::{Hatch, Look, Rgb, SIGN_PT, Style};
 
 /// Why a shape is there; also its CSS class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,6 +88,24 @@ pub(super) struct Piece<'a> {
 /// Width of the outlines of a scene's polygons: they are many and small.
 const HAIR_PT: f32 = 0.3;
 
+/// Calls `put` with each shape of a drawing, from the lowest to the topmost, with its item and its paint.
+pub(super) fn each_piece(
+    drawing: &Drawing,
+    look: Look,
+    mut put: impl FnMut(&Item<Vec2>, &Piece<'_>, &Paint),
+) {
+    let styles = look.styles();
+    let mut found = Vec::new();
+    for item in drawing.painted() {
+        let style = &styles[item.role as usize];
+        found.clear();
+        pieces(item, style, &mut found);
+        for piece in &found {
+            put(item, piece, &paint(piece.part, style));
+        }
+    }
+}
+
 /// The paint of a part of a role: what the CSS of an SVG file says in words.
 pub(super) fn paint(part: Part, style: &Style) -> Paint {
     let none = Paint { fill: None, hatch: None, stroke: None };
@@ -117,7 +135,7 @@ pub(super) fn paint(part: Part, style: &Style) -> Paint {
 }
 
 /// The shapes of a mark, from the lowest to the topmost. Marks with a coordinate that is no number have none.
-pub(super) fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piece<'a>>) {
+fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piece<'a>>) {
     if !finite(&item.mark) {
         return;
     }

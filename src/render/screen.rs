@@ -17,7 +17,7 @@ use crate::drawing::{Drawing, Font, Pixels, metrics};
 
 use super::hatch::hatching;
 use super::piece::{self, Line, Paint, Piece};
-use super::theme::{HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb, Sight, Theme};
+use super::theme::{ColorVision, HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb, Theme};
 
 /// A color of the theme for egui.
 pub fn color([r, g, b]: Rgb) -> Color32 {
@@ -120,23 +120,14 @@ pub fn paint(painter: &egui::Painter, drawing: &Drawing, look: impl Into<Look>, 
         (false, _) => FontFamily::Proportional,
     });
     let mut screen =
-        Screen { painter, sight: look.sight, origin, scale, window, families, shapes: Vec::new() };
-    let styles = look.styles();
-    let mut pieces = Vec::new();
-    for item in drawing.painted() {
-        let style = &styles[item.role as usize];
-        pieces.clear();
-        piece::pieces(item, style, &mut pieces);
-        for piece in &pieces {
-            screen.piece(piece, &piece::paint(piece.part, style));
-        }
-    }
+        Screen { painter, vision: look.vision, origin, scale, window, families, shapes: Vec::new() };
+    piece::each_piece(drawing, look, |_, piece, paint| screen.piece(piece, paint));
     painter.extend(screen.shapes);
 }
 
 struct Screen<'a> {
     painter: &'a egui::Painter,
-    sight: Sight,
+    vision: ColorVision,
     origin: Pos2,
     scale: f32,
     /// What is seen of the paper: minimum and maximum.
@@ -277,7 +268,7 @@ impl Screen<'_> {
     }
 
     fn image(&mut self, rect: Rect, pixels: &Pixels) {
-        let texture = texture(self.painter.ctx(), pixels, self.sight);
+        let texture = texture(self.painter.ctx(), pixels, self.vision);
         let whole = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
         self.shapes.push(Shape::image(texture, rect, whole, Color32::WHITE));
     }
@@ -366,7 +357,7 @@ fn clip(a: Vec2, b: Vec2, [low, high]: [Vec2; 2]) -> Option<(f32, f32)> {
 
 /// Textures of the pictures on screen, by the address of their pixels, which they keep alive, and the eyes.
 #[derive(Clone, Default)]
-struct Textures(Arc<egui::mutex::Mutex<BTreeMap<(usize, Sight), Kept>>>);
+struct Textures(Arc<egui::mutex::Mutex<BTreeMap<(usize, ColorVision), Kept>>>);
 
 struct Kept {
     _pixels: Arc<[u8]>,
@@ -374,16 +365,16 @@ struct Kept {
     used_pass: u64,
 }
 
-fn texture(ctx: &egui::Context, pixels: &Pixels, sight: Sight) -> egui::TextureId {
+fn texture(ctx: &egui::Context, pixels: &Pixels, vision: ColorVision) -> egui::TextureId {
     let textures = ctx.data_mut(|d| {
         d.get_temp_mut_or_default::<Textures>(egui::Id::NULL.with("cullscope-pictures")).clone()
     });
     let pass = ctx.cumulative_pass_nr();
     let mut kept = textures.0.lock();
     kept.retain(|_, k| k.used_pass + 2 >= pass);
-    let key = (pixels.rgba.as_ptr() as usize, sight);
+    let key = (pixels.rgba.as_ptr() as usize, vision);
     let seen = || {
-        let look = Look { theme: Theme::default(), sight };
+        let look = Look { theme: Theme::default(), vision };
         image(&Pixels { rgba: look.see(&pixels.rgba).into(), ..*pixels }, ctx.input(|i| i.max_texture_side))
     };
     let entry = kept.entry(key).or_insert_with(|| Kept {

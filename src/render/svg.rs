@@ -11,15 +11,16 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::Vec2;
 
-use crate::drawing::{Anchor, Drawing, Font, Layer, Role, Subject, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Pixels, Role, Subject, metrics};
 
 use super::face;
+use super::number::number;
 use super::piece::{self, Line, Paint, Part, Piece, Shape, Stroke};
-use super::raster::encode;
+use super::png::png_pixels;
 use super::theme::{HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb};
 
 /// Millimeters in a point.
-pub(super) const MM_PER_PT: f32 = 25.4 / 72.0;
+const MM_PER_PT: f32 = 25.4 / 72.0;
 
 /// Choices for an SVG file.
 #[derive(Clone, Copy, Debug, Default)]
@@ -81,23 +82,14 @@ struct Writer {
 impl Writer {
     fn layers(&mut self, drawing: &Drawing) {
         let mut open: Option<Layer> = None;
-        let mut pieces = Vec::new();
-        let styles = self.look.styles();
-        for item in drawing.painted() {
-            pieces.clear();
-            piece::pieces(item, &styles[item.role as usize], &mut pieces);
-            if pieces.is_empty() {
-                continue;
-            }
+        piece::each_piece(drawing, self.look, |item, piece, _| {
             if open != Some(item.layer) {
                 self.body.push_str(if open.is_some() { "</g>\n" } else { "" });
                 let _ = writeln!(self.body, "<g id=\"layer-{}\">", item.layer.name());
                 open = Some(item.layer);
             }
-            for piece in &pieces {
-                self.piece(piece, &subject(item.subject));
-            }
-        }
+            self.piece(piece, &subject(item.subject));
+        });
         self.body.push_str(if open.is_some() { "</g>\n" } else { "" });
     }
 
@@ -134,7 +126,7 @@ impl Writer {
             Shape::Text(line) => self.text(line, piece, subject),
             Shape::Image { min, max, pixels } => {
                 let size = *max - *min;
-                let rgba = self.look.see(&pixels.rgba);
+                let seen = Pixels { rgba: self.look.see(&pixels.rgba).into(), ..**pixels };
                 let _ = writeln!(
                     body,
                     "<image{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
@@ -144,7 +136,7 @@ impl Writer {
                     number(min.y),
                     number(size.x),
                     number(size.y),
-                    BASE64.encode(encode(pixels.width, pixels.height, &rgba, &[])),
+                    BASE64.encode(png_pixels(&seen)),
                 );
             }
         }
@@ -269,13 +261,6 @@ fn subject(subject: Subject) -> String {
     }
 }
 
-/// A number with at most two decimals, without trailing zeros and without a negative zero.
-pub(super) fn number(x: f32) -> String {
-    let text = format!("{x:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 fn hex([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
@@ -346,15 +331,6 @@ pub(super) fn recipe(text: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short_and_have_no_negative_zero() {
-        for (x, text) in
-            [(0.0, "0"), (-0.001, "0"), (1.5, "1.5"), (100.0, "100"), (-2.345, "-2.35"), (1e6, "1000000")]
-        {
-            assert_eq!(number(x), text);
-        }
-    }
 
     #[test]
     fn recipes_survive_other_programs() {

@@ -9,8 +9,8 @@ use std::borrow::Cow;
 
 use crate::drawing::Role;
 
-pub use super::sight::{Rgb, Sight};
-use super::sight::{linear, mix, readable};
+pub use super::color_vision::{ColorVision, Rgb};
+use super::color_vision::{linear, mix, readable};
 
 /// The ground that a picture is made for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,12 +30,12 @@ pub struct Look {
     /// The ground.
     pub theme: Theme,
     /// The eyes.
-    pub sight: Sight,
+    pub vision: ColorVision,
 }
 
 impl From<Theme> for Look {
     fn from(theme: Theme) -> Self {
-        Look { theme, sight: Sight::Full }
+        Look { theme, vision: ColorVision::Full }
     }
 }
 
@@ -268,12 +268,6 @@ impl Theme {
         linear(self.flat(role))
     }
 
-    /// The [`flat`](Self::flat) color as opaque RGBA bytes.
-    pub fn flat_rgba(self, role: Role) -> [u8; 4] {
-        let [r, g, b] = self.flat(role);
-        [r, g, b, 255]
-    }
-
     /// The `i`th color of a chart's lines; they repeat after seven, so charts vary the line style too.
     pub fn series(self, i: usize) -> Rgb {
         let b = self.base();
@@ -331,23 +325,13 @@ impl Style {
     fn with_text(self, color: Rgb, base: &Base) -> Style {
         Style { text: readable(color, base.ink, base.paper, 4.5), ..self }
     }
-
-    /// Whether lines and areas of two styles differ by more than hue: dash, sign, halo, or a width that the
-    /// eye takes for another one (by 0.7 pt and by half). Hatches do not count, as lines have none.
-    pub fn differs_in_form(&self, other: &Style) -> bool {
-        let (thin, thick) = (self.width_pt.min(other.width_pt), self.width_pt.max(other.width_pt));
-        self.dash != other.dash
-            || self.sign.map(|s| s.0) != other.sign.map(|s| s.0)
-            || self.halo.is_some() != other.halo.is_some()
-            || (thick - thin >= 0.7 && thick >= 1.5 * thin)
-    }
 }
 
 impl Look {
     /// How the marks of a role are painted.
     pub fn style(self, role: Role) -> Style {
         let style = self.theme.style(role);
-        let see = |c| self.sight.see(c);
+        let see = |c| self.vision.see(c);
         Style {
             stroke: see(style.stroke),
             fill: style.fill.map(|(c, a)| (see(c), a)),
@@ -366,16 +350,16 @@ impl Look {
 
     /// Color of the paper.
     pub fn paper(self) -> Rgb {
-        self.sight.see(self.theme.paper())
+        self.vision.see(self.theme.paper())
     }
 
     /// The pixels of a picture (RGBA) as they are seen.
     pub fn see(self, rgba: &[u8]) -> Cow<'_, [u8]> {
-        if self.sight == Sight::Full {
+        if self.vision == ColorVision::Full {
             return Cow::Borrowed(rgba);
         }
         let seen = |p: &[u8]| {
-            let [r, g, b] = self.sight.see([p[0], p[1], p[2]]);
+            let [r, g, b] = self.vision.see([p[0], p[1], p[2]]);
             [r, g, b, p[3]]
         };
         Cow::Owned(rgba.chunks_exact(4).flat_map(seen).collect())
@@ -383,17 +367,27 @@ impl Look {
 
     /// Opaque color of a role for surfaces in space.
     pub fn flat(self, role: Role) -> Rgb {
-        self.sight.see(self.theme.flat(role))
+        self.vision.see(self.theme.flat(role))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::sight::{contrast, difference};
+    use super::super::color_vision::{contrast, difference};
     use super::*;
 
     fn pairs() -> impl Iterator<Item = (Role, Role)> {
         Role::STATES.iter().enumerate().flat_map(|(i, a)| Role::STATES[i + 1..].iter().map(|b| (*a, *b)))
+    }
+
+    /// Whether lines and areas of two styles differ by more than hue: dash, sign, halo, or a width that the
+    /// eye takes for another one (by 0.7 pt and by half). Hatches do not count, as lines have none.
+    fn differ_in_form(a: &Style, b: &Style) -> bool {
+        let (thin, thick) = (a.width_pt.min(b.width_pt), a.width_pt.max(b.width_pt));
+        a.dash != b.dash
+            || a.sign.map(|s| s.0) != b.sign.map(|s| s.0)
+            || a.halo.is_some() != b.halo.is_some()
+            || (thick - thin >= 0.7 && thick >= 1.5 * thin)
     }
 
     #[test]
@@ -408,7 +402,7 @@ mod tests {
         for theme in Theme::ALL {
             for (a, b) in pairs() {
                 assert!(
-                    theme.style(a).differs_in_form(&theme.style(b)),
+                    differ_in_form(&theme.style(a), &theme.style(b)),
                     "{theme:?}: {a:?} and {b:?} differ by hue only"
                 );
             }
@@ -418,18 +412,18 @@ mod tests {
     #[test]
     fn states_differ_in_color_for_every_eye() {
         for theme in Theme::ALL {
-            for sight in Sight::ALL {
+            for vision in ColorVision::ALL {
                 for (a, b) in pairs() {
-                    let look = Look { theme, sight };
+                    let look = Look { theme, vision };
                     let (p, q) = (look.style(a), look.style(b));
                     let apart = difference(p.stroke, q.stroke) >= 12.0;
                     assert!(
-                        apart || p.differs_in_form(&q),
+                        apart || differ_in_form(&p, &q),
                         "{look:?}: {a:?} and {b:?}: {}",
                         difference(p.stroke, q.stroke)
                     );
                     assert!(
-                        sight != Sight::Full
+                        vision != ColorVision::Full
                             || difference(p.stroke, q.stroke) >= 12.0
                             || (a, b) == (Role::Undecided, Role::Occluder)
                     );
@@ -441,9 +435,14 @@ mod tests {
     #[test]
     fn flat_colors_differ_for_every_eye_with_color() {
         for theme in Theme::ALL {
-            for sight in [Sight::Full, Sight::Protanopia, Sight::Deuteranopia, Sight::Tritanopia] {
+            for vision in [
+                ColorVision::Full,
+                ColorVision::Protanopia,
+                ColorVision::Deuteranopia,
+                ColorVision::Tritanopia,
+            ] {
                 for (a, b) in pairs() {
-                    let look = Look { theme, sight };
+                    let look = Look { theme, vision };
                     let d = difference(look.flat(a), look.flat(b));
                     assert!(d >= 12.0, "{look:?}: {a:?} and {b:?}: {d}");
                 }

@@ -4,15 +4,14 @@
 //!
 //! - *Outside a plane*: the plane, the box and its distance. The checker derives the planes anew from the
 //!   Eye's definition, in f64, and shares no arithmetic with [`crate::geometry::Frustum`]; it asks that the
-//! box holds every point it stands for, that every
-//!   corner lies outside the plane named, and that the recorded distances are right within their recorded
-//! error and the
-//!   rounding of the view's axes to 32 bits, which methods and rasterizer share.
+//!   box holds every point it stands for, that every corner lies outside the plane named, and that the
+//!   recorded distances are right within their recorded error and the rounding of the view's axes to 32
+//!   bits, which methods and rasterizer share.
 //! - *Facing away*: the eye lies strictly behind the primitive's plane, in exact arithmetic.
 //! - *Behind*, of a node or of an object whose occlusion was recorded: every pixel center's ray that meets
 //!   its box meets a surface of the whole scene first, and no primitive that lies in the box owns a pixel.
-//! The module `hidden` says how, and what is
-//!   allowed for rounding. Below a node that was proven hidden nothing is left to prove.
+//!   The module `hidden` says how, and what is allowed for rounding.
+//!   Below a node that was proven hidden nothing is left to prove.
 //! - *Unseen*, of a primitive that was decided by itself: it owns no pixel.
 //!
 //! Cost: O(events + primitives culled), and of what is hidden the image once and O(pixels in the rectangle of
@@ -292,6 +291,9 @@ impl<'a, S: Drawable> Checker<'a, S> {
         else {
             return Err(format!("the view volume has no plane `{plane}`"));
         };
+        if !low.cmple(high).all() {
+            return Err("the box ends before it begins".into());
+        }
         if points.iter().any(|p| p.cmplt(low).any() || p.cmpgt(high).any()) {
             return Err("the box does not hold everything that it stands for".into());
         }

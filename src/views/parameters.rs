@@ -97,7 +97,7 @@ fn edit(
     }
 }
 
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "what a panel is drawn from, and where its answers go")]
 fn budget(
     state: &State,
     cache: &mut Cache,

@@ -90,7 +90,7 @@ fn fitted(pane: egui::Rect, aspect: f32) -> egui::Rect {
     egui::Rect::from_center_size(pane.center(), size)
 }
 
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "what a panel is drawn from, and where its answers go")]
 fn picture(
     state: &State,
     stage: &Stage<Solid>,

@@ -129,12 +129,13 @@ fn holds_together(scene: &AnyScene, bytes: usize) {
             assert!(
                 s.live()
                     .iter()
-                    .all(|p| s.prim_bounds(*p).min.is_finite() && s.prim_bounds(*p).max.is_finite())
+                    .all(|p| s.prim_bounds(*p).min.is_finite() && s.prim_bounds(*p).max.is_finite()),
+                "live primitives are finite"
             );
             (s.prim_count(), s.live().len(), s.memory_bytes())
         }
     };
-    assert!(live > 0 && live <= prims);
+    assert!(live > 0 && live <= prims, "{live} live of {prims}");
     assert!(memory < 4096 + 64 * bytes, "{memory} bytes of tables for {bytes} bytes of file");
 }
 

@@ -15,6 +15,9 @@ use crate::method::{DrawList, Frame, Method, Recorder, SettingError, Settings, S
 use crate::raster::{DepthScale, Options, Target};
 use crate::scene::{Parts, Progress, Scene, SceneError};
 
+/// Key of the method whose parts these are.
+pub const METHOD: &str = <HierarchicalZ as Method<Solid>>::CARD.key;
+
 /// Occluders of a scene, to be drawn for a view and then asked about boxes.
 pub struct Obscurer<S: Faces> {
     scene: Arc<Scene<S>>,

@@ -240,7 +240,7 @@ impl<S: Faces> Default for State<S> {
 }
 
 impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
-    #[allow(clippy::too_many_arguments)]
+    #[expect(clippy::too_many_arguments, reason = "the parts of a frame, each borrowed")]
     pub fn new(
         index: &'a Octree<S::Vector>,
         scene: &'a Scene<S>,

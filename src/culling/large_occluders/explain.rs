@@ -74,7 +74,7 @@ pub struct Related {
 
 impl Related {
     /// The operands of a classification.
-    #[allow(clippy::too_many_arguments)]
+    #[expect(clippy::too_many_arguments, reason = "the operands of one test")]
     pub fn of<S: Shape>(
         occluders: &Occluders<S>,
         owner: Owner,
@@ -426,7 +426,7 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
 
 /// A plane through an edge and a corner of the box, from the box past the edge toward the eye: a line in
 /// flatland, in space the triangle between the corner and the edge, drawn out.
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "the operands of one test, and where it is drawn")]
 fn draw_plane<S: Shape>(
     index: &Index<S>,
     note: &Related,

@@ -463,7 +463,7 @@ fn outline<S: Cellular>(
     role: Role,
     to: &mut Drawing<S::Vector>,
 ) {
-    debug_assert_eq!(cell_of(node_of(cell)), Some(cell));
+    debug_assert_eq!(cell_of(node_of(cell)), Some(cell), "a cell and its node name each other");
     for edge in index.cells.any().edges(cell) {
         to.line(layer, role, Subject::Node(node_of(cell)), edge);
     }

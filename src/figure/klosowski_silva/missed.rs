@@ -12,19 +12,11 @@ use crate::figure::coorg_teller::kit::{TWO_COLUMNS_PT, entry, page};
 use crate::figure::{Panel, Paper, Picture, Swatch, Tint, panels};
 use crate::geometry::{PrimId, Solid, View};
 use crate::method::Settings;
-use crate::raster::{render, shade, visible};
+use crate::raster::{render, shade, srgb_bytes, visible};
 use crate::scene::{Quiet, Scene, SceneError};
 
 /// Side of an image, pixels.
 const SIDE: u32 = 240;
-
-/// Linear to sRGB bytes (IEC 61966-2-1), opaque.
-fn encoded(color: [f32; 3]) -> [u8; 4] {
-    let byte = |v: f32| {
-        (if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 } * 255.0 + 0.5) as u8
-    };
-    [byte(color[0]), byte(color[1]), byte(color[2]), 255]
-}
 
 fn list(scene: &Arc<Scene<Solid>>, view: &View<Solid>, method: &str, settings: &Settings) -> Vec<PrimId> {
     let entry = Solid::method(method).expect("built-in figures name methods that exist");
@@ -39,7 +31,7 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
     let paper = tint(Role::Paper);
     let exact = render(&*scene, &view, scene.live());
     let (seen, exact) = (visible(&exact), shade(&exact, &*scene, &view, paper));
-    let [right, wrong] = [Role::Paper, Role::Wrong].map(|role| encoded(tint(role)));
+    let [right, wrong] = [Role::Paper, Role::Wrong].map(|role| srgb_bytes(tint(role)));
     let picture = |rgba: Vec<u8>| Picture::Pixels(Pixels { width: SIDE, height: SIDE, rgba: rgba.into() });
     let (mut upper, mut lower) = (Vec::new(), Vec::new());
     let cells = [("leaf-size", "5")];

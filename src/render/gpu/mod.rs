@@ -175,7 +175,7 @@ impl SpaceLayer {
 
     /// Draws a viewport into its own target. Returns whether there was anything to do: a viewport that
     /// shows the same as before is left as it is. At most once a viewport and submission.
-    #[allow(clippy::too_many_arguments)]
+    #[expect(clippy::too_many_arguments, reason = "the three of wgpu, and what is drawn where")]
     pub fn render(
         &mut self,
         device: &wgpu::Device,

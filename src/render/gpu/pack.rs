@@ -13,6 +13,7 @@ use crate::figure::role_of;
 use crate::geometry::{NodeId, PrimId, Solid};
 use crate::index::Hierarchy;
 use crate::method::Verdict;
+use crate::raster::srgb;
 use crate::scene::Scene;
 use crate::trace::{Stamp, Stamps, State};
 
@@ -123,17 +124,12 @@ const AMBIENT: f32 = 0.62;
 /// Seven bits a channel of the sRGB color, eight of shade, three of inner sides.
 fn look_word(linear: [f32; 3], normal: Vec3, inner: u8) -> u32 {
     let shade = AMBIENT + (1.0 - AMBIENT) * normal.normalize_or(LIGHT).dot(LIGHT).abs().min(1.0);
-    let channels = linear.map(|c| (encode(c) * 127.0).round() as u32);
+    let channels = linear.map(|c| (srgb(c) * 127.0).round() as u32);
     channels[0]
         | channels[1] << 7
         | channels[2] << 14
         | ((shade * 255.0).round() as u32) << 21
         | u32::from(inner & 7) << 29
-}
-/// Linear light to an sRGB value, 0..1.
-fn encode(linear: f32) -> f32 {
-    let c = linear.clamp(0.0, 1.0);
-    if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// For each primitive the bits of sides that lie inside a face: bit `i` is the side opposite corner `i`.

@@ -38,18 +38,7 @@ struct Plan<'a> {
 
 impl Pipelines {
     pub fn new(device: &wgpu::Device, blit_format: wgpu::TextureFormat) -> Self {
-        let frame_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("frame"),
-            entries: &[entry(
-                0,
-                ShaderStages::VERTEX_FRAGMENT,
-                wgpu::BindingType::Buffer {
-                    ty: BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
-                },
-            )],
-        });
+        let frame_layout = frame_layout(device);
         let layout = pipeline_layout(device, &frame_layout);
         let space = module(device, "space", concat!(include_str!("frame.wgsl"), include_str!("space.wgsl")));
         let lines = module(device, "lines", concat!(include_str!("frame.wgsl"), include_str!("lines.wgsl")));
@@ -126,6 +115,19 @@ impl Pipelines {
             blit_layout,
         }
     }
+}
+
+/// What every viewport shader reads: the uniforms of a frame.
+fn frame_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    let uniforms = wgpu::BindingType::Buffer {
+        ty: BufferBindingType::Uniform,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("frame"),
+        entries: &[entry(0, ShaderStages::VERTEX_FRAGMENT, uniforms)],
+    })
 }
 
 fn module(device: &wgpu::Device, label: &str, source: &str) -> wgpu::ShaderModule {

@@ -244,7 +244,7 @@ fn floor(h: &House, storey: u32) -> Inside {
 }
 
 /// Pieces along one side of a block, at the street's edge, their backs to the street.
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "a row of a table, and where it stands")]
 fn along(
     sink: &mut Sink,
     cell: &Cell,

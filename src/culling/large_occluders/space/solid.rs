@@ -2,11 +2,10 @@
 //!
 //! 1. The edge's first corner is taken as the origin. Where it lies against the box's three slabs (below,
 //!    inside, above) gives one of 27 codes, and with it the silhouette of the box: 4 or 6 corners in order
-//! (Figure 7).
+//!    (Figure 7).
 //! 2. Seen from there the edge is a point. Its side of each directed silhouette line gives a code of up to 6
 //!    bits, and a table maps the code to the two corners where tangents touch (Figure 8). A silhouette line
-//! spans the
-//!    origin and an edge of the box along an axis, so its side is the sign of two products.
+//!    spans the origin and an edge of the box along an axis, so its side is the sign of two products.
 
 use glam::{DVec3, Vec3};
 

@@ -5,12 +5,14 @@
 //! applied to linear RGB). Differences are CIE 1976 ΔE*ab under D65. Used for the preview and by the
 //! tests of the theme.
 
+use crate::raster::srgb;
+
 /// An sRGB color.
 pub type Rgb = [u8; 3];
 
 /// Whose eyes look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sight {
+pub enum ColorVision {
     /// Three cones, or a color printer.
     #[default]
     Full,
@@ -24,45 +26,50 @@ pub enum Sight {
     Tritanopia,
 }
 
-impl Sight {
-    /// Every sight, in the order of menus.
-    pub const ALL: [Sight; 5] =
-        [Sight::Full, Sight::Gray, Sight::Protanopia, Sight::Deuteranopia, Sight::Tritanopia];
+impl ColorVision {
+    /// All of them, in the order of menus.
+    pub const ALL: [ColorVision; 5] = [
+        ColorVision::Full,
+        ColorVision::Gray,
+        ColorVision::Protanopia,
+        ColorVision::Deuteranopia,
+        ColorVision::Tritanopia,
+    ];
 
     /// Name for menus.
     pub fn name(self) -> &'static str {
         match self {
-            Sight::Full => "full color",
-            Sight::Gray => "grayscale",
-            Sight::Protanopia => "protanopia",
-            Sight::Deuteranopia => "deuteranopia",
-            Sight::Tritanopia => "tritanopia",
+            ColorVision::Full => "full color",
+            ColorVision::Gray => "grayscale",
+            ColorVision::Protanopia => "protanopia",
+            ColorVision::Deuteranopia => "deuteranopia",
+            ColorVision::Tritanopia => "tritanopia",
         }
     }
 
     /// A color as it is seen.
     pub fn see(self, color: Rgb) -> Rgb {
         let rows: [[f32; 3]; 3] = match self {
-            Sight::Full => return color,
-            Sight::Gray => [LUMINANCE; 3],
-            Sight::Protanopia => [
+            ColorVision::Full => return color,
+            ColorVision::Gray => [LUMINANCE; 3],
+            ColorVision::Protanopia => [
                 [0.152286, 1.052583, -0.204868],
                 [0.114503, 0.786281, 0.099216],
                 [-0.003882, -0.048116, 1.051998],
             ],
-            Sight::Deuteranopia => [
+            ColorVision::Deuteranopia => [
                 [0.367322, 0.860646, -0.227968],
                 [0.280085, 0.672501, 0.047413],
                 [-0.011820, 0.042940, 0.968881],
             ],
-            Sight::Tritanopia => [
+            ColorVision::Tritanopia => [
                 [1.255528, -0.076749, -0.178779],
                 [-0.078411, 0.930809, 0.147602],
                 [0.004733, 0.691367, 0.303900],
             ],
         };
         let seen = linear(color);
-        rows.map(|row| encode(row.iter().zip(seen).map(|(a, b)| a * b).sum()))
+        rows.map(|row| (srgb(row.iter().zip(seen).map(|(a, b)| a * b).sum()) * 255.0).round() as u8)
     }
 }
 
@@ -75,13 +82,6 @@ pub fn linear(color: Rgb) -> [f32; 3] {
         let c = f32::from(c) / 255.0;
         if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
     })
-}
-
-/// One channel of linear light as sRGB.
-fn encode(c: f32) -> u8 {
-    let c = c.clamp(0.0, 1.0);
-    let c = if c <= 0.0031308 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-    (c * 255.0).round() as u8
 }
 
 /// Relative luminance, 0 for black and 1 for white.
@@ -128,13 +128,13 @@ mod tests {
     fn known_values() {
         assert!((contrast([0; 3], [255; 3]) - 21.0).abs() < 1e-3);
         assert!(difference([255; 3], [0; 3]) > 99.0);
-        assert_eq!(Sight::Gray.see([0, 0, 255]), [76; 3]);
-        for sight in Sight::ALL {
+        assert_eq!(ColorVision::Gray.see([0, 0, 255]), [76; 3]);
+        for vision in ColorVision::ALL {
             for gray in [[0; 3], [119; 3], [255; 3]] {
                 assert!(
-                    difference(sight.see(gray), gray) < 1.5,
-                    "{sight:?} changes gray {gray:?} to {:?}",
-                    sight.see(gray)
+                    difference(vision.see(gray), gray) < 1.5,
+                    "{vision:?} changes gray {gray:?} to {:?}",
+                    vision.see(gray)
                 );
             }
         }
@@ -144,8 +144,12 @@ mod tests {
     fn red_and_green_fall_together_without_their_cones() {
         let (red, green) = ([200, 60, 40], [110, 120, 40]);
         let full = difference(red, green);
-        assert!(difference(Sight::Deuteranopia.see(red), Sight::Deuteranopia.see(green)) < full / 2.0);
-        assert!(difference(Sight::Tritanopia.see(red), Sight::Tritanopia.see(green)) > full / 2.0);
+        assert!(
+            difference(ColorVision::Deuteranopia.see(red), ColorVision::Deuteranopia.see(green)) < full / 2.0
+        );
+        assert!(
+            difference(ColorVision::Tritanopia.see(red), ColorVision::Tritanopia.see(green)) > full / 2.0
+        );
     }
 
     #[test]
