@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::blocks::{CURB, House, Neighbor, RISE, Roof, STOREY};
 use super::plan::HEIGHT;
 use super::shapes::{Frame, Sink};
-use super::{city as paint, furniture};
+use super::{furniture, paint};
 
 /// How far a wall inside stays away from the walls outside, m.
 const DRAWN_BACK: f64 = 0.06;

@@ -14,6 +14,7 @@ mod house;
 mod lathe;
 mod machine_room;
 mod machinery;
+mod paint;
 mod plan;
 mod sculpture;
 mod seminar_room;
