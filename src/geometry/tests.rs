@@ -145,60 +145,67 @@ fn a_plane_mask_leaves_planes_out() {
     assert_eq!(view.frustum().test(&bounds, 0), FrustumTest::Inside, "no plane, no objection");
 }
 
+/// The pixel coordinates of a point in clip space; flatland points lie in the middle of the row.
+fn pixel_of<S: Space>(view: &View<S>, clip: [f64; 3]) -> (f64, f64) {
+    let x = (clip[0] / clip[2] * 0.5 + 0.5) * f64::from(view.width);
+    let y = (0.5 - clip[1] / clip[2] * 0.5) * f64::from(view.height);
+    (x, if S::Vector::AXES == 2 { 0.5 } else { y })
+}
+
+/// A point of a box that is in view lies within the box's footprint.
+fn footprint_holds<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, point: S::Vector) {
+    let near = view.eye.near;
+    let clip = exact_clip(view, point);
+    match project_box(&view.projection(), bounds, near, view.eye.far, view.width, view.height) {
+        Footprint::Outside => {
+            assert!(!in_view(view, clip, 0.0), "a box with a point in view has no footprint")
+        }
+        Footprint::Seen(image) if in_view(view, clip, 0.0) => {
+            let (r, (x, y)) = (image.pixels, pixel_of(view, clip));
+            // Half a pixel: the rectangle holds centers.
+            let holds = |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
+            assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
+            assert!((1.0 / clip[2]) as f32 <= image.nearest, "a point is nearer than the nearest depth");
+            assert_eq!(image.nearest, nearest_depth(&view.projection(), bounds, near));
+        }
+        _ => {}
+    }
+}
+
+/// A footprint is no larger than the image of the box's exact corners, but for rounding and the margin.
+fn footprint_is_tight<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, image: &BoxImage) {
+    let width = f64::from(view.width);
+    let exact: Vec<f64> = bounds.corners().map(|c| pixel_of(view, exact_clip(view, c)).0).collect();
+    // Apart by the rounding of the rows to f32.
+    for (at, want) in image.corners_px.iter().zip(&exact) {
+        assert!(
+            want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
+            "a corner is at {want}, not at {at:?}"
+        );
+    }
+    let low = exact.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, width);
+    let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, width);
+    let r = image.pixels;
+    assert!(
+        f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX,
+        "{r:?} is much wider than {low}..{high}"
+    );
+}
+
 fn footprint_check<S: Space>(seed: u64) {
     let mut rng = Pcg32::new(seed, 3);
     let mut rects = 0;
     for _ in 0..20_000 {
         let view = random_view::<S>(&mut rng, 100.0);
         let bounds = random_box(&mut rng, view.eye.position);
+        for _ in 0..16 {
+            footprint_holds(&view, &bounds, sample_in(&mut rng, &bounds));
+        }
         let (near, far) = (view.eye.near, view.eye.far);
         let footprint = project_box(&view.projection(), &bounds, near, far, view.width, view.height);
-        let pixel = |clip: [f64; 3]| {
-            let x = (clip[0] / clip[2] * 0.5 + 0.5) * f64::from(view.width);
-            let y = (0.5 - clip[1] / clip[2] * 0.5) * f64::from(view.height);
-            (x, if S::Vector::AXES == 2 { 0.5 } else { y })
-        };
-        for _ in 0..16 {
-            let clip = exact_clip(&view, sample_in(&mut rng, &bounds));
-            match footprint {
-                Footprint::Outside => {
-                    assert!(!in_view(&view, clip, 0.0), "a box with a point in view has no footprint")
-                }
-                Footprint::Seen(image) if in_view(&view, clip, 0.0) => {
-                    let (r, (x, y)) = (image.pixels, pixel(clip));
-                    // Half a pixel: the rectangle holds centers.
-                    let holds =
-                        |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
-                    assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
-                    assert!(
-                        (1.0 / clip[2]) as f32 <= image.nearest,
-                        "a point is nearer than the nearest depth"
-                    );
-                    assert_eq!(image.nearest, nearest_depth(&view.projection(), &bounds, near));
-                }
-                _ => {}
-            }
-        }
-        if let Footprint::Seen(BoxImage { pixels: r, corners_px, .. }) = footprint {
+        if let Footprint::Seen(image) = footprint {
             rects += 1;
-            // Apart by the rounding of the rows to f32.
-            for (at, corner) in corners_px.iter().zip(bounds.corners()) {
-                let want = pixel(exact_clip(&view, corner)).0;
-                let width = f64::from(view.width);
-                assert!(
-                    want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
-                    "a corner is at {want}, not at {at:?}"
-                );
-            }
-            // Tight: the rectangle is that of the exact corners, a pixel and the margin at most larger.
-            let corners: Vec<_> = bounds.corners().map(|c| pixel(exact_clip(&view, c)).0).collect();
-            let low = corners.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, f64::from(view.width));
-            let high =
-                corners.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, f64::from(view.width));
-            assert!(
-                f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX,
-                "{r:?} is much wider than {low}..{high}"
-            );
+            footprint_is_tight(&view, &bounds, &image);
         }
     }
     assert!(rects > 500, "only {rects} rectangles");

@@ -75,6 +75,7 @@ impl Target {
         if (self.width, self.height) != (other.width, other.height) {
             return self.item.len();
         }
+        // Bits, not values: −0 and 0 would be equal, and an image is promised byte for byte.
         let same = |i: &usize| {
             self.item[*i] == other.item[*i] && self.depth[*i].to_bits() == other.depth[*i].to_bits()
         };
@@ -151,7 +152,7 @@ pub struct Extent {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { backface_culling: false, threads: 1, isa: Isa::detect(), window: None }
+        Self { backface_culling: false, threads: 1, isa: Isa::best(), window: None }
     }
 }
 
@@ -268,6 +269,7 @@ pub fn render<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId]) -
 /// The primitives that show in the image, ascending.
 pub fn visible(target: &Target) -> Vec<PrimId> {
     let ids = || target.item.iter().copied().filter(|&i| i != Target::NONE);
+    // A bit for each id: the list comes out ascending and without repetition, with no sort.
     let mut seen = vec![0u64; ids().max().map_or(0, |m| m as usize / 64 + 1)];
     ids().for_each(|i| seen[i as usize / 64] |= 1 << (i % 64));
     let bits = |(word, &bits): (usize, &u64)| {
