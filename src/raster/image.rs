@@ -65,7 +65,6 @@ pub(super) fn draw(
     let camera = Camera::new(view);
     // 1. Projecting every point costs at most two projections a primitive here, and its own corners three.
     // The code is the same either way, and so are the vertices.
-    // A small subset projects its own corners; both ways call the same function.
     let points = if prims.len() * 2 >= scene.points().len() { scene.points() } else { &[] };
     scratch.vertices.resize(points.len(), Vertex::default());
     if threads <= 1 {
@@ -339,7 +338,6 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
                 let at = row + x as usize;
                 let past = row + end.min(x + L::N as i32) as usize;
                 // Rows are a page or more apart in wide images, which hardware prefetchers do not follow.
-                // Rows are a page apart, which hardware does not foresee.
                 l.prefetch(band.depth.get(at + ahead));
                 if ITEMS {
                     l.prefetch(band.item.get(at + ahead));
@@ -387,7 +385,6 @@ fn quotient(e: i64, inverse: f64) -> i32 {
     // Truncation rounds down once the value is not negative.
     // SAFETY: the clamped value plus `LIMIT` lies in 0..=2¹⁷ and is not NaN: `e` is finite, and `inverse` is
     // that of an edge that is not horizontal. (The checked conversion is not SIMD.)
-    // SAFETY: the value lies within 0..=2¹⁷. (The checked conversion is not SIMD.)
     #[allow(unsafe_code)]
     let floor: i32 = unsafe { (q + LIMIT).to_int_unchecked() };
     floor - LIMIT as i32

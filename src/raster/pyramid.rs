@@ -314,7 +314,6 @@ impl Work for Reduce<'_> {
         const SIDE: usize = TILE_PX as usize;
         // A full tile in every case, so that all loops have constant bounds and become SIMD. Pixels beyond
         // the image's edge are nearer than all: they never are the farthest.
-        // Pixels beyond the image's edge are nearer than all: they never are the farthest.
         let mut pixels = [f32::INFINITY; SIDE * SIDE];
         for row in 0..self.rows {
             let from = &self.depth[row * self.stride..];

@@ -124,7 +124,6 @@ impl Camera {
         // `|x / w| · middle ≤ GUARD` without the division.
         let [gx, gy] = self.middle.map(|m| GUARD / m);
         // Inside is plane·(x, y, w) ≥ offset. The near plane comes first: beyond it `w` is positive.
-        // Inside is plane·(x, y, w) ≥ offset.
         let planes = [
             ([0.0, 0.0, 1.0], self.near),
             ([1.0, 0.0, gx], 0.0),
