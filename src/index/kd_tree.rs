@@ -194,23 +194,10 @@ impl<S: Space> Hierarchy<S> for KdTree<S::Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::dice::Dice;
     use crate::geometry::{Flat, Solid};
+    use crate::index::tests::random_boxes;
     use glam::{Vec2, Vec3, Vec4};
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
-
-    fn random_boxes<V: Vector>(rng: &mut Pcg32, n: usize, grid: bool) -> Vec<(PrimId, Aabb<V>)> {
-        let mut coordinate = |scale: f32| {
-            let v = (rng.next_u32() >> 8) as f32 / (1 << 24) as f32 * scale;
-            // A coarse grid makes many equal centers, where ties matter.
-            if grid { v.floor() } else { v }
-        };
-        let mut one = |i| {
-            let min = V::from_fn(|_| coordinate(10.0));
-            (PrimId(i as u32), Aabb { min, max: min + V::from_fn(|_| coordinate(2.0)) })
-        };
-        (0..n).map(&mut one).collect()
-    }
 
     /// What the tree promises beyond the contract of [`Hierarchy`]: tight bounds, and children that are a
     /// balanced partition of their parent at its plane.
@@ -241,11 +228,11 @@ mod tests {
     }
 
     fn check<V: Vector>(fault: fn(&KdTree<V>, &[(PrimId, Aabb<V>)]) -> Option<String>) {
-        let mut rng = Pcg32::new(7, 11);
+        let mut dice = Dice::new(7);
         for case in 0..300 {
-            let n = 1 + (rng.next_u32() % 300) as usize;
-            let height = 1 + rng.next_u32() % 12;
-            let boxes = random_boxes::<V>(&mut rng, n, case % 2 == 0);
+            let n = 1 + dice.below(300) as usize;
+            let height = 1 + dice.below(12);
+            let boxes = random_boxes::<V>(&mut dice, n, &[2.0], case % 2 == 0);
             let tree = KdTree::build(boxes.iter().copied(), height, || false).expect("not cancelled");
             assert_eq!(fault(&tree, &boxes), None, "case {case}");
             assert_balanced(&tree, &boxes, height);
@@ -262,7 +249,7 @@ mod tests {
 
     #[test]
     fn height_eight_gives_the_papers_255_nodes_and_alternates_axes() {
-        let boxes = random_boxes::<Vec3>(&mut Pcg32::new(1, 1), 5000, false);
+        let boxes = random_boxes::<Vec3>(&mut Dice::new(1), 5000, &[2.0], false);
         let tree = KdTree::build(boxes.iter().copied(), 8, || false).expect("not cancelled");
         assert_eq!(tree.nodes().len(), 255);
         assert!(tree.nodes().iter().filter(|n| !n.is_leaf()).all(|n| n.axis == n.level % 3));
@@ -277,7 +264,7 @@ mod tests {
 
     #[test]
     fn the_order_of_input_does_not_matter() {
-        let mut boxes = random_boxes::<Vec3>(&mut Pcg32::new(3, 5), 400, true);
+        let mut boxes = random_boxes::<Vec3>(&mut Dice::new(3), 400, &[2.0], true);
         let a = KdTree::build(boxes.iter().copied(), 6, || false).expect("not cancelled");
         boxes.reverse();
         let b = KdTree::build(boxes.iter().copied(), 6, || false).expect("not cancelled");
@@ -286,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_build_can_be_cancelled() {
-        let boxes = random_boxes::<Vec2>(&mut Pcg32::new(3, 5), 40, false);
+        let boxes = random_boxes::<Vec2>(&mut Dice::new(3), 40, &[2.0], false);
         assert!(KdTree::build(boxes.into_iter(), 6, || true).is_none());
     }
 }

@@ -383,24 +383,10 @@ impl<S: Space> Hierarchy<S> for Octree<S::Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::dice::Dice;
     use crate::geometry::{Flat, Solid};
+    use crate::index::tests::random_boxes;
     use glam::{Vec2, Vec3};
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
-
-    fn random_boxes<V: Vector>(rng: &mut Pcg32, n: usize, grid: bool) -> Vec<(PrimId, Aabb<V>)> {
-        let mut coordinate = |scale: f32| {
-            let v = (rng.next_u32() >> 8) as f32 / (1 << 24) as f32 * scale;
-            // A coarse grid puts boxes on dividing planes.
-            if grid { v.floor() } else { v }
-        };
-        let mut one = |i: usize| {
-            let min = V::from_fn(|_| coordinate(16.0));
-            let size = [0.1, 1.0, 5.0][i % 3];
-            (PrimId(i as u32), Aabb { min, max: min + V::from_fn(|_| coordinate(size)) })
-        };
-        (0..n).map(&mut one).collect()
-    }
 
     /// What the tree promises beyond the contract of [`Hierarchy`]: bounds of what each cube holds, slices of
     /// the order, and references to shared primitives.
@@ -449,13 +435,13 @@ mod tests {
     }
 
     fn check<S: Space>() {
-        let mut rng = Pcg32::new(17, 11);
+        let mut dice = Dice::new(17);
         for case in 0..400 {
-            let n = (rng.next_u32() % 300) as usize;
-            let boxes = random_boxes::<S::Vector>(&mut rng, n, case % 2 == 0);
+            let n = dice.below(300) as usize;
+            let boxes = random_boxes::<S::Vector>(&mut dice, n, &[0.1, 1.0, 5.0], case % 2 == 0);
             let shape = Shape {
-                levels: 1 + rng.next_u32() % 12,
-                leaf_prims: 1 + rng.next_u32() % 20,
+                levels: 1 + dice.below(12),
+                leaf_prims: 1 + dice.below(20),
                 redistribution: Redistribution::ALL[case % 4],
                 small: [0.0, 0.1, 0.5, 2.0][case / 4 % 4],
             };

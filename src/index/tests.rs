@@ -1,11 +1,32 @@
-//! The contract of [`Hierarchy`] sees each fault that it names.
+//! The contract of [`Hierarchy`] sees each fault that it names; boxes for tests of all trees.
 
 use std::ops::Range;
 
 use glam::Vec2;
 
 use super::Hierarchy;
-use crate::geometry::{Aabb, Flat, NodeId, PrimId};
+use crate::geometry::dice::Dice;
+use crate::geometry::{Aabb, Flat, NodeId, PrimId, Vector};
+
+/// Boxes in a cube of side 16, whose sizes are 0 to each of `sizes` in turn; or with corners on a coarse grid,
+/// where centers are equal and dividing planes fall.
+pub(super) fn random_boxes<V: Vector>(
+    dice: &mut Dice,
+    n: usize,
+    sizes: &[f32],
+    grid: bool,
+) -> Vec<(PrimId, Aabb<V>)> {
+    let mut coordinate = |most: f32| {
+        let v = dice.between(0.0, most);
+        if grid { v.floor() } else { v }
+    };
+    let mut one = |i: usize| {
+        let min = V::from_fn(|_| coordinate(16.0));
+        let size = sizes[i % sizes.len()];
+        (PrimId(i as u32), Aabb { min, max: min + V::from_fn(|_| coordinate(size)) })
+    };
+    (0..n).map(&mut one).collect()
+}
 
 /// A tree written down: a root over two leaves, and four primitives.
 #[derive(Clone)]

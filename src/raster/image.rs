@@ -45,7 +45,7 @@ struct Chunk {
 const CHUNK_PRIMS: usize = 4096;
 /// Triangles set up before they are filled, on one thread: 25 KiB, which the first cache holds.
 const BATCH_PRIMS: usize = 256;
-/// Rows that memory is asked for ahead.
+/// Rows that memory is prefetched ahead.
 const PREFETCH_ROWS: usize = 2;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;

@@ -5,7 +5,7 @@
 //! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone.
 //! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
 //! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
-//! primitives that were hidden changes no byte. [`mod@reference`] says the same in the plainest code.
+//! primitives that were hidden changes no byte. [`mod@reference`] does the same in the plainest code.
 //!
 //! A primitive that [`crate::geometry::Frustum::test`] calls outside yields no fragment: its vertices lie
 //! beyond the plane by more than the rounding here, and pixel centers lie half a pixel inside the image.
@@ -141,7 +141,7 @@ pub struct Sieve<'a> {
     pub hidden: &'a mut Vec<PrimId>,
 }
 
-/// What a pyramid is asked about a primitive.
+/// What the test of a primitive against the pyramid reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The pixels that it can cover.
@@ -175,8 +175,8 @@ pub trait Drawable: Space {
         prims: &[PrimId],
         options: &Options,
     );
-    /// What [`Drawable::sift`] asks the pyramid about a primitive; `None` if it does not ask, since the
-    /// primitive covers no pixel or has to be clipped.
+    /// What [`Drawable::sift`] tests against the pyramid; `None` if it tests nothing, since the primitive
+    /// covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
     /// The same as [`Drawable::draw`] in the plainest code (and without a window); see [`mod@reference`].
     ///

@@ -94,7 +94,7 @@ pub(super) trait Lanes: Copy {
     /// The lanes where none of the three is negative.
     fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M;
     fn all(self) -> Self::M;
-    /// Asks for the memory of this element soon; changes nothing.
+    /// Begins to load this element into the cache; changes nothing else.
     fn prefetch<T>(self, at: Option<&T>);
     /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
     /// Touches the slices' lanes only: both have the same length, at most `N`.

@@ -3,7 +3,7 @@
 //! Projection runs in f64 on the f32 rows of the view's [`Projection`](crate::geometry::Projection),
 //! relative to the eye, so it is exact to about 2⁻⁵⁰ and the snap to 1/256 pixel is the one error that
 //! counts. Clipping (near plane and guard band) also runs in f64, in clip space, and cuts an edge from
-//! its lesser end whichever triangle asks, so that neighbors keep sharing their edges.
+//! its lesser end whichever triangle it belongs to, so that neighbors keep sharing their edges.
 
 use crate::geometry::{Space, Vector, View};
 

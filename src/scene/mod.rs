@@ -299,7 +299,7 @@ impl<S: Space> Scene<S> {
     }
 }
 
-/// A scene of either space, for code that has not yet asked which.
+/// A scene of either space, for code that does not know yet which.
 #[derive(Clone, Debug)]
 pub enum AnyScene {
     /// Flatland.

@@ -128,17 +128,16 @@ fn grid(points: &[DVec3]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
+    use crate::geometry::dice::Dice;
 
     #[test]
     fn signs_are_those_of_exact_expansions() {
-        let mut rng = Pcg32::new(3, 9);
+        let mut dice = Dice::new(3);
         let (mut ties, mut inside) = (0, 0);
         for case in 0..4000 {
             // Small grids, where ties abound; large ones; numbers of very different size; and no grid at all.
             let mut number = || {
-                let v = rng.next_u32();
+                let v = dice.bits();
                 match case % 4 {
                     0 => f64::from(v % 4) - 2.0,
                     1 => f64::from(v >> 8) * 0.125,

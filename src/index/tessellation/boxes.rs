@@ -190,7 +190,7 @@ fn join<V: Vector>(
         let last = if a.axis as usize == axis { 1 } else { 2 };
         (0..last).for_each(|i| join(nodes, below, a.link + i, axis, pairs));
     } else {
-        // Two leaves that share part of the plane: each is told of the other.
+        // Two leaves that share part of the plane: each lists the other.
         let normal = V::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
         pairs.push((CellId(b.link), Neighbor { cell: CellId(a.link), normal }));
         pairs.push((CellId(a.link), Neighbor { cell: CellId(b.link), normal: -normal }));

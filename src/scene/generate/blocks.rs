@@ -9,7 +9,7 @@ use glam::DVec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::plan::{divide, signed};
+use super::plan::{Rect, corners, divide, signed};
 
 /// Four corners in the order north-west, north-east, south-east, south-west; side k runs from corner k to k +
 /// 1.
@@ -181,7 +181,7 @@ fn within(quad: &Quad, u: f64, v: f64) -> DVec3 {
 /// A piece of ground for a house.
 struct Lot {
     /// Its corner in the north-west and that in the south-east: `[u0, v0, u1, v1]` of the block.
-    place: [f64; 4],
+    place: Rect,
     /// Sides to the lot before and after it in the ring.
     ends: [usize; 2],
     /// Which sides face a street.
@@ -239,7 +239,7 @@ fn lots([wide, deep]: [f64; 2], rng: &mut Pcg32) -> Vec<Lot> {
             street: std::array::from_fn(|k| k == side || k == before),
         });
         let cuts = if side % 2 == 0 { inner(du, wide, rng) } else { inner(dv, deep, rng) };
-        let mut row: Vec<[f64; 4]> = cuts
+        let mut row: Vec<Rect> = cuts
             .windows(2)
             .map(|w| match side {
                 0 => [w[0], 0.0, w[1], dv],
@@ -260,8 +260,7 @@ fn lots([wide, deep]: [f64; 2], rng: &mut Pcg32) -> Vec<Lot> {
 
 /// A house of a random kind on a lot; nothing joins it yet.
 fn house(line: &Quad, lot: &Lot, rng: &mut Pcg32) -> House {
-    let [u0, v0, u1, v1] = lot.place;
-    let ground = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| within(line, u, v));
+    let ground = corners(lot.place).map(|[u, v]| within(line, u, v));
     let roof = match (lot.is_corner(), rng.next_u32() % 3) {
         (_, 0) => Roof::Flat,
         (true, _) => Roof::Tent,
