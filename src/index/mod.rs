@@ -19,7 +19,7 @@ use crate::geometry::{Aabb, NodeId, PrimId, Space};
 
 /// A frozen tree of boxes over the primitives of a scene, as stepping and drawing see it.
 ///
-/// 1. Node 0 is the root, on level 0. Every other node has one parent, of a smaller id and on the level above.
+/// 1. Node 0 is the root, on level 0. Every other node has one parent, of a smaller id, on the level above.
 /// 2. The root lists every live primitive once. The children of a node list primitives of that node, and no
 ///    two children the same one.
 /// 3. The bounds of a node hold those of its children and all primitives that it lists.

@@ -8,8 +8,8 @@ use super::Hierarchy;
 use crate::geometry::dice::Dice;
 use crate::geometry::{Aabb, Flat, NodeId, PrimId, Vector};
 
-/// Boxes in a cube of side 16, whose sizes are 0 to each of `sizes` in turn; or with corners on a coarse grid,
-/// where centers are equal and dividing planes fall.
+/// Boxes in a cube of side 16, whose sizes are 0 to each of `sizes` in turn; or with corners on a coarse
+/// grid, where centers are equal and dividing planes fall.
 pub(super) fn random_boxes<V: Vector>(
     dice: &mut Dice,
     n: usize,

@@ -133,8 +133,8 @@ fn region<S: Space>(scene: &Scene<S>) -> Aabb<S::Vector> {
     let center = bounds.center();
     let longest = (0..S::Vector::AXES).map(|a| bounds.size().get(a)).fold(0.0, f32::max);
     let far = (0..S::Vector::AXES).map(|a| center.get(a).abs()).fold(0.0, f32::max);
-    // The largest of three: the scene's half side; a share of its distance from the origin, for below that f32
-    // would not tell the sides apart; a number that is not 0.
+    // The largest of three: the scene's half side; a share of its distance from the origin, for below that
+    // f32 would not tell the sides apart; a number that is not 0.
     let half = S::Vector::splat((longest * (0.5 + SLACK)).max(far * SLACK).max(f32::MIN_POSITIVE / SLACK));
     Aabb { min: center - half, max: center + half }
 }

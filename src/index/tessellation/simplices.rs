@@ -16,8 +16,8 @@ use crate::geometry::{Aabb, CellId, Vector};
 
 /// No neighbor.
 pub(super) const NONE: u32 = u32::MAX;
-/// A center is moved by at most this share of its cell's size along each axis. The paper gives no amount; at an
-/// eighth it stays well inside its leaf.
+/// A center is moved by at most this share of its cell's size along each axis. The paper gives no amount; at
+/// an eighth it stays well inside its leaf.
 const JITTER: f32 = 0.125;
 /// The vertices of the face opposite each vertex, so that the cell's inside is in front of the face.
 const FACES: [[[usize; 3]; 4]; 2] =
