@@ -27,7 +27,7 @@ fn main() {
     ];
     // Further models may be named on the command line.
     sources.extend(std::env::args().skip(1).filter(|a| !a.starts_with("--")));
-    println!("instruction set {}, {ROUNDS} rounds a view, {VIEWS} views of each path", Isa::detect().label());
+    println!("instruction set {}, {ROUNDS} rounds a view, {VIEWS} views of each path", Isa::best().label());
     for source in sources {
         let scene = match load(&source, &LoadOptions::default(), &Quiet) {
             Ok(AnyScene::Solid(scene)) => scene,
@@ -129,7 +129,7 @@ fn against_reference(scene: &Scene<Solid>) {
         println!(
             "  1024×1024, {} / {}: ×{:.2}  [{:016x}]",
             isa.label(),
-            Isa::detect().label(),
+            Isa::best().label(),
             median(ratios.collect()),
             hash(&plain)
         );

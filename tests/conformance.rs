@@ -8,7 +8,8 @@
 //! - after the last note of a film its large state is that of the run;
 //! - truth ⊆ answer, and the same image, if the method says that it is conservative;
 //! - it culls at least what it culled before (culling nothing is conservative too);
-//! - every certificate is accepted by the independent checker.
+//! - every certificate is accepted by the independent checker;
+//! - every index keeps the contract of its trait, over degenerate scenes too.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -364,4 +365,50 @@ fn nothing_visible_is_missed_in_flatland() {
 #[test]
 fn nothing_visible_is_missed_in_space() {
     nothing_visible_is_missed(&solid_scenes());
+}
+
+/// Scenes where sizes, distances or differences vanish: one primitive, all at one place, all alike, all in one
+/// plane (line), and corners on a coarse grid, where dividing planes fall.
+fn degenerate<S: Space>(make: fn([u32; 3]) -> S::Corners) -> Vec<Arc<Scene<S>>> {
+    let mut rng = Pcg32::new(9, 71);
+    let mut grid = move |n: u32| (rng.next_u32() % n) as f32;
+    let mut scene =
+        |name: &str, n: u32, corner: &mut dyn FnMut(&mut dyn FnMut(u32) -> f32, u32) -> S::Vector| {
+            let points =
+                (0..n * S::CORNERS as u32).map(|k| corner(&mut grid, k % S::CORNERS as u32)).collect();
+            let first = |k: u32| k * S::CORNERS as u32;
+            let prims = (0..n).map(|k| make([first(k), first(k) + 1, first(k) + 2])).collect();
+            Arc::new(Scene::new(Parts::simple(name, points, prims)).expect("a valid scene"))
+        };
+    let apart = |corner: u32| S::Vector::from_fn(|a| if a as u32 == corner { 1.0 } else { 0.25 });
+    vec![
+        scene("one primitive", 1, &mut |_, corner| apart(corner)),
+        scene("one place", 40, &mut |_, _| S::Vector::splat(3e4)),
+        scene("all alike", 60, &mut |_, corner| apart(corner)),
+        scene("one plane", 60, &mut |grid, _| S::Vector::from_fn(|a| if a == 1 { 2.0 } else { grid(9) })),
+        scene("a grid", 150, &mut |grid, _| S::Vector::from_fn(|_| grid(5))),
+    ]
+}
+
+fn indices_are_well_formed<S: World>(random: &[Arc<Scene<S>>], make: fn([u32; 3]) -> S::Corners) {
+    let mut scenes = degenerate(make);
+    scenes.extend(random.iter().cloned());
+    let mut divided = 0;
+    each_case(&scenes, |entry, scene, settings| {
+        let prims: Vec<_> = scene.live().iter().map(|&p| (p, scene.prim_bounds(p))).collect();
+        let run = ready(entry, scene, settings);
+        let fault = run.hierarchy().fault(&prims);
+        assert_eq!(fault, None, "{} {settings:?} on {}", entry.card().key, scene.name());
+        divided += u32::from(run.hierarchy().node_count() > 3);
+    });
+    assert!(divided > 50, "only {divided} indices have more than a few nodes");
+}
+
+#[test]
+fn indices_are_well_formed_in_flatland() {
+    indices_are_well_formed(&SEEDS.map(|s| soup::<Flat>(s, 60, |[a, b, _]| [a, b])), |[a, b, _]| [a, b]);
+}
+#[test]
+fn indices_are_well_formed_in_space() {
+    indices_are_well_formed(&SEEDS.map(|s| soup::<Solid>(s, 80, |c| c)), |c| c);
 }

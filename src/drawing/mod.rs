@@ -41,7 +41,7 @@ pub enum Role {
     Ink,
     /// Secondary text, grids, ticks.
     Faint,
-    /// The scene before anything was said about it.
+    /// The scene before anything is known about it.
     Scene,
     /// In the queue or not yet decided.
     Undecided,
@@ -229,7 +229,7 @@ pub enum Mark<P> {
     Text {
         /// Its anchor on the baseline.
         at: P,
-        /// What it says.
+        /// The words.
         text: String,
         /// Font size.
         size_pt: f32,
@@ -245,6 +245,20 @@ pub enum Mark<P> {
         /// The picture.
         pixels: Pixels,
     },
+}
+
+impl<P: Copy> Mark<P> {
+    /// The same mark with each point moved; sizes on paper stay.
+    pub fn mapped(&self, f: impl Fn(P) -> P) -> Self {
+        let mut mark = self.clone();
+        match &mut mark {
+            Self::Line { points, .. } | Self::Area(points) => points.iter_mut().for_each(|p| *p = f(*p)),
+            Self::Arrow(a, b) => (*a, *b) = (f(*a), f(*b)),
+            Self::Dot { at, .. } | Self::Text { at, .. } => *at = f(*at),
+            Self::Image { corners, .. } => *corners = corners.map(f),
+        }
+        mark
+    }
 }
 
 /// A mark with what it means.

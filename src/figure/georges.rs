@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, vec2};
+use glam::vec2;
 
 use super::builtin::{Row, eye, film, flat_panel, page};
 use super::page::legend;
@@ -46,24 +46,11 @@ fn below(parts: Vec<Drawing>) -> Drawing {
     let mut all = Drawing::default();
     for part in parts {
         let by = vec2(0.0, all.size_pt.y);
-        all.items.extend(part.items.into_iter().map(|item| Item { mark: moved(item.mark, by), ..item }));
+        all.items
+            .extend(part.items.into_iter().map(|item| Item { mark: item.mark.mapped(|p| p + by), ..item }));
         all.size_pt = vec2(all.size_pt.x.max(part.size_pt.x), by.y + part.size_pt.y);
     }
     all
-}
-
-fn moved(mark: Mark<Vec2>, by: Vec2) -> Mark<Vec2> {
-    let each = |points: Vec<Vec2>| points.into_iter().map(|p| p + by).collect();
-    match mark {
-        Mark::Line { points, closed } => Mark::Line { points: each(points), closed },
-        Mark::Area(points) => Mark::Area(each(points)),
-        Mark::Arrow(a, b) => Mark::Arrow(a + by, b + by),
-        Mark::Dot { at, radius_pt } => Mark::Dot { at: at + by, radius_pt },
-        Mark::Text { at, text, size_pt, anchor, font } => {
-            Mark::Text { at: at + by, text, size_pt, anchor, font }
-        }
-        Mark::Image { corners, pixels } => Mark::Image { corners: corners.map(|c| c + by), pixels },
-    }
 }
 
 /// The legend of lit cells.

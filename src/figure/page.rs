@@ -139,7 +139,7 @@ impl Page {
             items: Vec::with_capacity(picture.items.len() + 32),
         };
         for item in &picture.items {
-            let mark = placed(&item.mark, |p| corner + p * scale);
+            let mark = item.mark.mapped(|p| corner + p * scale);
             page.items.push(Item { mark, role: item.role, subject: item.subject, layer: item.layer });
         }
         layout.title_to(&mut page);
@@ -319,17 +319,6 @@ fn swatch(entry: &Entry, min: Vec2, max: Vec2, to: &mut Drawing) {
         Swatch::Dot => Mark::Dot { at: (min + max) / 2.0, radius_pt: (max.y - min.y) * 0.35 },
     };
     to.push(Layer::Legend, entry.role, Subject::None, mark);
-}
-
-fn placed(mark: &Mark<Vec2>, f: impl Fn(Vec2) -> Vec2) -> Mark<Vec2> {
-    let mut mark = mark.clone();
-    match &mut mark {
-        Mark::Line { points, .. } | Mark::Area(points) => points.iter_mut().for_each(|p| *p = f(*p)),
-        Mark::Arrow(a, b) => (*a, *b) = (f(*a), f(*b)),
-        Mark::Dot { at, .. } | Mark::Text { at, .. } => *at = f(*at),
-        Mark::Image { corners, .. } => *corners = corners.map(f),
-    }
-    mark
 }
 
 /// The words of a role in a legend; nothing for what needs no explanation.

@@ -120,7 +120,7 @@ impl<V: Vector> Frustum<V> {
         PlaneTest { plane: plane as u8, far_corner: far, near_corner: near, error: size * ERROR_ULPS }
     }
 
-    /// Tests a box against the planes in `mask`. Conservative: `Outside` is said only where the
+    /// Tests a box against the planes in `mask`. Conservative: the result is `Outside` only where the
     /// distance exceeds the bound on its rounding error.
     #[inline]
     pub fn test(&self, bounds: &Aabb<V>, mask: u8) -> FrustumTest {

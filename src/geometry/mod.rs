@@ -5,6 +5,8 @@
 //! relative to the distance from the eye and not to the distance from the origin.
 
 mod bounds;
+#[cfg(test)]
+pub(crate) mod dice;
 mod eye;
 mod frustum;
 mod id;

@@ -94,24 +94,9 @@ pub fn segment_meets_box(segment: [Vec2; 2], bounds: &Aabb<Vec2>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{orient2d, orient3d};
     use super::*;
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
-
-    struct Grid(Pcg32, u32);
-
-    impl Grid {
-        fn number(&mut self) -> f32 {
-            (self.0.next_u32() % self.1) as f32
-        }
-        fn point(&mut self) -> Vec3 {
-            Vec3::new(self.number(), self.number(), self.number())
-        }
-        fn flat(&mut self) -> Vec2 {
-            Vec2::new(self.number(), self.number())
-        }
-    }
+    use crate::geometry::dice::Dice;
+    use crate::geometry::{orient2d, orient3d};
 
     fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> f64 {
         orient3d(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), d.as_dvec3())
@@ -155,10 +140,11 @@ mod tests {
 
     #[test]
     fn triangles_meet_tetrahedra_as_exact_signs_say() {
-        let mut grid = Grid(Pcg32::new(1, 1), 12);
+        let mut dice = Dice::new(1);
         let (mut met, mut apart) = (0, 0);
         for case in 0..30_000 {
-            let (t, c) = ([0; 3].map(|_| grid.point()), [0; 4].map(|_| grid.point()));
+            let (t, c) =
+                ([0; 3].map(|_| dice.grid_point::<Vec3>(12)), [0; 4].map(|_| dice.grid_point::<Vec3>(12)));
             let Some(want) = meets_by_signs(t, c) else { continue };
             assert_eq!(triangle_meets_tetrahedron(t, c), want, "case {case}: {t:?} {c:?}");
             // The same far away and small: coordinates of the grid stay exact.
@@ -171,13 +157,13 @@ mod tests {
 
     #[test]
     fn triangles_meet_boxes_where_they_meet_one_of_five_tetrahedra() {
-        let mut grid = Grid(Pcg32::new(2, 1), 10);
+        let mut dice = Dice::new(2);
         let (mut met, mut apart) = (0, 0);
         // Four corners of a cube are cut off, the fifth tetrahedron is left.
         let split = [[0, 1, 2, 4], [3, 1, 2, 7], [5, 1, 4, 7], [6, 2, 4, 7], [1, 2, 4, 7]];
         for case in 0..20_000 {
-            let t = [0; 3].map(|_| grid.point());
-            let (p, q) = (grid.point(), grid.point());
+            let t = [0; 3].map(|_| dice.grid_point::<Vec3>(10));
+            let (p, q) = (dice.grid_point::<Vec3>(10), dice.grid_point::<Vec3>(10));
             let bounds = Aabb { min: p.min(q), max: p.max(q) + 1.0 };
             let corners: Vec<Vec3> = bounds.corners().collect();
             let want = split.iter().any(|c| triangle_meets_tetrahedron(t, c.map(|i| corners[i])));
@@ -189,7 +175,7 @@ mod tests {
 
     #[test]
     fn segments_meet_cells_of_the_plane_as_exact_signs_say() {
-        let mut grid = Grid(Pcg32::new(3, 1), 12);
+        let mut dice = Dice::new(3);
         let (mut met, mut apart) = (0, 0);
         let turn = |a: Vec2, b: Vec2, c: Vec2| orient2d(a.as_dvec2(), b.as_dvec2(), c.as_dvec2());
         let crosses = |s: [Vec2; 2], t: [Vec2; 2]| {
@@ -202,14 +188,15 @@ mod tests {
             (!signs.contains(&0.0)).then_some(signs[0] * signs[1] < 0.0 && signs[2] * signs[3] < 0.0)
         };
         for case in 0..30_000 {
-            let (s, t) = ([0; 2].map(|_| grid.flat()), [0; 3].map(|_| grid.flat()));
+            let (s, t) =
+                ([0; 2].map(|_| dice.grid_point::<Vec2>(12)), [0; 3].map(|_| dice.grid_point::<Vec2>(12)));
             let edges: Option<Vec<bool>> = (0..3).map(|i| crosses(s, [t[i], t[(i + 1) % 3]])).collect();
             let Some(edges) = edges.filter(|_| turn(t[0], t[1], t[2]) != 0.0) else { continue };
             let inside = (0..3).all(|i| turn(t[i], t[(i + 1) % 3], s[0]) * turn(t[0], t[1], t[2]) > 0.0);
             let want = inside || edges.contains(&true);
             assert_eq!(segment_meets_triangle(s, t), want, "case {case}: {s:?} {t:?}");
             *if want { &mut met } else { &mut apart } += 1;
-            let (p, q) = (grid.flat(), grid.flat());
+            let (p, q) = (dice.grid_point::<Vec2>(12), dice.grid_point::<Vec2>(12));
             let bounds = Aabb { min: p.min(q), max: p.max(q) + 1.0 };
             let corner = [0, 1, 3, 2].map(|i| bounds.corner(i));
             let halves = [[corner[0], corner[1], corner[2]], [corner[0], corner[2], corner[3]]];

@@ -1,44 +1,34 @@
 //! Geometry against sampling and double precision.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng;
 
+use super::dice::Dice;
 use super::*;
 
-fn unit(rng: &mut Pcg32) -> f32 {
-    (rng.next_u32() >> 8) as f32 / (1 << 24) as f32
-}
-
-/// A number in ±`scale`.
-fn signed(rng: &mut Pcg32, scale: f32) -> f32 {
-    (unit(rng) * 2.0 - 1.0) * scale
-}
-
-fn random_view<S: Space>(rng: &mut Pcg32, spread: f32) -> View<S> {
-    let position = S::Vector::from_fn(|_| signed(rng, spread));
-    let toward = S::Vector::from_fn(|_| signed(rng, 1.0) + 1e-3);
-    let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { signed(rng, 0.3) });
-    let near = 0.01 + unit(rng);
+fn random_view<S: Space>(dice: &mut Dice, spread: f32) -> View<S> {
+    let position = S::Vector::from_fn(|_| dice.signed(spread));
+    let toward = S::Vector::from_fn(|_| dice.signed(1.0) + 1e-3);
+    let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { dice.signed(0.3) });
+    let near = 0.01 + dice.unit();
     let eye = Eye {
         position,
         target: position + toward,
         up,
-        fov: 0.2 + unit(rng) * 2.5,
+        fov: 0.2 + dice.unit() * 2.5,
         near,
-        far: near + 0.1 + unit(rng) * 100.0,
+        far: near + 0.1 + dice.unit() * 100.0,
     };
     View {
         eye,
-        width: 1 + rng.next_u32() % 2000,
-        height: if S::Vector::AXES == 2 { 1 } else { 1 + rng.next_u32() % 2000 },
+        width: 1 + dice.below(2000),
+        height: if S::Vector::AXES == 2 { 1 } else { 1 + dice.below(2000) },
     }
 }
 
-fn random_box<V: Vector>(rng: &mut Pcg32, around: V) -> Aabb<V> {
-    let scale = 10f32.powf(signed(rng, 2.0));
-    let center = around + V::from_fn(|_| signed(rng, 4.0 * scale));
-    let half = V::from_fn(|_| unit(rng) * scale);
+fn random_box<V: Vector>(dice: &mut Dice, around: V) -> Aabb<V> {
+    let scale = 10f32.powf(dice.signed(2.0));
+    let center = around + V::from_fn(|_| dice.signed(4.0 * scale));
+    let half = V::from_fn(|_| dice.unit() * scale);
     Aabb { min: center - half, max: center + half }
 }
 
@@ -61,8 +51,8 @@ fn exact_clip<S: Space>(view: &View<S>, point: S::Vector) -> [f64; 3] {
     ]
 }
 
-fn sample_in<V: Vector>(rng: &mut Pcg32, bounds: &Aabb<V>) -> V {
-    V::from_fn(|a| bounds.min.get(a) + (bounds.max.get(a) - bounds.min.get(a)) * unit(rng))
+fn sample_in<V: Vector>(dice: &mut Dice, bounds: &Aabb<V>) -> V {
+    V::from_fn(|a| bounds.min.get(a) + (bounds.max.get(a) - bounds.min.get(a)) * dice.unit())
 }
 
 fn in_view<S: Space>(view: &View<S>, clip: [f64; 3], margin: f64) -> bool {
@@ -77,13 +67,13 @@ fn in_view<S: Space>(view: &View<S>, clip: [f64; 3], margin: f64) -> bool {
 /// A box called outside holds no point in view; a box called inside holds no point out of view; and
 /// a box clearly beyond one plane is found.
 fn frustum_check<S: Space>(seed: u64) {
-    let mut rng = Pcg32::new(seed, 1);
+    let mut dice = Dice::new(seed);
     let (mut outside, mut inside, mut missed) = (0, 0, 0);
     for _ in 0..20_000 {
-        let view = random_view::<S>(&mut rng, 100.0);
-        let bounds = random_box(&mut rng, view.eye.position);
+        let view = random_view::<S>(&mut dice, 100.0);
+        let bounds = random_box(&mut dice, view.eye.position);
         let points: Vec<S::Vector> =
-            bounds.corners().chain((0..8).map(|_| sample_in(&mut rng, &bounds))).collect();
+            bounds.corners().chain((0..8).map(|_| sample_in(&mut dice, &bounds))).collect();
         let clips: Vec<_> = points.iter().map(|&p| exact_clip(&view, p)).collect();
         let test = view.frustum().test(&bounds, Frustum::<S::Vector>::ALL);
         assert_eq!(
@@ -138,67 +128,74 @@ fn the_frustum_test_is_conservative_and_effective_in_space() {
 
 #[test]
 fn a_plane_mask_leaves_planes_out() {
-    let view = random_view::<Solid>(&mut Pcg32::new(9, 9), 1.0);
+    let view = random_view::<Solid>(&mut Dice::new(9), 1.0);
     let behind = view.eye.position - view.eye.forward() * 50.0;
     let bounds = Aabb { min: behind - Vec3::splat(0.1), max: behind + Vec3::splat(0.1) };
     assert!(matches!(view.frustum().test(&bounds, Frustum::<Vec3>::ALL), FrustumTest::Outside(_)));
     assert_eq!(view.frustum().test(&bounds, 0), FrustumTest::Inside, "no plane, no objection");
 }
 
+/// The pixel coordinates of a point in clip space; flatland points lie in the middle of the row.
+fn pixel_of<S: Space>(view: &View<S>, clip: [f64; 3]) -> (f64, f64) {
+    let x = (clip[0] / clip[2] * 0.5 + 0.5) * f64::from(view.width);
+    let y = (0.5 - clip[1] / clip[2] * 0.5) * f64::from(view.height);
+    (x, if S::Vector::AXES == 2 { 0.5 } else { y })
+}
+
+/// A point of a box that is in view lies within the box's footprint.
+fn footprint_holds<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, point: S::Vector) {
+    let near = view.eye.near;
+    let clip = exact_clip(view, point);
+    match project_box(&view.projection(), bounds, near, view.eye.far, view.width, view.height) {
+        Footprint::Outside => {
+            assert!(!in_view(view, clip, 0.0), "a box with a point in view has no footprint")
+        }
+        Footprint::Seen(image) if in_view(view, clip, 0.0) => {
+            let (r, (x, y)) = (image.pixels, pixel_of(view, clip));
+            // Half a pixel: the rectangle holds centers.
+            let holds = |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
+            assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
+            assert!((1.0 / clip[2]) as f32 <= image.nearest, "a point is nearer than the nearest depth");
+            assert_eq!(image.nearest, nearest_depth(&view.projection(), bounds, near));
+        }
+        _ => {}
+    }
+}
+
+/// A footprint is no larger than the image of the box's exact corners, but for rounding and the margin.
+fn footprint_is_tight<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, image: &BoxImage) {
+    let width = f64::from(view.width);
+    let exact: Vec<f64> = bounds.corners().map(|c| pixel_of(view, exact_clip(view, c)).0).collect();
+    // Apart by the rounding of the rows to f32.
+    for (at, want) in image.corners_px.iter().zip(&exact) {
+        assert!(
+            want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
+            "a corner is at {want}, not at {at:?}"
+        );
+    }
+    let low = exact.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, width);
+    let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, width);
+    let r = image.pixels;
+    assert!(
+        f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX,
+        "{r:?} is much wider than {low}..{high}"
+    );
+}
+
 fn footprint_check<S: Space>(seed: u64) {
-    let mut rng = Pcg32::new(seed, 3);
+    let mut dice = Dice::new(seed);
     let mut rects = 0;
     for _ in 0..20_000 {
-        let view = random_view::<S>(&mut rng, 100.0);
-        let bounds = random_box(&mut rng, view.eye.position);
+        let view = random_view::<S>(&mut dice, 100.0);
+        let bounds = random_box(&mut dice, view.eye.position);
+        for _ in 0..16 {
+            footprint_holds(&view, &bounds, sample_in(&mut dice, &bounds));
+        }
         let (near, far) = (view.eye.near, view.eye.far);
         let footprint = project_box(&view.projection(), &bounds, near, far, view.width, view.height);
-        let pixel = |clip: [f64; 3]| {
-            let x = (clip[0] / clip[2] * 0.5 + 0.5) * f64::from(view.width);
-            let y = (0.5 - clip[1] / clip[2] * 0.5) * f64::from(view.height);
-            (x, if S::Vector::AXES == 2 { 0.5 } else { y })
-        };
-        for _ in 0..16 {
-            let clip = exact_clip(&view, sample_in(&mut rng, &bounds));
-            match footprint {
-                Footprint::Outside => {
-                    assert!(!in_view(&view, clip, 0.0), "a box with a point in view has no footprint")
-                }
-                Footprint::Seen(image) if in_view(&view, clip, 0.0) => {
-                    let (r, (x, y)) = (image.pixels, pixel(clip));
-                    // Half a pixel: the rectangle holds centers.
-                    let holds =
-                        |from: u32, v: f64, to: u32| f64::from(from) - 0.5 <= v && v <= f64::from(to) + 0.5;
-                    assert!(holds(r.x0, x, r.x1) && holds(r.y0, y, r.y1), "({x}, {y}) lies outside {r:?}");
-                    assert!(
-                        (1.0 / clip[2]) as f32 <= image.nearest,
-                        "a point is nearer than the nearest depth"
-                    );
-                    assert_eq!(image.nearest, nearest_depth(&view.projection(), &bounds, near));
-                }
-                _ => {}
-            }
-        }
-        if let Footprint::Seen(BoxImage { pixels: r, corners_px, .. }) = footprint {
+        if let Footprint::Seen(image) = footprint {
             rects += 1;
-            // Apart by the rounding of the rows to f32.
-            for (at, corner) in corners_px.iter().zip(bounds.corners()) {
-                let want = pixel(exact_clip(&view, corner)).0;
-                let width = f64::from(view.width);
-                assert!(
-                    want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
-                    "a corner is at {want}, not at {at:?}"
-                );
-            }
-            // Tight: the rectangle is that of the exact corners, a pixel and the margin at most larger.
-            let corners: Vec<_> = bounds.corners().map(|c| pixel(exact_clip(&view, c)).0).collect();
-            let low = corners.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, f64::from(view.width));
-            let high =
-                corners.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, f64::from(view.width));
-            assert!(
-                f64::from(r.x1 - r.x0) <= high - low + 1.0 + 2.0 * MARGIN_PX,
-                "{r:?} is much wider than {low}..{high}"
-            );
+            footprint_is_tight(&view, &bounds, &image);
         }
     }
     assert!(rects > 500, "only {rects} rectangles");
@@ -216,9 +213,9 @@ fn footprints_hold_what_is_in_view_in_space() {
 
 #[test]
 fn a_box_around_the_eye_or_across_the_near_plane_is_not_guessed() {
-    let mut rng = Pcg32::new(5, 5);
+    let mut dice = Dice::new(5);
     for _ in 0..1000 {
-        let view = random_view::<Solid>(&mut rng, 10.0);
+        let view = random_view::<Solid>(&mut dice, 10.0);
         let around =
             Aabb { min: view.eye.position - Vec3::splat(2.0), max: view.eye.position + Vec3::splat(2.0) };
         assert_eq!(
@@ -263,9 +260,9 @@ fn looking_straight_up_still_gives_an_image() {
 
 #[test]
 fn frustum_corners_lie_on_their_planes() {
-    let mut rng = Pcg32::new(6, 6);
+    let mut dice = Dice::new(6);
     for _ in 0..200 {
-        let view = random_view::<Solid>(&mut rng, 10.0);
+        let view = random_view::<Solid>(&mut dice, 10.0);
         let frustum = view.frustum();
         let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
         for (plane, on) in [

@@ -72,10 +72,9 @@ fn between<S: Space>(a: &View<S>, b: &View<S>, t: f32) -> View<S> {
 #[cfg(test)]
 mod tests {
     use glam::{DVec2, Vec3};
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
 
     use super::*;
+    use crate::geometry::dice::Dice;
     use crate::geometry::{Flat, Solid, figure_eight, raise};
 
     fn eight(keys: usize, scale: f64, at: f64) -> ViewPath<Solid> {
@@ -142,8 +141,8 @@ mod tests {
 
     #[test]
     fn any_walk_is_finite_and_without_fault() {
-        let mut rng = Pcg32::new(5, 1);
-        let mut signed = |scale: f32| ((rng.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0) * scale;
+        let mut dice = Dice::new(5);
+        let mut signed = |scale: f32| dice.signed(scale);
         for round in 0..300 {
             let (far_away, n) = ([0.0, 10.0, 1e6][round % 3], 1 + round % 7);
             let eye = |signed: &mut dyn FnMut(f32) -> f32| {

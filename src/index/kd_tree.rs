@@ -1,10 +1,14 @@
 //! kD-tree over primitives, in any number of dimensions.
 //!
-//! Coorg and Teller 1997, Section 4: nodes are split alternately along each axis, at a plane that
-//! balances the polygons, to a given height (8 levels: 255 nodes). Departure: a polygon that crosses
-//! the splitting plane goes to the side of its centre and the node's box grows to hold it, so that
-//! there is exactly one reference a polygon, and boxes are the bounds of what they hold.
-//! Cost: O(n · height) time, one reference a primitive, 1 node per about `n / 2^(height−1)` primitives.
+//! Coorg and Teller 1997, Section 4:
+//!
+//! 1. Nodes are split to a given height (8 levels: 255 nodes);
+//! 2. alternately along each axis, at a plane that balances the polygons;
+//! 3. then all nodes are bounded, from below.
+//!
+//! Departure: a polygon that crosses the splitting plane goes to the side of its center and the node's box
+//! grows to hold it, so that there is exactly one reference a polygon, and boxes are the bounds of what they
+//! hold. Cost: O(n · height) time, one reference a primitive, 1 node per about `n / 2^(height−1)` primitives.
 
 use std::ops::Range;
 
@@ -16,7 +20,7 @@ use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 pub struct KdNode<V> {
     /// Bounds of the primitives below, world units.
     pub bounds: Aabb<V>,
-    /// Where it is split along `axis`: centres of the first child's primitives are ≤ this; meaningless for a
+    /// Where it is split along `axis`: centers of the first child's primitives are ≤ this; meaningless for a
     /// leaf.
     pub split: f32,
     /// Splitting axis; meaningless for a leaf.
@@ -58,7 +62,7 @@ struct Entry<V> {
 }
 
 impl<V: Vector> Entry<V> {
-    /// Twice the centre; the factor does not matter for ordering.
+    /// Twice the center; the factor does not matter for ordering.
     #[inline]
     fn key(&self, axis: usize) -> f32 {
         self.bounds.min.get(axis) + self.bounds.max.get(axis)
@@ -67,8 +71,8 @@ impl<V: Vector> Entry<V> {
 
 impl<V: Vector> KdTree<V> {
     /// Builds a tree of at most `height ≥ 1` levels. A node is not split further when it holds one
-    /// primitive, or when all its centres coincide. Ties are broken by id.
-    /// Stops early and returns `None` when `cancelled` says so (asked once a node).
+    /// primitive, or when all its centers coincide. Ties are broken by id.
+    /// Stops early and returns `None` when `cancelled` returns true (called once a node).
     pub fn build(
         prims: impl Iterator<Item = (PrimId, Aabb<V>)>,
         height: u32,
@@ -88,6 +92,8 @@ impl<V: Vector> KdTree<V> {
         };
         let mut nodes = vec![root];
         let mut at = 0;
+        // 1. Breadth first: the nodes from `at` on are still to be split, and parents come before their
+        // children.
         while at < nodes.len() {
             if cancelled() {
                 return None;
@@ -95,9 +101,11 @@ impl<V: Vector> KdTree<V> {
             let node = nodes[at];
             let range = node.first as usize..(node.first + node.count) as usize;
             if u32::from(node.level) + 1 < height
+                // 2. The axes take turns from level to level.
                 && let Some((axis, half, split)) =
                     partition(&mut entries[range], node.level as usize % V::AXES)
             {
+                // Children share the parent's slice of the order, which `partition` has sorted into two.
                 let child =
                     KdNode { split: 0.0, level: node.level + 1, first_child: 0, parent: at as u32, ..node };
                 let left = nodes.len() as u32;
@@ -107,7 +115,8 @@ impl<V: Vector> KdTree<V> {
             }
             at += 1;
         }
-        // Children follow their parents, so one pass backwards bounds every node.
+        // 3. Children follow their parents, so one pass backwards bounds every node: leaves by what they
+        // hold, inner nodes by their children.
         for at in (0..nodes.len()).rev() {
             let node = nodes[at];
             nodes[at].bounds = match node.children() {
@@ -136,57 +145,23 @@ impl<V: Vector> KdTree<V> {
         let n = &self.nodes[node.at()];
         n.first as usize..(n.first + n.count) as usize
     }
-
-    /// Panics unless every promise of the tree holds against the boxes it was built from: each
-    /// primitive referenced once, boxes exact, children a balanced partition of their parent.
-    pub fn assert_well_formed(&self, boxes: &[(PrimId, Aabb<V>)], height: u32) {
-        let mut seen: Vec<PrimId> = self.order.clone();
-        seen.sort();
-        let mut want: Vec<PrimId> = boxes.iter().map(|b| b.0).collect();
-        want.sort();
-        assert_eq!(seen, want, "each primitive is referenced exactly once");
-        let bounds_of = |p: PrimId| boxes[boxes.binary_search_by_key(&p, |b| b.0).expect("sorted by id")].1;
-        for (i, node) in self.nodes.iter().enumerate() {
-            let id = NodeId(i as u32);
-            let bounds = self.prims_below(id).iter().fold(Aabb::empty(), |b, &p| b.union(bounds_of(p)));
-            assert_eq!(bounds, node.bounds, "node {i} is bounded tightly");
-            assert!(u32::from(node.level) < height, "node {i} is above the height limit");
-            let Some([a, b]) = node.children() else { continue };
-            let (na, nb) = (&self.nodes[a.at()], &self.nodes[b.at()]);
-            assert_eq!(
-                (na.parent, nb.parent, na.level, nb.level),
-                (id.0, id.0, node.level + 1, node.level + 1),
-                "node {i} is the parent of its children"
-            );
-            assert_eq!(
-                (na.first, na.first + na.count, nb.first + nb.count),
-                (node.first, nb.first, node.first + node.count),
-                "the children of node {i} share its primitives"
-            );
-            assert!(na.count.abs_diff(nb.count) <= 1, "node {i} is balanced");
-            let key = |p: &PrimId| {
-                bounds_of(*p).min.get(node.axis as usize) + bounds_of(*p).max.get(node.axis as usize)
-            };
-            let low = self.prims_below(a).iter().map(key).fold(f32::NEG_INFINITY, f32::max);
-            let high = self.prims_below(b).iter().map(key).fold(f32::INFINITY, f32::min);
-            assert!(
-                low <= high && low * 0.5 <= node.split && node.split <= high * 0.5,
-                "node {i} is split at its plane"
-            );
-        }
-    }
 }
 
-/// Reorders entries into two halves by their centres: along `axis`, or the next axis along which
+/// Reorders entries into two halves by their centers: along `axis`, or the next axis along which
 /// they differ. Returns axis, size of the first half and the plane; `None` if they cannot be told apart.
 fn partition<V: Vector>(entries: &mut [Entry<V>], axis: usize) -> Option<(usize, u32, f32)> {
+    // Nothing to balance.
     if entries.len() < 2 {
         return None;
     }
+    // Departure: the next axis where the centers agree along the one whose turn it is, since any plane there
+    // would leave all on one side.
     let differ = |axis: &usize| entries.iter().any(|e| e.key(*axis) != entries[0].key(*axis));
     let axis = (0..V::AXES).map(|k| (axis + k) % V::AXES).find(differ)?;
     let half = entries.len() / 2;
+    // A total order, so that the halves, and all of the tree, do not depend on the order of the input.
     let order = |a: &Entry<V>, b: &Entry<V>| a.key(axis).total_cmp(&b.key(axis)).then(a.prim.cmp(&b.prim));
+    // The median by selection, in linear time; the plane goes through the first center above it.
     let (_, first_of_second, _) = entries.select_nth_unstable_by(half, order);
     Some((axis, half as u32, first_of_second.key(axis) * 0.5))
 }
@@ -219,44 +194,62 @@ impl<S: Space> Hierarchy<S> for KdTree<S::Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::dice::Dice;
+    use crate::geometry::{Flat, Solid};
+    use crate::index::tests::random_boxes;
     use glam::{Vec2, Vec3, Vec4};
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
 
-    fn random_boxes<V: Vector>(rng: &mut Pcg32, n: usize, grid: bool) -> Vec<(PrimId, Aabb<V>)> {
-        let mut coordinate = |scale: f32| {
-            let v = (rng.next_u32() >> 8) as f32 / (1 << 24) as f32 * scale;
-            // A coarse grid makes many equal centres, where ties matter.
-            if grid { v.floor() } else { v }
-        };
-        let mut one = |i| {
-            let min = V::from_fn(|_| coordinate(10.0));
-            (PrimId(i as u32), Aabb { min, max: min + V::from_fn(|_| coordinate(2.0)) })
-        };
-        (0..n).map(&mut one).collect()
+    /// What the tree promises beyond the contract of [`Hierarchy`]: tight bounds, and children that are a
+    /// balanced partition of their parent at its plane.
+    fn assert_balanced<V: Vector>(tree: &KdTree<V>, boxes: &[(PrimId, Aabb<V>)], height: u32) {
+        let bounds_of = |p: PrimId| boxes[boxes.binary_search_by_key(&p, |b| b.0).expect("sorted by id")].1;
+        for (i, node) in tree.nodes.iter().enumerate() {
+            let id = NodeId(i as u32);
+            let bounds = tree.prims_below(id).iter().fold(Aabb::empty(), |b, &p| b.union(bounds_of(p)));
+            assert_eq!(bounds, node.bounds, "node {i} is bounded tightly");
+            assert!(u32::from(node.level) < height, "node {i} is above the height limit");
+            let Some([a, b]) = node.children() else { continue };
+            let (na, nb) = (&tree.nodes[a.at()], &tree.nodes[b.at()]);
+            assert_eq!(
+                (na.first, na.first + na.count, nb.first + nb.count),
+                (node.first, nb.first, node.first + node.count)
+            );
+            assert!(na.count.abs_diff(nb.count) <= 1, "node {i} is balanced");
+            let key = |p: &PrimId| {
+                bounds_of(*p).min.get(node.axis as usize) + bounds_of(*p).max.get(node.axis as usize)
+            };
+            let low = tree.prims_below(a).iter().map(key).fold(f32::NEG_INFINITY, f32::max);
+            let high = tree.prims_below(b).iter().map(key).fold(f32::INFINITY, f32::min);
+            assert!(
+                low <= high && low * 0.5 <= node.split && node.split <= high * 0.5,
+                "node {i} is split at its plane"
+            );
+        }
     }
 
-    fn check<V: Vector>() {
-        let mut rng = Pcg32::new(7, 11);
+    fn check<V: Vector>(fault: fn(&KdTree<V>, &[(PrimId, Aabb<V>)]) -> Option<String>) {
+        let mut dice = Dice::new(7);
         for case in 0..300 {
-            let n = 1 + (rng.next_u32() % 300) as usize;
-            let height = 1 + rng.next_u32() % 12;
-            let boxes = random_boxes::<V>(&mut rng, n, case % 2 == 0);
+            let n = 1 + dice.below(300) as usize;
+            let height = 1 + dice.below(12);
+            let boxes = random_boxes::<V>(&mut dice, n, &[2.0], case % 2 == 0);
             let tree = KdTree::build(boxes.iter().copied(), height, || false).expect("not cancelled");
-            tree.assert_well_formed(&boxes, height);
+            assert_eq!(fault(&tree, &boxes), None, "case {case}");
+            assert_balanced(&tree, &boxes, height);
         }
     }
 
     #[test]
     fn random_builds_are_well_formed_in_two_three_and_four_dimensions() {
-        check::<Vec2>();
-        check::<Vec3>();
-        check::<Vec4>();
+        check::<Vec2>(|tree, boxes| Hierarchy::<Flat>::fault(tree, boxes));
+        check::<Vec3>(|tree, boxes| Hierarchy::<Solid>::fault(tree, boxes));
+        // No scene has four dimensions.
+        check::<Vec4>(|_, _| None);
     }
 
     #[test]
     fn height_eight_gives_the_papers_255_nodes_and_alternates_axes() {
-        let boxes = random_boxes::<Vec3>(&mut Pcg32::new(1, 1), 5000, false);
+        let boxes = random_boxes::<Vec3>(&mut Dice::new(1), 5000, &[2.0], false);
         let tree = KdTree::build(boxes.iter().copied(), 8, || false).expect("not cancelled");
         assert_eq!(tree.nodes().len(), 255);
         assert!(tree.nodes().iter().filter(|n| !n.is_leaf()).all(|n| n.axis == n.level % 3));
@@ -271,7 +264,7 @@ mod tests {
 
     #[test]
     fn the_order_of_input_does_not_matter() {
-        let mut boxes = random_boxes::<Vec3>(&mut Pcg32::new(3, 5), 400, true);
+        let mut boxes = random_boxes::<Vec3>(&mut Dice::new(3), 400, &[2.0], true);
         let a = KdTree::build(boxes.iter().copied(), 6, || false).expect("not cancelled");
         boxes.reverse();
         let b = KdTree::build(boxes.iter().copied(), 6, || false).expect("not cancelled");
@@ -280,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_build_can_be_cancelled() {
-        let boxes = random_boxes::<Vec2>(&mut Pcg32::new(3, 5), 40, false);
+        let boxes = random_boxes::<Vec2>(&mut Dice::new(3), 40, &[2.0], false);
         assert!(KdTree::build(boxes.into_iter(), 6, || true).is_none());
     }
 }

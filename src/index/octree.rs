@@ -1,8 +1,13 @@
 //! Octree over primitives; a quadtree in flatland.
 //!
 //! Greene, Kass and Miller 1993 (<https://doi.org/10.1145/166117.166147>), as Georges 1995, Section 3.1,
-//! describes it: each cube is halved along every axis until it holds few primitives. Where a primitive that
-//! crosses the dividing planes goes is the choice of that section ([`Redistribution`]).
+//! describes it. For each cube:
+//!
+//! 1. decide whether it is divided: not if it holds few primitives;
+//! 2. create its parts, halves along every axis;
+//! 3. redistribute the primitives among them. Where one goes that crosses the dividing planes is the choice
+//!    of that section ([`Redistribution`]);
+//! 4. repeat for each part.
 //!
 //! Departures: cubes that hold nothing are left out; beside its cube a node keeps the bounds of what it holds
 //! there, which is what is tested. A primitive that is passed to several children stands in the order once,
@@ -23,8 +28,8 @@ pub enum Redistribution {
     Parent,
     /// It goes to the child that holds its center, whose bounds grow.
     Grown,
-    /// It is split among all children that it overlaps. The parts share the whole: whoever comes first draws
-    /// it.
+    /// It is split among all children that it overlaps. The parts share the whole, which is drawn with the
+    /// first of them.
     Split,
 }
 
@@ -101,7 +106,8 @@ pub struct Octree<V> {
     shared: Vec<PrimId>,
 }
 
-/// A division may at most double the references.
+/// A division may at most double the references: every primitive may go to two parts, or one in seven to all
+/// eight. More parts nothing.
 const MOST_REFERENCES: usize = 2;
 
 #[derive(Clone, Copy)]
@@ -113,20 +119,23 @@ struct Entry<V> {
 }
 
 impl<V: Vector> Octree<V> {
-    /// Builds the tree; `None` when `cancelled` says so (asked once a node).
+    /// Builds the tree; `None` when `cancelled` returns true (called once a node).
     pub fn build(
         prims: impl Iterator<Item = (PrimId, Aabb<V>)>,
         shape: &Shape,
         cancelled: &dyn Fn() -> bool,
     ) -> Option<Self> {
         let entries: Vec<_> = prims.map(|(prim, bounds)| Entry { bounds, prim, is_shared: false }).collect();
+        // The root is a cube around everything, so all cubes are cubes.
         let all = entries.iter().fold(Aabb::empty(), |b, e| b.union(e.bounds));
         let mut tree = Self {
             nodes: vec![OctreeNode::of(cube_around(&all), 0, 0, 0)],
             order: Vec::with_capacity(entries.len()),
             shared: Vec::new(),
         };
+        // 1 to 4, depth first.
         tree.grow(0, entries, shape, cancelled)?;
+        // Bounds follow from what nodes hold; a node's own were set when it got its primitives.
         tree.bound();
         Some(tree)
     }
@@ -142,12 +151,18 @@ impl<V: Vector> Octree<V> {
         if cancelled() {
             return None;
         }
+        // What is put in the order from here until this node is finished is its slice.
         self.nodes[at].first = self.order.len() as u32;
+        // 1 and 3.
         let (stay, passed, parts) = self.divide(at, entries, shape);
+        // Primitives that stay and that a neighbor has too are referred to; the cube above that passed them
+        // on has them in the order.
         let (shared, own): (Vec<_>, Vec<_>) = stay.into_iter().partition(|e| e.is_shared);
         let node = &mut self.nodes[at];
         (node.own, node.passed) = (own.len() as u32, passed.len() as u32);
         (node.first_shared, node.shared) = (self.shared.len() as u32, shared.len() as u32);
+        // `bounds` clips to the cube, since the rest lies in another node; `whole` does not, since drawing
+        // does not clip.
         for e in own.iter().chain(&shared) {
             node.bounds = node.bounds.union(clipped(&e.bounds, &node.cube));
             node.whole = node.whole.union(e.bounds);
@@ -155,19 +170,23 @@ impl<V: Vector> Octree<V> {
         (node.held, node.held_whole) = (node.bounds, node.whole);
         self.order.extend(own.iter().chain(&passed).map(|e| e.prim));
         self.shared.extend(shared.iter().map(|e| e.prim));
+        // Recursion would keep the lists of every level alive.
         drop((own, shared, passed));
 
+        // 2. Empty parts are left out.
         let parts: Vec<_> = parts.into_iter().enumerate().filter(|(_, part)| !part.is_empty()).collect();
         let (cube, level, first_child) =
             (self.nodes[at].cube, self.nodes[at].level + 1, self.nodes.len() as u32);
         for (octant, part) in &parts {
             let mut child = OctreeNode::of(octant_of(&cube, *octant), *octant as u8, level, at as u32);
+            // A grown child is never clipped: its cube holds all that it has.
             if shape.redistribution == Redistribution::Grown {
                 child.cube = part.iter().fold(child.cube, |b, e| b.union(e.bounds));
             }
             self.nodes.push(child);
         }
         (self.nodes[at].first_child, self.nodes[at].children) = (first_child, parts.len() as u8);
+        // 4. All children were listed first, so they are neighbors in the list of nodes.
         for (k, (_, part)) in parts.into_iter().enumerate() {
             self.grow(first_child as usize + k, part, shape, cancelled)?;
         }
@@ -188,19 +207,23 @@ impl<V: Vector> Octree<V> {
         let center = node.cube.center();
         let side = longest(&node.cube);
         let inside = |a: usize| node.cube.min.get(a) < center.get(a) && center.get(a) < node.cube.max.get(a);
+        // 1. Few primitives, the last level, or a cube so small that its center rounds to a side on every
+        // axis.
         if entries.len() <= shape.leaf_prims as usize
             || u32::from(node.level) + 1 >= shape.levels
             || !(0..V::AXES).any(inside)
         {
             return (entries, vec![], vec![]);
         }
+        // 3. Section 3.1: "small" compared to the cube.
         let to_all = |e: &Entry<V>| match shape.redistribution {
             Redistribution::Hybrid => longest(&e.bounds) <= side * shape.small,
             Redistribution::Split => true,
             Redistribution::Parent | Redistribution::Grown => false,
         };
         let ends = |e: &Entry<V>| (octant_at(e.bounds.min, center), octant_at(e.bounds.max, center));
-        // Where most would be referred to many times over, division parts nothing; it might go on for ever.
+        // Still 1: where most would be referred to many times over, division parts nothing; it might go on
+        // for ever. Two parts for each axis that a box crosses.
         let references =
             |e: &Entry<V>| if to_all(e) { 1usize << (ends(e).0 ^ ends(e).1).count_ones() } else { 1 };
         if entries.iter().map(references).sum::<usize>() > entries.len() * MOST_REFERENCES {
@@ -210,6 +233,7 @@ impl<V: Vector> Octree<V> {
         for entry in entries {
             let (low, high) = ends(&entry);
             if low == high {
+                // Both ends in one part: it crosses nothing.
                 parts[low].push(entry);
             } else if shape.redistribution == Redistribution::Grown {
                 parts[octant_at(entry.bounds.center(), center)].push(entry);
@@ -219,10 +243,12 @@ impl<V: Vector> Octree<V> {
                 (0..parts.len())
                     .filter(|o| o & !crossed == low)
                     .for_each(|o| parts[o].push(Entry { is_shared: true, ..entry }));
+                // Only the first cube that passes it on has it in the order.
                 if !entry.is_shared {
                     passed.push(entry);
                 }
             } else {
+                // Associated with the cube itself.
                 stay.push(entry);
             }
         }
@@ -270,63 +296,6 @@ impl<V: Vector> Octree<V> {
     pub fn references(&self) -> usize {
         self.nodes.iter().map(|n| (n.own + n.shared) as usize).sum()
     }
-
-    /// Panics unless every promise holds against the boxes it was built from.
-    pub fn assert_well_formed(&self, boxes: &[(PrimId, Aabb<V>)]) {
-        let bounds_of = |p: PrimId| boxes[boxes.binary_search_by_key(&p, |b| b.0).expect("sorted by id")].1;
-        let mut seen = self.order.clone();
-        seen.sort();
-        assert!(seen.iter().eq(boxes.iter().map(|b| &b.0)), "each primitive stands in the order once");
-        for (at, node) in self.nodes.iter().enumerate() {
-            let id = NodeId(at as u32);
-            let below = &self.order[node.first as usize..(node.first + node.count) as usize];
-            for &prim in self.own(id).iter().chain(self.shared(id)) {
-                let held = clipped(&bounds_of(prim), &node.cube);
-                assert!(
-                    !held.is_empty() && node.bounds.encloses(&held),
-                    "node {at} bounds what it holds of {prim}"
-                );
-                assert!(node.whole.encloses(&bounds_of(prim)), "node {at} bounds {prim} as a whole");
-            }
-            let mut next = node.first + node.own + node.passed;
-            for child in node.children() {
-                let c = &self.nodes[child as usize];
-                assert_eq!(
-                    (c.parent, u32::from(c.level), c.first),
-                    (id.0, u32::from(node.level) + 1, next),
-                    "child {child} of {at}"
-                );
-                assert!(c.count + c.shared > 0 || c.children > 0, "node {child} holds something");
-                assert!(
-                    node.bounds.encloses(&c.bounds) && node.whole.encloses(&c.whole),
-                    "node {at} holds its child {child}"
-                );
-                next += c.count;
-            }
-            assert_eq!(next, node.first + node.count, "the slices of the children of {at} follow its own");
-            for &prim in self.passed(id) {
-                // Its references lie below and together cover its box.
-                let holders: Vec<usize> = (at + 1..self.nodes.len())
-                    .filter(|&n| self.shared(NodeId(n as u32)).contains(&prim))
-                    .collect();
-                assert!(
-                    holders.iter().all(|&n| self.is_below(n, at)),
-                    "what {at} passes on is referred to below it"
-                );
-                for corner in bounds_of(prim).corners() {
-                    assert!(
-                        holders.iter().any(|&n| self.nodes[n].cube.contains(corner)),
-                        "a corner of {prim} lies in some cube that holds it"
-                    );
-                }
-            }
-            assert_eq!(below.len(), node.count as usize, "node {at} counts what is below it");
-        }
-    }
-    fn is_below(&self, node: usize, above: usize) -> bool {
-        std::iter::successors(Some(node), |&n| (n != 0).then(|| self.nodes[n].parent as usize))
-            .any(|n| n == above)
-    }
 }
 
 impl<V: Vector> OctreeNode<V> {
@@ -358,6 +327,7 @@ fn cube_around<V: Vector>(bounds: &Aabb<V>) -> Aabb<V> {
     if bounds.is_empty() {
         return Aabb { min: V::default(), max: V::default() };
     }
+    // The center may round by half an ulp, so the union makes sure that nothing sticks out.
     let half = V::splat(longest(bounds) * 0.5);
     Aabb { min: bounds.center() - half, max: bounds.center() + half }.union(*bounds)
 }
@@ -413,37 +383,71 @@ impl<S: Space> Hierarchy<S> for Octree<S::Vector> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::dice::Dice;
+    use crate::geometry::{Flat, Solid};
+    use crate::index::tests::random_boxes;
     use glam::{Vec2, Vec3};
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
 
-    fn random_boxes<V: Vector>(rng: &mut Pcg32, n: usize, grid: bool) -> Vec<(PrimId, Aabb<V>)> {
-        let mut coordinate = |scale: f32| {
-            let v = (rng.next_u32() >> 8) as f32 / (1 << 24) as f32 * scale;
-            // A coarse grid puts boxes on dividing planes.
-            if grid { v.floor() } else { v }
+    /// What the tree promises beyond the contract of [`Hierarchy`]: bounds of what each cube holds, slices of
+    /// the order, and references to shared primitives.
+    fn assert_redistributed<V: Vector>(tree: &Octree<V>, boxes: &[(PrimId, Aabb<V>)]) {
+        let bounds_of = |p: PrimId| boxes[boxes.binary_search_by_key(&p, |b| b.0).expect("sorted by id")].1;
+        let is_below = |node: usize, above: usize| {
+            std::iter::successors(Some(node), |&n| (n != 0).then(|| tree.nodes[n].parent as usize))
+                .any(|n| n == above)
         };
-        let mut one = |i: usize| {
-            let min = V::from_fn(|_| coordinate(16.0));
-            let size = [0.1, 1.0, 5.0][i % 3];
-            (PrimId(i as u32), Aabb { min, max: min + V::from_fn(|_| coordinate(size)) })
-        };
-        (0..n).map(&mut one).collect()
+        for (at, node) in tree.nodes.iter().enumerate() {
+            let id = NodeId(at as u32);
+            for &prim in tree.own(id).iter().chain(tree.shared(id)) {
+                let held = clipped(&bounds_of(prim), &node.cube);
+                assert!(
+                    !held.is_empty() && node.bounds.encloses(&held),
+                    "node {at} bounds what it holds of {prim}"
+                );
+                assert!(node.whole.encloses(&bounds_of(prim)), "node {at} bounds {prim} as a whole");
+            }
+            let mut next = node.first + node.own + node.passed;
+            for child in node.children() {
+                let c = &tree.nodes[child as usize];
+                assert_eq!(c.first, next, "child {child} of {at}");
+                assert!(c.count + c.shared > 0 || c.children > 0, "node {child} holds something");
+                assert!(node.whole.encloses(&c.whole), "node {at} holds its child {child}");
+                next += c.count;
+            }
+            assert_eq!(next, node.first + node.count, "the slices of the children of {at} follow its own");
+            for &prim in tree.passed(id) {
+                // Its references lie below and together cover its box.
+                let holders: Vec<usize> = (at + 1..tree.nodes.len())
+                    .filter(|&n| tree.shared(NodeId(n as u32)).contains(&prim))
+                    .collect();
+                assert!(
+                    holders.iter().all(|&n| is_below(n, at)),
+                    "what {at} passes on is referred to below it"
+                );
+                for corner in bounds_of(prim).corners() {
+                    assert!(
+                        holders.iter().any(|&n| tree.nodes[n].cube.contains(corner)),
+                        "a corner of {prim} lies in some cube that holds it"
+                    );
+                }
+            }
+        }
     }
 
-    fn check<V: Vector>() {
-        let mut rng = Pcg32::new(17, 11);
+    fn check<S: Space>() {
+        let mut dice = Dice::new(17);
         for case in 0..400 {
-            let n = (rng.next_u32() % 300) as usize;
-            let boxes = random_boxes::<V>(&mut rng, n, case % 2 == 0);
+            let n = dice.below(300) as usize;
+            let boxes = random_boxes::<S::Vector>(&mut dice, n, &[0.1, 1.0, 5.0], case % 2 == 0);
             let shape = Shape {
-                levels: 1 + rng.next_u32() % 12,
-                leaf_prims: 1 + rng.next_u32() % 20,
+                levels: 1 + dice.below(12),
+                leaf_prims: 1 + dice.below(20),
                 redistribution: Redistribution::ALL[case % 4],
                 small: [0.0, 0.1, 0.5, 2.0][case / 4 % 4],
             };
             let tree = Octree::build(boxes.iter().copied(), &shape, &|| false).expect("not cancelled");
-            tree.assert_well_formed(&boxes);
+            assert_eq!(Hierarchy::<S>::fault(&tree, &boxes), None, "case {case}");
+            assert_redistributed(&tree, &boxes);
             assert!(tree.nodes().iter().all(|n| u32::from(n.level) < shape.levels));
             if matches!(shape.redistribution, Redistribution::Parent | Redistribution::Grown) {
                 assert_eq!(tree.references(), n, "nothing is shared");
@@ -454,8 +458,8 @@ mod tests {
 
     #[test]
     fn random_builds_are_well_formed_in_the_plane_and_in_space() {
-        check::<Vec2>();
-        check::<Vec3>();
+        check::<Flat>();
+        check::<Solid>();
     }
 
     /// One large and one small box across the middle, and one in each quarter.
@@ -509,7 +513,8 @@ mod tests {
             let shape = Shape { levels: Shape::MOST_LEVELS, leaf_prims: 1, redistribution, small: 0.1 };
             let boxes: Vec<_> = (0..50).map(|i| (PrimId(i), same)).collect();
             let tree = Octree::build(boxes.iter().copied(), &shape, &|| false).expect("not cancelled");
-            tree.assert_well_formed(&boxes);
+            assert_eq!(Hierarchy::<Solid>::fault(&tree, &boxes), None);
+            assert_redistributed(&tree, &boxes);
             assert!(tree.nodes().len() < 30, "{redistribution:?}: {} nodes", tree.nodes().len());
         }
     }

@@ -1,11 +1,16 @@
 //! Triangles into an image.
 //!
-//! One thread: each triangle is set up and filled at once. Several: triangles are set up in chunks, then
-//! bands of rows are filled, each by one thread, from all chunks. Both call the same two functions,
-//! [`Frame::set_up`] and [`fill`], and a pixel keeps its winner whatever the order, so the bytes are equal.
+//! 1. Points are projected to the pixel grid: all of them, or three for each primitive of a small subset.
+//! 2. Primitives out of view or turned away are dropped, those that leave the grid are clipped, and the rest
+//!    are set up: pixel box, edge functions, depth plane ([`Frame::set_up`]).
+//! 3. With a pyramid, triangles that it proves hidden are left out ([`hides`]).
+//! 4. Triangles are filled ([`fill`]). Rows of a small one are one vector: three edge functions, one mask.
+//!    Rows of a wide one are spans, whose ends follow from the edge functions by an exact division; then no
+//!    edge is evaluated per pixel.
 //!
-//! Rows of a small triangle are one vector: three edge functions, one mask. Rows of a wide one are spans,
-//! whose ends follow from the edge functions by an exact division; then no edge is looked at per pixel.
+//! One thread runs steps 2 to 4 batch by batch. Several run 2 and 3 on chunks of primitives, then 4 on bands
+//! of rows, each band by one thread from all chunks. Both call the same functions, and a pixel keeps its
+//! winner whatever the order, so the bytes are equal.
 
 use std::ops::Range;
 
@@ -36,11 +41,11 @@ struct Chunk {
     hidden: Vec<PrimId>,
 }
 
-/// Primitives in a chunk: enough that a chunk's cost hides its hand-over.
+/// Primitives in a chunk: enough that its work hides the cost of handing it to a thread.
 const CHUNK_PRIMS: usize = 4096;
 /// Triangles set up before they are filled, on one thread: 25 KiB, which the first cache holds.
 const BATCH_PRIMS: usize = 256;
-/// Rows that memory is asked for ahead.
+/// Rows that memory is prefetched ahead.
 const PREFETCH_ROWS: usize = 2;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;
@@ -58,18 +63,22 @@ pub(super) fn draw(
     let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
     let mut scratch = std::mem::take(&mut target.scratch);
     let camera = Camera::new(view);
-    // A small subset projects its own corners; both ways call the same function.
+    // 1. Projecting every point costs at most two projections a primitive here, and its own corners three.
+    // The code is the same either way, and so are the vertices.
     let points = if prims.len() * 2 >= scene.points().len() { scene.points() } else { &[] };
     scratch.vertices.resize(points.len(), Vertex::default());
     if threads <= 1 {
         simd::run(options.isa, Project { camera: &camera, points, vertices: &mut scratch.vertices });
     } else {
+        // Four parts a thread, so that one slow part does not keep the others waiting; none so small that
+        // handing it over costs more than projecting it.
         let part = points.len().div_ceil(threads * 4).max(1024);
         let parts = points.par_chunks(part).zip(scratch.vertices.par_chunks_mut(part));
         parts.for_each(|(points, vertices)| {
             simd::run(options.isa, Project { camera: &camera, points, vertices })
         });
     }
+    // 2 to 4, on the calling thread or on several.
     let window = options.window_of(view);
     let frame = Frame {
         scene,
@@ -104,6 +113,8 @@ fn draw_in_bands(
 ) {
     let width = target.width as usize;
     let bands = (target.height as usize).div_ceil(BAND_ROWS);
+    // 2 and 3. The pyramid is read as it was before the draw: what one chunk draws must not decide what
+    // another leaves out, or the list of hidden primitives would depend on timing.
     let held = sieve.as_ref().map(|s| (&*s.pyramid, &target.depth[..]));
     chunks.resize_with(prims.len().div_ceil(CHUNK_PRIMS), Chunk::default);
     chunks.par_iter_mut().zip(prims.par_chunks(CHUNK_PRIMS)).for_each(|(chunk, prims)| {
@@ -113,12 +124,14 @@ fn draw_in_bands(
         chunk.bands.iter_mut().for_each(Vec::clear);
         simd::run(options.isa, SetUp { frame, held, prims, chunk });
     });
+    // In the order of the chunks, not of the threads that finished them.
     if let Some(sieve) = &mut sieve {
         for chunk in chunks.iter() {
             sieve.hidden.extend_from_slice(&chunk.hidden);
             chunk.setups.iter().for_each(|s| sieve.pyramid.touch(s.rect()));
         }
     }
+    // 4. No pixel lies in two bands, so bands need no locks. Without items each band gets an empty slice.
     let mut items: Vec<&mut [u32]> = target.item.chunks_mut(width * BAND_ROWS).collect();
     items.resize_with(bands, Default::default);
     target.depth.par_chunks_mut(width * BAND_ROWS).zip(items).enumerate().for_each(
@@ -147,6 +160,7 @@ impl Frame<'_> {
     fn set_up(&self, prims: &[PrimId], setups: &mut Vec<Setup>) {
         for &prim in prims {
             let Some(corners) = self.scene.corners(prim) else { continue };
+            // Step 1 for a small subset.
             let own;
             let [a, b, c] = if self.vertices.is_empty() {
                 own = self.project(corners);
@@ -158,11 +172,15 @@ impl Frame<'_> {
                     &self.vertices[corners[2] as usize],
                 ]
             };
+            // All three corners beyond one plane: the cheap test, which drops most. The exact side of the eye
+            // comes second, since it is slow.
             if a.outside & b.outside & c.outside & REJECTS != 0
                 || self.backface_culling && !self.shows_front(corners)
             {
                 continue;
             }
+            // Sides of the image need no clipping: the pixel box is cut to the window. The near plane does,
+            // and the guard band, which is wider than any image; so clipping is rare.
             if (a.outside | b.outside | c.outside) & NEEDS_CLIP == 0 {
                 setups.extend(Setup::new([a, b, c], prim.0, true, &self.window));
             } else {
@@ -171,6 +189,7 @@ impl Frame<'_> {
         }
     }
 
+    // Out of line, as the two below: rare, and not worth a copy for each instruction set.
     #[inline(never)]
     fn project(&self, corners: [u32; 3]) -> [Vertex; 3] {
         corners.map(|c| self.camera.vertex(self.camera.clip(self.scene.points()[c as usize])))
@@ -211,6 +230,7 @@ pub(super) fn extent(
     };
     let mut setups = Vec::new();
     frame.set_up(&[prim], &mut setups);
+    // Clipping may leave several triangles, or one that is not the whole primitive.
     let [setup] = setups[..] else { return None };
     setup.whole.then(|| Extent { pixels: setup.rect(), nearest: setup.plane.high })
 }
@@ -228,7 +248,7 @@ pub(super) fn clip(camera: &Camera, corners: [Clip; 3]) -> impl Iterator<Item = 
 /// Some rows of the image.
 struct Band<'a> {
     depth: &'a mut [f32],
-    /// Empty where nobody wants to know.
+    /// Empty where only depths are drawn.
     item: &'a mut [u32],
     first_row: i32,
     width: usize,
@@ -239,6 +259,7 @@ struct Band<'a> {
 fn fill<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band) {
     let y0 = s.y0.max(band.first_row);
     let y1 = s.y1.min(band.first_row + (band.depth.len() / band.width) as i32);
+    // 4a needs edge functions that fit 32-bit lanes and a box no wider than a vector.
     if s.narrow && s.x1 - s.x0 <= L::N as i32 {
         fill_small::<ITEMS, L>(l, s, band, y0, y1);
     } else {
@@ -252,16 +273,21 @@ fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
     let columns = (s.x1 - s.x0) as usize;
     // Closures would not be compiled for the instruction set, so the three edges are written out.
     let [a, b, c] = &s.edges;
+    // 4a. The edge functions at the first row's centers; each further row adds the edge's step (Pineda 1988).
     let skipped = y0 - s.y0;
     let mut edge_a = l.ramp(a.at as i32 + a.dy * skipped, a.dx);
     let mut edge_b = l.ramp(b.at as i32 + b.dy * skipped, b.dx);
     let mut edge_c = l.ramp(c.at as i32 + c.dy * skipped, c.dx);
     let (step_a, step_b, step_c) = (l.splat_i(a.dy), l.splat_i(b.dy), l.splat_i(c.dy));
+    // What depth adds along the row is the same in every row. It is not summed up step by step: a pixel's
+    // depth may depend on its place alone.
     let along = l.mul(l.splat(s.plane.dx), l.ramp_f(center(s.x0) - s.plane.x, 1 << SUBPIXEL_BITS));
     let (low, high) = (l.splat(s.plane.low), l.splat(s.plane.high));
     for y in y0..y1 {
         let at = (y - band.first_row) as usize * band.width + s.x0 as usize;
         let inside = l.none_negative(edge_a, edge_b, edge_c);
+        // No nearer than the nearest vertex, whatever the rounding: the test against the pyramid counts on
+        // it.
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
         merge::<ITEMS, L>(l, band, at..at + columns, inside, z, s.id);
         (edge_a, edge_b, edge_c) =
@@ -292,11 +318,13 @@ const SPAN_ROWS: usize = 16;
 /// Rows of any width, from the exact ends of their spans.
 #[inline(always)]
 fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
+    // 4b. Three divisions a triangle; spans then take multiplications only.
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
     let ahead = band.width * PREFETCH_ROWS;
     let mut y = y0;
     while y < y1 {
+        // Each edge cuts off its part of the spans of the next rows.
         let (mut begin, mut end) = ([0; SPAN_ROWS], [s.x1 - s.x0; SPAN_ROWS]);
         for (edge, &inverse) in s.edges.iter().zip(&inverse) {
             narrow(edge, inverse, y - s.y0, &mut begin, &mut end);
@@ -304,11 +332,12 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
         for (k, y) in (y..y1.min(y + SPAN_ROWS as i32)).enumerate() {
             let row = (y - band.first_row) as usize * band.width;
             let base = l.splat(s.plane.at_row(y));
+            // Every pixel between the ends is covered, so the mask is full.
             let (mut x, end) = (s.x0 + begin[k], s.x0 + end[k]);
             while x < end {
                 let at = row + x as usize;
                 let past = row + end.min(x + L::N as i32) as usize;
-                // Rows are a page apart, which hardware does not foresee.
+                // Rows are a page or more apart in wide images, which hardware prefetchers do not follow.
                 l.prefetch(band.depth.get(at + ahead));
                 if ITEMS {
                     l.prefetch(band.item.get(at + ahead));
@@ -328,10 +357,12 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
 #[inline(always)]
 fn narrow(edge: &Edge, inverse: f64, skipped: i32, begin: &mut [i32; SPAN_ROWS], end: &mut [i32; SPAN_ROWS]) {
     let (at, dy) = (edge.at + i64::from(edge.dy) * i64::from(skipped), i64::from(edge.dy));
+    // The columns with `e + dx · x ≥ 0`. Rising: from ⌈−e / dx⌉ = −⌊e / dx⌋ on.
     if edge.dx > 0 {
         for (k, begin) in begin.iter_mut().enumerate() {
             *begin = (*begin).max(-quotient(at + dy * k as i64, inverse));
         }
+    // Falling: up to ⌊e / −dx⌋.
     } else if edge.dx < 0 {
         for (k, end) in end.iter_mut().enumerate() {
             *end = (*end).min(quotient(at + dy * k as i64, inverse) + 1);
@@ -352,7 +383,8 @@ fn quotient(e: i64, inverse: f64) -> i32 {
     const NUDGE: f64 = 1.0 / (1 << 26) as f64;
     let q = (e as f64 * inverse + NUDGE).clamp(-LIMIT, LIMIT);
     // Truncation rounds down once the value is not negative.
-    // SAFETY: the value lies within 0..=2¹⁷.
+    // SAFETY: the clamped value plus `LIMIT` lies in 0..=2¹⁷ and is not NaN: `e` is finite, and `inverse` is
+    // that of an edge that is not horizontal.
     #[expect(unsafe_code, reason = "the checked conversion is not SIMD")]
     let floor: i32 = unsafe { (q + LIMIT).to_int_unchecked() };
     floor - LIMIT as i32
@@ -391,6 +423,7 @@ impl Work for DrawAll<'_> {
 impl DrawAll<'_> {
     #[inline(always)]
     fn fill<const ITEMS: bool, L: Lanes>(mut self, l: L) {
+        // In batches: a setup is filled while it is still in the first cache.
         for prims in self.prims.chunks(BATCH_PRIMS) {
             self.setups.clear();
             self.frame.set_up(prims, self.setups);
@@ -400,6 +433,7 @@ impl DrawAll<'_> {
                         sieve.hidden.push(PrimId(setup.id));
                         continue;
                     }
+                    // Values above it stay as they are until a refresh: too far, which is safe.
                     sieve.pyramid.touch(setup.rect());
                 }
                 fill::<ITEMS, L>(l, setup, &mut self.band);
@@ -428,6 +462,7 @@ impl Work for SetUp<'_> {
     fn run<L: Lanes>(self, _: L) {
         let Chunk { setups, bands, hidden } = self.chunk;
         self.frame.set_up(self.prims, setups);
+        // 3. On several threads against the pyramid before the draw, so fewer may be hidden than on one.
         if let Some((pyramid, depth)) = self.held {
             setups.retain(|setup| {
                 let is_hidden = hides(pyramid, depth, setup);
@@ -437,6 +472,7 @@ impl Work for SetUp<'_> {
                 !is_hidden
             });
         }
+        // Each band lists the triangles that reach into its rows, in order.
         for (number, setup) in setups.iter().enumerate() {
             let (first, last) = (setup.y0 as usize / BAND_ROWS, (setup.y1 - 1) as usize / BAND_ROWS);
             bands[first..=last].iter_mut().for_each(|band| band.push(number as u32));

@@ -26,6 +26,7 @@ pub(super) fn draw(
             continue;
         };
         if let Some(sieve) = &mut sieve {
+            // A part that clipping left is never tested: another part of the segment may show.
             if whole && plane.high < sieve.pyramid.farthest_over(&target.depth, pixels) {
                 sieve.hidden.push(prim);
                 continue;
@@ -33,7 +34,10 @@ pub(super) fn draw(
             sieve.pyramid.touch(pixels);
         }
         for x in pixels.x0..pixels.x1 {
+            // The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`,
+            // which was tested.
             let z = (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high);
+            // Without items ties change nothing: equal depths are equal.
             let (depth, item) = (&mut target.depth[x as usize], target.item.get_mut(x as usize));
             if z > *depth || z == *depth && item.as_ref().is_some_and(|item| prim.0 < **item) {
                 *depth = z;
@@ -77,6 +81,7 @@ fn set_up(
     // Left-inclusive: a center exactly under the right end belongs to the next segment.
     let (first, past) = pixels(a.x.min(b.x), a.x.max(b.x) - 1, window.x0, window.x1);
     let pixels = PixelRect { x0: first.max(0) as u32, x1: past.max(0) as u32, y0: 0, y1: 1 };
+    // A segment seen end-on, or between two centers, covers nothing.
     (first < past).then(|| Seen { pixels, plane: Plane::of_segment(a, b), whole })
 }
 
@@ -103,6 +108,7 @@ fn clipped(
     let points = scene.corners(prim)?.map(|c| scene.points()[c as usize]);
     let clip = points.map(|p| camera.clip(p));
     let [a, b] = clip.map(|c| camera.vertex(c));
+    // In the order of cost, as for triangles.
     if a.outside & b.outside & REJECTS != 0 {
         return None;
     }
@@ -113,6 +119,7 @@ fn clipped(
     if (a.outside | b.outside) & NEEDS_CLIP == 0 {
         return Some(([a, b], true));
     }
+    // Two ends are left, or none.
     match *camera.clipped(&clip).corners() {
         [a, b] => Some(([a, b].map(|c| camera.clipped_vertex(c)), false)),
         _ => None,

@@ -5,7 +5,7 @@
 //! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone.
 //! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
 //! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
-//! primitives that were hidden changes no byte. [`mod@reference`] says the same in the plainest code.
+//! primitives that were hidden changes no byte. [`mod@reference`] does the same in the plainest code.
 //!
 //! A primitive that [`crate::geometry::Frustum::test`] calls outside yields no fragment: its vertices lie
 //! beyond the plane by more than the rounding here, and pixel centers lie half a pixel inside the image.
@@ -79,6 +79,7 @@ impl Target {
         if (self.width, self.height) != (other.width, other.height) {
             return self.item.len();
         }
+        // Bits, not values: −0 and 0 would be equal, and an image is promised byte for byte.
         let same = |i: &usize| {
             self.item[*i] == other.item[*i] && self.depth[*i].to_bits() == other.depth[*i].to_bits()
         };
@@ -144,7 +145,7 @@ pub struct Sieve<'a> {
     pub hidden: &'a mut Vec<PrimId>,
 }
 
-/// What a pyramid is asked about a primitive.
+/// What the test of a primitive against the pyramid reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The pixels that it can cover.
@@ -155,7 +156,7 @@ pub struct Extent {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { backface_culling: false, threads: 1, isa: Isa::detect(), window: None }
+        Self { backface_culling: false, threads: 1, isa: Isa::best(), window: None }
     }
 }
 
@@ -178,8 +179,8 @@ pub trait Drawable: Space {
         prims: &[PrimId],
         options: &Options,
     );
-    /// What [`Drawable::sift`] asks the pyramid about a primitive; `None` if it does not ask, since the
-    /// primitive covers no pixel or has to be clipped.
+    /// What [`Drawable::sift`] tests against the pyramid; `None` if it tests nothing, since the primitive
+    /// covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
     /// The same as [`Drawable::draw`] in the plainest code (and without a window); see [`mod@reference`].
     ///
@@ -272,6 +273,7 @@ pub fn render<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId]) -
 /// The primitives that show in the image, ascending.
 pub fn visible(target: &Target) -> Vec<PrimId> {
     let ids = || target.item.iter().copied().filter(|&i| i != Target::NONE);
+    // A bit for each id: the list comes out ascending and without repetition, with no sort.
     let mut seen = vec![0u64; ids().max().map_or(0, |m| m as usize / 64 + 1)];
     ids().for_each(|i| seen[i as usize / 64] |= 1 << (i % 64));
     let bits = |(word, &bits): (usize, &u64)| {

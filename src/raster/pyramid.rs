@@ -3,20 +3,24 @@
 //!
 //! Level 0 is the depth image itself and is not copied; level k has `⌈width / 2ᵏ⌉ × ⌈height / 2ᵏ⌉` values, up
 //! to the one value of the root, for images of any size; a line of pixels has a pyramid of lines. Depths are
-//! `1/w`, so
-//! *farthest* is the least.
+//! `1/w`, so *farthest* is the least.
 //!
-//! It is updated as primitives are drawn, but not before somebody asks: drawing marks tiles of 16 × 16 pixels
-//! as stale ([`Pyramid::touch`]), and [`Pyramid::refresh`] brings one tile up to date with all values above
-//! it. Depths only come nearer while an image is drawn, so a stale value is never nearer than the true one,
-//! and whatever is behind it is hidden.
+//! Departure: Georges updates all levels as primitives are drawn; here they are brought up to date on demand.
+//!
+//! 1. Drawing marks tiles of 16 × 16 pixels as stale ([`Pyramid::touch`]).
+//! 2. [`Pyramid::refresh`] recomputes levels 1 to 4 of a tile from its depths ([`Reduce`]).
+//! 3. It carries the tile's one value up to the root, as far as values change (`raise`).
+//!
+//! Depths only come nearer while an image is drawn, so a stale value is never nearer than the true one, and
+//! whatever is behind it is hidden.
 //!
 //! Cost: a tile takes one pass over its 256 depths, in SIMD; `1/3` of the image's memory.
 
-use super::simd::{self, Isa, Lanes, Work};
+use super::simd::{self, Lanes, Work};
 use crate::geometry::PixelRect;
 
-/// Level of the values that stand for one tile.
+/// Level of the values that stand for one tile: 16 pixels are one AVX-512 vector a row, and 256 depths are
+/// 1 KiB. Smaller tiles would be refreshed more often, larger ones would redo more pixels that have not changed.
 const TILE_LEVEL: u32 = 4;
 /// Side of a tile in pixels.
 const TILE_PX: u32 = 1 << TILE_LEVEL;
@@ -91,6 +95,7 @@ impl PartialEq for Pyramid {
 impl Pyramid {
     /// Empties it for an image of this size whose every depth is `far`.
     pub fn clear(&mut self, width: u32, height: u32, far: f32) {
+        // An image of the same size keeps the memory.
         if (self.width, self.height) != (width, height) {
             (self.width, self.height) = (width, height);
             let sizes = |level: u32| (width.div_ceil(1 << level), height.div_ceil(1 << level));
@@ -104,6 +109,7 @@ impl Pyramid {
             };
             self.coarse = (TILE_LEVEL..=self.root().max(TILE_LEVEL)).map(|l| level(sizes(l))).collect();
         }
+        // Fine values stay: none is read before a refresh makes its tile's state say so.
         self.far = far;
         self.state.clear();
         self.state.resize(self.fine.len(), 0);
@@ -129,8 +135,11 @@ impl Pyramid {
             let l = &self.coarse[(level - TILE_LEVEL) as usize];
             return l.values[(y * l.width + x) as usize];
         }
+        // Levels 1 to 3 lie in the tile, row by row, `2^up` values a row.
         let up = TILE_LEVEL - level;
         let tile = ((y >> up) * self.columns + (x >> up)) as usize;
+        // Not refreshed since the image was cleared: the tile's own value stands for all of them, and is no
+        // nearer.
         if self.state[tile] & FINE_HELD == 0 {
             return self.coarse[0].values[tile];
         }
@@ -148,6 +157,7 @@ impl Pyramid {
         if u32::from(cell.level) <= TILE_LEVEL {
             return self.is_stale(cell);
         }
+        // Above the tiles a cell is as stale as any tile under it.
         let r = cell.pixels(self.width, self.height);
         let columns = r.x0 / TILE_PX..r.x1.div_ceil(TILE_PX);
         (r.y0 / TILE_PX..r.y1.div_ceil(TILE_PX))
@@ -162,6 +172,7 @@ impl Pyramid {
     #[inline]
     pub fn touch(&mut self, r: PixelRect) {
         for row in r.y0 / TILE_PX..=(r.y1 - 1) / TILE_PX {
+            // Tiles of a row are neighbors in memory.
             let at = (row * self.columns) as usize;
             let tiles = at + (r.x0 / TILE_PX) as usize..=at + ((r.x1 - 1) / TILE_PX) as usize;
             self.state[tiles].iter_mut().for_each(|s| *s |= STALE);
@@ -187,6 +198,7 @@ impl Pyramid {
         let rows = r.y0 / TILE_PX..=(r.y1 - 1) / TILE_PX;
         let tiles = rows.flat_map(|row| columns.clone().map(move |column| (row, column)));
         let at = tiles.map(|(row, column)| (row * self.columns + column) as usize);
+        // One more than the limit is enough to know that it is exceeded.
         let stale: Vec<usize> = at.filter(|&t| self.state[t] & STALE != 0).take(most + 1).collect();
         if stale.len() <= most {
             stale.iter().for_each(|&t| self.refresh_tile(depth, t));
@@ -198,15 +210,22 @@ impl Pyramid {
         self.state[tile] = FINE_HELD;
         let (column, row) = (tile as u32 % self.columns, tile as u32 / self.columns);
         let (x0, y0) = (column * TILE_PX, row * TILE_PX);
+        // Tiles at the right and lower edge of the image may be cut off.
         let (columns, rows) =
             ((self.width - x0).min(TILE_PX) as usize, (self.height - y0).min(TILE_PX) as usize);
         let depth = &depth[(y0 * self.width + x0) as usize..];
         let fine = &mut self.fine[tile];
         let mut farthest = 0.0;
-        simd::run(
-            Isa::Avx512,
-            Reduce { depth, stride: self.width as usize, columns, rows, fine, farthest: &mut farthest },
-        );
+        // 2. All levels inside the tile.
+        simd::run_best(Reduce {
+            depth,
+            stride: self.width as usize,
+            columns,
+            rows,
+            fine,
+            farthest: &mut farthest,
+        });
+        // 3. All levels above it.
         self.raise(column, row, farthest);
     }
     /// Puts a tile's value in its place and brings all above it up to date.
@@ -214,12 +233,14 @@ impl Pyramid {
         for k in 0..self.coarse.len() {
             let width = self.coarse[k].width;
             let at = (y * width + x) as usize;
+            // Higher levels depend on the tile through this value alone.
             if self.coarse[k].values[at] == value {
                 return;
             }
             self.coarse[k].values[at] = value;
             let Level { width, height, values } = &self.coarse[k];
             (x, y) = (x / 2, y / 2);
+            // Up to four values below the next one; at the edge of the image there may be two or one.
             value = f32::INFINITY;
             for row in 2 * y..(2 * y + 2).min(*height) {
                 for column in 2 * x..(2 * x + 2).min(*width) {
@@ -233,6 +254,7 @@ impl Pyramid {
     /// pixels (not empty, in the image): first and last.
     #[inline]
     pub fn cover(&self, r: PixelRect) -> (PyramidCell, PyramidCell) {
+        // A span of at most `2^level` pixels meets at most two cells along an axis.
         let side = (r.x1 - r.x0).max(r.y1 - r.y0);
         let level = u32::BITS - (side - 1).leading_zeros();
         let cell = |x: u32, y: u32| PyramidCell {
@@ -245,6 +267,8 @@ impl Pyramid {
     /// The finest single cell that covers a rectangle of pixels (not empty, in the image).
     #[inline]
     pub fn finest_over(&self, r: PixelRect) -> PyramidCell {
+        // One cell of a level holds the first and the last pixel if they agree in all higher bits. Georges
+        // 1995, Section 3.2, begins a query there.
         let differ = (r.x0 ^ (r.x1 - 1)) | (r.y0 ^ (r.y1 - 1));
         let level = u32::BITS - differ.leading_zeros();
         PyramidCell { level: level as u8, x: (r.x0 >> level) as u16, y: (r.y0 >> level) as u16 }
@@ -264,6 +288,7 @@ impl Pyramid {
     /// Panics unless every value that is not stale is the farthest of the pixels below it, and no other is
     /// nearer.
     pub fn assert_well_formed(&self, depth: &[f32]) {
+        // By definition: the farthest of all pixels under each cell.
         for level in 1..=self.root() {
             let (columns, rows) = self.size(level);
             for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x as u16, y as u16))) {
@@ -299,10 +324,12 @@ impl Work for Reduce<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         const SIDE: usize = TILE_PX as usize;
-        // Pixels beyond the image's edge are nearer than all: they never are the farthest.
+        // A full tile in every case, so that all loops have constant bounds and become SIMD. Pixels beyond
+        // the image's edge are nearer than all: they never are the farthest.
         let mut pixels = [f32::INFINITY; SIDE * SIDE];
         for row in 0..self.rows {
             let from = &self.depth[row * self.stride..];
+            // A copy of known length is a vector or two; the other is a call.
             if self.columns == SIDE {
                 pixels[row * SIDE..(row + 1) * SIDE].copy_from_slice(&from[..SIDE]);
             } else {
@@ -327,6 +354,7 @@ impl Work for Reduce<'_> {
 #[inline(always)]
 fn halve<const SIDE: usize>(from: &[f32], to: &mut [f32]) {
     for (rows, to) in from.chunks_exact(2 * SIDE).zip(to.chunks_exact_mut(SIDE / 2)) {
+        // Two rows first: whole vectors against each other. Only the half that is left is paired within.
         let mut both = [0.0; SIDE];
         for (k, v) in both.iter_mut().enumerate() {
             *v = least(rows[k], rows[k + SIDE]);

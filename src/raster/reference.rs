@@ -42,8 +42,10 @@ fn draw_triangle(target: &mut Target, v: [Vertex; 3], id: u32) {
     if area == 0 {
         return;
     }
+    // From the corners as given: which of two equally far vertices it starts from is part of the formula.
     let plane = Plane::of([&v[0], &v[1], &v[2]], area);
     let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
+    // A pixel more than needed on each side; `covers` decides.
     let range = |low: i32, high: i32, size: u32| (low / 256 - 1).max(0)..(high / 256 + 2).min(size as i32);
     for y in range(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), target.height) {
         for x in range(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x), target.width) {
@@ -58,6 +60,7 @@ fn draw_triangle(target: &mut Target, v: [Vertex; 3], id: u32) {
 fn covers(from: Vertex, to: Vertex, x: i32, y: i32) -> bool {
     let (dx, dy) = (i128::from(to.x) - i128::from(from.x), i128::from(to.y) - i128::from(from.y));
     let (px, py) = (i128::from(center(x)) - i128::from(from.x), i128::from(center(y)) - i128::from(from.y));
+    // 128 bits, so that no bound on coordinates has to be argued.
     let side = dx * py - dy * px;
     let (is_left, is_top) = (dy < 0, dy == 0 && dx > 0);
     side > 0 || side == 0 && (is_left || is_top)

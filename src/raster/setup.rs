@@ -1,8 +1,11 @@
 //! A triangle made ready for pixels: its box, its edge functions, its depth plane.
 //!
-//! Pinned-down arithmetic (Pineda 1988, <https://doi.org/10.1145/378456.378457>): with pixel centers a
-//! whole 256 grid steps apart an edge function changes by multiples of 256 from center to center, so its
-//! low 8 bits never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
+//! Pinned-down arithmetic (Pineda 1988, <https://doi.org/10.1145/378456.378457>): with pixel centers a whole
+//! 256 grid steps apart an edge function changes by multiples of 256 from center to center, so its low 8 bits
+//! never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
+//!
+//! In the order of cost: the box drops triangles between pixel centers, the area drops flat ones, then come
+//! the plane and the three edges.
 
 use super::vertex::{CENTER, SUBPIXEL_BITS, Vertex};
 use crate::geometry::PixelRect;
@@ -34,6 +37,7 @@ impl Plane {
     #[inline(always)]
     pub fn of(v: [&Vertex; 3], area: i64) -> Self {
         let [a, b, c] = v;
+        // From the farthest vertex; all three orders turn the same way, so `area` keeps its sign.
         let (o, p, q) = if c.z < a.z.min(b.z) {
             (c, a, b)
         } else if b.z < a.z {
@@ -41,6 +45,7 @@ impl Plane {
         } else {
             (a, b, c)
         };
+        // Cramer's rule for the two slopes, in f64, where coordinates and the area are exact.
         let (pz, qz) = (f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z));
         let per_area = 1.0 / area as f64;
         let dx = (pz * f64::from(q.y - o.y) - qz * f64::from(p.y - o.y)) * per_area;
@@ -55,6 +60,8 @@ impl Plane {
     }
     #[inline(always)]
     fn new(at: Vertex, dx: f32, dy: f32, low: f32, high: f32) -> Self {
+        // Without its slopes a plane has the depth of the farthest vertex: too far, so it hides nothing that
+        // it should not.
         let usable = dx.abs().max(dy.abs()) < STEEPEST;
         Self {
             x: at.x,
@@ -83,6 +90,8 @@ pub(super) fn center(pixel: i32) -> i32 {
 #[inline(always)]
 pub(super) fn pixels(low: i32, high: i32, from: u32, to: u32) -> (i32, i32) {
     (
+        // Center `k` lies at `256 k + 128`: the first at or after `low`, and one past the last at or before
+        // `high`. Shifts round down below 0 too.
         ((low + CENTER - 1) >> SUBPIXEL_BITS).max(from as i32),
         (((high - CENTER) >> SUBPIXEL_BITS) + 1).min(to as i32),
     )
@@ -114,6 +123,8 @@ impl Edge {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         // A center on the edge belongs to the triangle to its right or below it.
         let top_left = dy < 0 || (dy == 0 && dx > 0);
+        // The rule in one subtraction: for whole numbers `E > 0` is `E − 1 ≥ 0`, so a single comparison
+        // serves all edges.
         let e =
             i64::from(dx) * i64::from(y - a.y) - i64::from(dy) * i64::from(x - a.x) - i64::from(!top_left);
         Self { at: e >> SUBPIXEL_BITS, dx: -dy, dy: dx }
@@ -143,7 +154,8 @@ pub(super) struct Setup {
     pub id: u32,
 }
 
-/// A triangle whose box is at most this wide and high, in grid steps, has edge functions below 2³¹.
+/// A triangle whose box is at most this wide and high, in grid steps, has edge functions that fit 32 bits:
+/// 2 · 2¹⁸ · 2¹⁸ / 2⁸ = 2²⁹ in the box, and the lanes of a vector past its end add less than 2²².
 const NARROW: i32 = 1024 << SUBPIXEL_BITS;
 
 impl Setup {
@@ -159,6 +171,7 @@ impl Setup {
         let (low_y, high_y) = (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y));
         let (x0, x1) = pixels(low_x, high_x, window.x0, window.x1);
         let (y0, y1) = pixels(low_y, high_y, window.y0, window.y1);
+        // Most small triangles of a dense model fall between centers and end here.
         if x0 >= x1 || y0 >= y1 {
             return None;
         }
@@ -167,6 +180,7 @@ impl Setup {
             return None;
         }
         let plane = Plane::of(v, area);
+        // Turned to run clockwise on the screen, so that the inside of every edge is positive.
         let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
         let (x, y) = (center(x0), center(y0));
         let edges = [Edge::new(a, b, x, y), Edge::new(b, c, x, y), Edge::new(c, a, x, y)];

@@ -48,10 +48,12 @@ pub fn shade_with<S: Drawable>(
 
 /// Brightness of a face under a light at the eye.
 fn headlight<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
+    // One direction a primitive, that from its middle: flat shading needs no more.
     let middle =
         scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32);
     let (normal, toward) = (scene.normal(prim), view.eye.position - middle);
     let lengths = normal.length() * toward.length();
+    // A primitive without area, or one at the eye, counts as facing it.
     let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
     AMBIENT + (1.0 - AMBIENT) * cosine
 }
@@ -86,6 +88,7 @@ impl DepthScale {
 pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -> Vec<u8> {
     let drawn = all.iter().copied().filter(|d| *d > empty);
     let (nearest, farthest) = drawn.clone().fold((0f32, f32::INFINITY), |(n, f), d| (n.max(d), f.min(d)));
+    // Sorted from near to far.
     let mut ranks: Vec<f32> = if scale == DepthScale::Equalized { drawn.collect() } else { vec![] };
     ranks.sort_by(|a, b| b.total_cmp(a));
     let share = |d: f32| match scale {
@@ -98,6 +101,7 @@ pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -
         if d <= empty {
             255
         } else {
+            // Where all depths are equal, the scale has no length and the share is not a number.
             (20.0 + 205.0 * Some(share(d)).filter(|s| s.is_finite()).unwrap_or(0.0).clamp(0.0, 1.0)) as u8
         }
     };

@@ -1,8 +1,11 @@
 //! SIMD chosen at run time: one generic kernel, thin shells for each instruction set.
 //!
-//! [`Lanes`] is a token that exists only where its instruction set does, so its operations are safe to
-//! call. Every operation is the same IEEE or integer operation per lane on every set (no fused
-//! multiply-add), so the width leaves no trace in the image.
+//! 1. A piece of [`Work`] is generic over [`Lanes`] and inlined into one function for each instruction set
+//!    ([`run`]), so that the whole loop is compiled for it, not only the operations.
+//! 2. [`Lanes`] is a token that exists only where its instruction set does, so its operations are safe to
+//!    call.
+//! 3. Every operation is the same IEEE or integer operation per lane on every set (no fused multiply-add), so
+//!    the width leaves no trace in the image.
 #![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "intrinsics"))]
 
 /// An instruction set for filling pixels, ascending.
@@ -17,10 +20,11 @@ pub enum Isa {
 }
 
 impl Isa {
-    /// The best that this machine has.
-    pub fn detect() -> Self {
+    /// The best that this machine has, which is the widest.
+    pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
+            // F for the arithmetic, DQ for masks from signs, VL since compilers mix in its shorter vectors.
             if is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl")
@@ -48,14 +52,21 @@ pub(super) trait Work {
     fn run<L: Lanes>(self, lanes: L);
 }
 
+/// Runs the work on the best instruction set that the machine has.
+pub(super) fn run_best<W: Work>(work: W) {
+    // The widest of all; `run` looks for what is there, once.
+    run(Isa::Avx512, work);
+}
+
 /// Runs the work on `isa` or, where that is missing, on the best there is.
 pub(super) fn run<W: Work>(isa: Isa, work: W) {
-    match isa.min(Isa::detect()) {
+    // Sets are ordered by width, and a machine with one has all narrower ones.
+    match isa.min(Isa::best()) {
         Isa::Portable => work.run(portable::Portable),
-        // SAFETY: `detect` found the instruction set.
+        // SAFETY: `best` found the instruction set.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => unsafe { x86::run_avx2(work) },
-        // SAFETY: `detect` found the instruction set.
+        // SAFETY: `best` found the instruction set.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx512 => unsafe { x86::run_avx512(work) },
         #[cfg(not(target_arch = "x86_64"))]
@@ -83,7 +94,7 @@ pub(super) trait Lanes: Copy {
     /// The lanes where none of the three is negative.
     fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M;
     fn all(self) -> Self::M;
-    /// Asks for the memory of this element soon; changes nothing.
+    /// Begins to load this element into the cache; changes nothing else.
     fn prefetch<T>(self, at: Option<&T>);
     /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
     /// Touches the slices' lanes only: both have the same length, at most `N`.
@@ -98,7 +109,10 @@ mod portable {
     use super::Lanes;
 
     #[derive(Clone, Copy)]
+    /// Runs anywhere.
     pub struct Portable;
+    /// The width of SSE2 and NEON, which every x86-64 and every 64-bit ARM machine has: more lanes would take
+    /// several registers, fewer would leave them empty.
     const N: usize = 4;
 
     impl Lanes for Portable {
@@ -121,6 +135,7 @@ mod portable {
         #[inline(always)]
         fn clamp(self, v: Self::F, low: Self::F, high: Self::F) -> Self::F {
             std::array::from_fn(|i| {
+                // Comparisons are one instruction; `f32::max` and `min`, which mind NaN, are several.
                 let v = if v[i] > low[i] { v[i] } else { low[i] };
                 if v < high[i] { v } else { high[i] }
             })
@@ -143,6 +158,7 @@ mod portable {
         }
         #[inline(always)]
         fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M {
+            // The sign bit of the three together is clear where all are clear.
             std::array::from_fn(|i| a[i] | b[i] | c[i] >= 0)
         }
         #[inline(always)]
@@ -154,6 +170,7 @@ mod portable {
         #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32) {
             for (((depth, item), inside), z) in depth.iter_mut().zip(item).zip(inside).zip(z) {
+                // `&` and `|` instead of `&&` and `||`: without branches the loop becomes SIMD.
                 let wins = inside & ((z > *depth) | ((z == *depth) & (id < *item)));
                 *depth = if wins { z } else { *depth };
                 *item = if wins { id } else { *item };
@@ -193,8 +210,14 @@ mod x86 {
     #[derive(Clone, Copy)]
     pub struct Avx512(());
 
-    // SAFETY, for every block below: the token proves that the instruction set is there. Loads and
-    // stores are masked to the lanes below the length of the slices.
+    // The contract of both tokens, on which every unsafe block below rests:
+    //
+    // 1. A token proves its instruction set. Its field is private to this module, and only `run_avx2` and
+    //    `run_avx512` make one, whose callers promise the set. Intrinsics that take and give values, as most
+    //    here do, need nothing else.
+    // 2. `merge` and `merge_depth` alone touch memory, through masks: a lane is read or written only where
+    //    its number is below the length of each slice. The unaligned forms are used throughout.
+    // 3. `prefetch` gets an address that a reference vouches for, and reads nothing.
     impl Lanes for Avx2 {
         const N: usize = 8;
         type F = __m256;
@@ -237,6 +260,7 @@ mod x86 {
         }
         #[inline(always)]
         fn none_negative(self, a: __m256i, b: __m256i, c: __m256i) -> __m256i {
+            // As in the portable code; "not negative" is "greater than −1".
             unsafe { _mm256_cmpgt_epi32(_mm256_or_si256(_mm256_or_si256(a, b), c), _mm256_set1_epi32(-1)) }
         }
         #[inline(always)]
@@ -251,6 +275,7 @@ mod x86 {
         }
         #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __m256i, z: __m256, id: u32) {
+            // 1. Lanes past the slices are masked out, and so never touched.
             let lanes = depth.len().min(item.len()).min(8);
             unsafe {
                 let held = _mm256_cmpgt_epi32(
@@ -258,11 +283,13 @@ mod x86 {
                     _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
                 );
                 let inside = _mm256_and_si256(inside, held);
+                // 2. The depth test. Where a lane is out, `old` is 0, and the mask keeps it out.
                 let old = _mm256_maskload_ps(depth.as_ptr(), inside);
                 let nearer = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old));
                 let equal = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_EQ_OQ>(z, old));
                 let mut wins = _mm256_and_si256(nearer, inside);
                 let tied = _mm256_and_si256(equal, inside);
+                // 3. Ties go to the lower id. They are rare, so items are read only here.
                 if _mm256_testz_si256(tied, tied) == 0 {
                     // Unsigned comparison by a flip of the sign bits.
                     let flip = _mm256_set1_epi32(i32::MIN);
@@ -271,6 +298,7 @@ mod x86 {
                         _mm256_cmpgt_epi32(old_id, _mm256_xor_si256(_mm256_set1_epi32(id as i32), flip));
                     wins = _mm256_or_si256(wins, _mm256_and_si256(tied, lower));
                 }
+                // 4. Most vectors of hidden surfaces end without a store.
                 if _mm256_testz_si256(wins, wins) == 0 {
                     _mm256_maskstore_ps(depth.as_mut_ptr(), wins, z);
                     _mm256_maskstore_epi32(item.as_mut_ptr().cast(), wins, _mm256_set1_epi32(id as i32));
@@ -279,6 +307,7 @@ mod x86 {
         }
         #[inline(always)]
         fn merge_depth(self, depth: &mut [f32], inside: __m256i, z: __m256) {
+            // As `merge`, where a tie changes nothing.
             let lanes = depth.len().min(8);
             unsafe {
                 let held = _mm256_cmpgt_epi32(
@@ -295,7 +324,6 @@ mod x86 {
         }
     }
 
-    // SAFETY: as above.
     impl Lanes for Avx512 {
         const N: usize = 16;
         type F = __m512;
@@ -338,6 +366,7 @@ mod x86 {
         }
         #[inline(always)]
         fn none_negative(self, a: __m512i, b: __m512i, c: __m512i) -> __mmask16 {
+            // A mask of the sign bits, turned around.
             unsafe { !_mm512_movepi32_mask(_mm512_or_si512(_mm512_or_si512(a, b), c)) }
         }
         #[inline(always)]
@@ -352,6 +381,7 @@ mod x86 {
         }
         #[inline(always)]
         fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __mmask16, z: __m512, id: u32) {
+            // 1 to 4 as for AVX2. The shift is one of 32 bits, since all 16 lanes may be in.
             let lanes = depth.len().min(item.len()).min(16);
             let inside = inside & ((1u32 << lanes) - 1) as u16;
             unsafe {
@@ -371,6 +401,7 @@ mod x86 {
         }
         #[inline(always)]
         fn merge_depth(self, depth: &mut [f32], inside: __mmask16, z: __m512) {
+            // As `merge`, where a tie changes nothing.
             let lanes = depth.len().min(16);
             let inside = inside & ((1u32 << lanes) - 1) as u16;
             unsafe {

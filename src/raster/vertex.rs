@@ -3,7 +3,7 @@
 //! Projection runs in f64 on the f32 rows of the view's [`Projection`](crate::geometry::Projection),
 //! relative to the eye, so it is exact to about 2⁻⁵⁰ and the snap to 1/256 pixel is the one error that
 //! counts. Clipping (near plane and guard band) also runs in f64, in clip space, and cuts an edge from
-//! its lesser end whichever triangle asks, so that neighbors keep sharing their edges.
+//! its lesser end whichever triangle it belongs to, so that neighbors keep sharing their edges.
 
 use crate::geometry::{Space, Vector, View};
 
@@ -57,6 +57,7 @@ impl Camera {
         let axes = S::Vector::AXES;
         let widen = |v: S::Vector| std::array::from_fn(|a| if a < axes { f64::from(v.get(a)) } else { 0.0 });
         let mut rows = [[0.0; 3]; 3];
+        // Flatland has no y row: it stays 0, and every point lies in the middle of the one row of pixels.
         for (row, &from) in rows.iter_mut().zip(&projection.rows[..axes - 1]) {
             *row = widen(from);
         }
@@ -84,10 +85,14 @@ impl Camera {
     #[inline(always)]
     pub fn vertex(&self, clip: Clip) -> Vertex {
         let [x, y, w] = clip;
+        // Without branches, so that loops over points become SIMD: places of points that have none are
+        // computed too, and dropped below.
         let (at, z) = self.place(clip);
         let near = w < self.near;
         let off_grid = !near & ((at[0] - self.middle[0]).abs().max((at[1] - self.middle[1]).abs()) > GUARD);
+        // By the rounded depth that pixels compare: a triangle whose corners all lie beyond wins no pixel.
         let beyond_far = !near & (z < self.depth_far);
+        // Each bit is a half-space of clip space, which holds for points behind the eye too.
         let sides =
             u32::from(x < -w) | u32::from(x > w) << 1 | u32::from(y < -w) << 2 | u32::from(y > w) << 3;
         let outside = sides | u32::from(beyond_far) << 4 | u32::from(near) << 5 | u32::from(off_grid) << 6;
@@ -104,8 +109,10 @@ impl Camera {
     #[inline(always)]
     fn place(&self, [x, y, w]: Clip) -> ([f64; 2], f32) {
         let inverse = 1.0 / w;
+        // y points down on the grid.
         let at =
             [self.middle[0] + x * inverse * self.middle[0], self.middle[1] - y * inverse * self.middle[1]];
+        // 1/w of a near plane below 3e-39 would be infinite.
         (at, (inverse as f32).min(f32::MAX))
     }
 
@@ -114,8 +121,9 @@ impl Camera {
     pub fn clipped(&self, corners: &[Clip]) -> Polygon {
         let mut polygon = Polygon::default();
         corners.iter().for_each(|&c| polygon.push(c));
+        // `|x / w| · middle ≤ GUARD` without the division.
         let [gx, gy] = self.middle.map(|m| GUARD / m);
-        // Inside is plane·(x, y, w) ≥ offset.
+        // Inside is plane·(x, y, w) ≥ offset. The near plane comes first: beyond it `w` is positive.
         let planes = [
             ([0.0, 0.0, 1.0], self.near),
             ([1.0, 0.0, gx], 0.0),
@@ -125,6 +133,7 @@ impl Camera {
         ];
         for (plane, offset) in planes {
             let distance = |c: &Clip| (plane[0] * c[0] + plane[1] * c[1]) + plane[2] * c[2] - offset;
+            // Most polygons cross one or two of the planes.
             if polygon.corners().iter().any(|c| distance(c) < 0.0) {
                 polygon = polygon.cut(distance);
             }
@@ -158,6 +167,8 @@ impl Polygon {
         }
     }
     fn cut(&self, distance: impl Fn(&Clip) -> f64) -> Self {
+        // Sutherland and Hodgman 1974: corners inside are kept, and each edge that changes sides adds its
+        // crossing.
         let mut kept = Self::default();
         // A segment has one edge, a polygon closes.
         let edges = if self.count == 2 { 1 } else { self.count };
@@ -178,6 +189,8 @@ impl Polygon {
 /// Where the edge between `a` and `b` crosses the plane at signed distances `da` and `db`, computed
 /// from the lesser end, so that both triangles of an edge find the same point.
 fn crossing(a: Clip, b: Clip, da: f64, db: f64) -> Clip {
+    // Two triangles run along their common edge in opposite directions, and rounding depends on the
+    // direction.
     let ((a, da), (b, db)) = if a <= b { ((a, da), (b, db)) } else { ((b, db), (a, da)) };
     let t = da / (da - db);
     std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
@@ -192,5 +205,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[inline(always)]
 fn round(v: f64) -> i32 {
     const ONES: f64 = (3u64 << 51) as f64;
+    // At 1.5 · 2⁵² neighbors of f64 are 1 apart: the sum rounds, and its low bits are the integer, negative
+    // ones in two's complement.
     (v + ONES).to_bits() as i32
 }

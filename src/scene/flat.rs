@@ -13,8 +13,8 @@ use serde::Deserialize;
 use super::about::{About, Expectation};
 use super::assemble::MAX_COORDINATE;
 use super::json::{Step, from_slice, line_of};
-use super::load::stem;
 use super::mtl::GRAY;
+use super::source::stem;
 use super::{Dropped, LoadOptions, Material, Object, Parts, Pose, Report, Scene, SceneError, views};
 use crate::geometry::{Flat, MaterialId, ObjectId, PrimId, ViewPath};
 

@@ -3,52 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::source::{JSON_LIMIT_BYTES, LoadOptions, MODEL_LIMIT_BYTES, stem};
 use super::text::read_file;
 use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, views};
-
-/// Longest model file, bytes. Tables take up to about 14 times the file (a face of two bytes a corner).
-pub(super) const MODEL_LIMIT_BYTES: u64 = 2 << 30;
-/// Longest flatland scene or view file, bytes.
-pub(super) const JSON_LIMIT_BYTES: u64 = 256 << 20;
-
-/// When coordinates are moved to the origin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Recenter {
-    /// Where the model is so far from its origin that 32-bit coordinates would lose detail.
-    #[default]
-    Auto,
-    /// Always.
-    Always,
-    /// Never.
-    Never,
-}
-
-/// What happens to a scene on its way in.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadOptions {
-    /// Merge points at the same place.
-    pub weld: bool,
-    /// Drop triangles without area (segments without length); they keep their ids.
-    pub drop_degenerate: bool,
-    /// Merge coplanar neighbors of one object and one material into convex polygons.
-    pub merge_coplanar: bool,
-    /// Move far-off coordinates to the origin.
-    pub recenter: Recenter,
-    /// Read the view paths beside the model: `NAME.views.json` and `NAME.walk.views.json`.
-    pub read_views: bool,
-}
-
-impl Default for LoadOptions {
-    fn default() -> Self {
-        Self {
-            weld: true,
-            drop_degenerate: true,
-            merge_coplanar: false,
-            recenter: Recenter::Auto,
-            read_views: true,
-        }
-    }
-}
 
 /// Loads a scene: a path to `.obj`, `.gltf`, `.glb` or a flatland `.json`, or `generate:NAME[?key=value&…]`.
 ///
@@ -72,7 +29,7 @@ pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Res
         let mut notes = Vec::new();
         views::beside_model(path, solid.origin(), &mut found, &mut notes);
         if !(found.is_empty() && notes.is_empty()) {
-            // Nobody else holds it yet.
+            // The only reference so far, so nothing is copied.
             Arc::make_mut(solid).extend(found, notes);
         }
     }
@@ -151,10 +108,4 @@ fn unknown_kind(path: &Path) -> String {
         return format!("no such file, and no kind of scene either; {KNOWN}");
     }
     format!("this kind of file cannot be read; {KNOWN}")
-}
-
-/// The last part of a path without its extension; of `NAME.flat.json` the `NAME`.
-pub(super) fn stem(path: &Path) -> String {
-    let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    stem.strip_suffix(".flat").map(str::to_owned).unwrap_or(stem)
 }

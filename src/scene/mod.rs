@@ -21,6 +21,7 @@ mod progress;
 mod report;
 #[cfg(test)]
 pub(crate) mod samples;
+mod source;
 mod text;
 mod views;
 
@@ -28,10 +29,11 @@ pub use about::{About, Expectation};
 pub use assemble::{MAX_COORDINATE, MAX_PRIMS};
 pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
-pub use load::{LoadOptions, Recenter, load, load_bytes};
+pub use load::{load, load_bytes};
 pub use paths::{figure_eight_path, random_views};
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
+pub use source::{LoadOptions, Recenter};
 pub use views::{parse_views, read_views, read_views_for, write_views};
 
 use std::sync::Arc;
@@ -297,7 +299,7 @@ impl<S: Space> Scene<S> {
     }
 }
 
-/// A scene of either space, for code that has not yet asked which.
+/// A scene of either space, for code that does not know yet which.
 #[derive(Clone, Debug)]
 pub enum AnyScene {
     /// Flatland.

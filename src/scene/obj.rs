@@ -454,7 +454,7 @@ fn push_decimal(line: &mut Vec<u8>, mut value: u32) {
     line.extend_from_slice(&digits[at - 1..]);
 }
 
-/// Tells the progress of a reader, and ends it with an error when nobody wants it any more.
+/// Reports the progress of a reader, and ends it with an error when it was cancelled.
 struct Watched<'a, R> {
     inner: R,
     progress: &'a dyn Progress,

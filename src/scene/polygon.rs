@@ -73,7 +73,7 @@ impl Cutter {
         Shape::Concave
     }
 
-    /// Drops the axis along which the normal is longest, such that the polygon stays counter-clockwise.
+    /// Drops the axis along which the normal is longest, so that the polygon stays counter-clockwise.
     fn project(&mut self, corners: &[DVec3], normal: DVec3) {
         let size = normal.abs();
         let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };

@@ -1,7 +1,7 @@
-//! How long work tells how far it is, and learns that nobody wants it any more.
+//! How long work reports its progress and learns that it was cancelled.
 
-/// Told by loading, building and every other work that a person may wait for; asked often enough
-/// that cancelling takes effect within about a tenth of a second.
+/// The listener to loading, building and all other work that a person may wait for; called often enough that
+/// cancelling takes effect within about a tenth of a second.
 pub trait Progress: Sync {
     /// `fraction` of the work is done (0 to 1); `what` names the stage, such as `reading faces`.
     fn report(&self, fraction: f32, what: &'static str);
@@ -9,7 +9,7 @@ pub trait Progress: Sync {
     fn cancelled(&self) -> bool;
 }
 
-/// Nobody waits.
+/// No listener: work is never cancelled.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quiet;
 
@@ -20,9 +20,9 @@ impl Progress for Quiet {
     }
 }
 
-/// A part of a longer work, as a progress of its own: its 0 to 1 is told as `start` to `start + length`.
+/// A part of a longer work, as a progress of its own: its 0 to 1 is reported as `start` to `start + length`.
 pub struct Part<'a> {
-    /// Who is told.
+    /// The listener to the whole.
     pub whole: &'a dyn Progress,
     /// Fraction of the whole where this part begins.
     pub start: f32,

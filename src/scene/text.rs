@@ -18,7 +18,7 @@ use super::SceneError;
 pub(super) fn read_file(path: &Path, shown: &str, limit_bytes: u64) -> Result<Vec<u8>, SceneError> {
     let io = |why| SceneError::Io { path: shown.to_owned(), why };
     let format = |why: String| SceneError::Format { path: shown.to_owned(), why };
-    // Asked before opening, because opening a pipe waits for its writer.
+    // Checked before opening, because opening a pipe waits for its writer.
     let kind = fs::metadata(path).map_err(io)?;
     if kind.is_dir() {
         return Err(format("is a folder, not a file".into()));
@@ -37,7 +37,7 @@ pub(super) fn read_file(path: &Path, shown: &str, limit_bytes: u64) -> Result<Ve
     Ok(bytes)
 }
 
-/// Finds the file that a model in `folder` names, or says why it must not be opened.
+/// Finds the file that a model in `folder` names, or the reason why it must not be opened.
 pub(super) fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = PathBuf::from(name.replace('\\', "/"));
     let plain = relative.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));

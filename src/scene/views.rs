@@ -17,7 +17,7 @@ use glam::DVec3;
 use serde::Deserialize;
 
 use super::json::{Step, from_slice, line_of};
-use super::load::{JSON_LIMIT_BYTES, stem};
+use super::source::{JSON_LIMIT_BYTES, stem};
 use super::text::read_file;
 use super::{AnyPath, AnyScene, SceneError};
 use crate::geometry::{Eye, Flat, Solid, Space, Vector, View, ViewPath};

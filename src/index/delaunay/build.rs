@@ -1,18 +1,30 @@
 //! Incremental construction: walk to the new point, dig out what its arrival refutes, fill the cavity with a
 //! star.
 //!
-//! Bowyer and Watson 1981; the space outside the convex hull is filled with tetrahedra that share a vertex at
-//! infinity, so that no case is special. A point that lies exactly on a sphere does not refute it: each point
-//! is lifted by an infinitesimal amount, far larger than those of all earlier points (Devillers and Teillaud,
-//! "Perturbations and Vertex Removal in a 3D Delaunay Triangulation", SODA 2003), so the result is that of
-//! points in general position, and no tetrahedron is flat.
+//! Bowyer and Watson 1981, in these steps:
+//!
+//! 1. The first points that span space make a tetrahedron; the space outside it is filled with tetrahedra
+//!    that share a vertex at infinity, so that no case is special ([`Builder::first_cells`]).
+//! 2. For each further point, in the order of [`super::order`]:
+//! 3. walk from the last new cell to one whose sphere holds the point ([`Builder::locate`]); a point that is
+//!    a vertex already is left out;
+//! 4. dig: collect all cells whose spheres hold it, which hang together, and the faces around this cavity
+//!    ([`Builder::dig`]);
+//! 5. fill: put a cell between the point and each of those faces, in the places of the old cells first
+//!    ([`Builder::fill`]);
+//! 6. link: new cells that share an edge of the cavity's surface are neighbors ([`Builder::link`]).
+//!
+//! A point that lies exactly on a sphere does not refute it: each point is lifted by an infinitesimal amount,
+//! far larger than those of all earlier points (Devillers and Teillaud, "Perturbations and Vertex Removal in
+//! a 3D Delaunay Triangulation", SODA 2003), so the result is that of points in general position, and no
+//! tetrahedron is flat.
 
 use super::sign::Signs;
 use super::{FACES, NONE};
 
 /// The vertex at infinity.
 const INFINITY: u32 = u32::MAX;
-/// Asked about cancellation every so many points.
+/// Points from one check for cancellation to the next.
 const PATIENCE: u32 = 4096;
 
 /// A tetrahedron while it is built. It is positive: vertex 3 lies where the first three are seen
@@ -83,6 +95,7 @@ impl Builder {
         let count = signs.count() as u32;
         let mut builder = Self {
             signs,
+            // A random point set has about 6.7 tetrahedra a point.
             cells: Vec::with_capacity(7 * count as usize),
             duplicates: Vec::new(),
             marks: Vec::with_capacity(7 * count as usize),
@@ -94,6 +107,7 @@ impl Builder {
             edges: Edges::new(),
         };
         let Some(first) = builder.first_cells() else { return Some(builder) };
+        // 2. The points stand in their order.
         for vertex in (0..count).filter(|v| !first.contains(v)) {
             if vertex.is_multiple_of(PATIENCE) && cancelled() {
                 return None;
@@ -107,6 +121,7 @@ impl Builder {
     fn first_cells(&mut self) -> Option<[u32; 4]> {
         let point = |v: u32| self.signs.point(v);
         let others = 1..self.signs.count() as u32;
+        // 1. The first point that differs from point 0, the first off their line, the first off their plane.
         let b = others.clone().find(|&v| point(v) != point(0))?;
         // Three points are collinear if they are so seen along every axis.
         let turns = |v: &u32| {
@@ -119,16 +134,19 @@ impl Builder {
         let c = others.clone().find(turns)?;
         let d = others.clone().find(|&v| self.signs.orient([0, b, c], v) != 0.0)?;
         let first = if self.signs.orient([0, b, c], d) > 0.0 { [0, b, c, d] } else { [0, c, b, d] };
+        // Positive. Beyond each face lies the infinite cell of that face, which has it as its face 3.
         let inner = Cell { vertices: first, across: [0, 1, 2, 3].map(|face| Side::new(face + 1, 3)) };
         self.cells.push(inner);
         for face in 0..4 {
             let [p, q, r] = inner.face(face);
             self.cells.push(Cell {
+                // The face seen from the other side, so two of its vertices change places.
                 vertices: [p, r, q, INFINITY],
                 across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, Side::new(0, face)],
             });
         }
         self.marks.resize(5, 0);
+        // The four infinite cells are neighbors by the six edges, each met twice.
         self.edges.clear(12);
         (1..5).for_each(|cell| self.link(cell));
         Some(first)
@@ -136,9 +154,11 @@ impl Builder {
 
     /// A cell whose sphere the point lies in: the one that holds it, or an infinite one whose face it sees.
     fn locate(&self, vertex: u32) -> u32 {
+        // 3. From the last new cell, or the finite one beside it: the order makes successive points near.
         let start = &self.cells[self.last as usize];
         let (mut at, mut from) = (start.infinite().map_or(self.last, |i| start.across[i].cell()), 4);
-        // This ends: in a Delaunay triangulation the cells along such a walk come nearer and nearer
+        // Through a face that has the point beyond it, never back through the one just passed (`from`; 4 is
+        // none). This ends: in a Delaunay triangulation the cells along such a walk come nearer and nearer
         // (Edelsbrunner 1990).
         loop {
             let cell = &self.cells[at as usize];
@@ -167,6 +187,7 @@ impl Builder {
     }
 
     fn insert(&mut self, vertex: u32) {
+        // 3. A vertex at the same place would be one of the located cell's.
         let start = self.locate(vertex);
         let point = self.signs.point(vertex);
         let same = |v: &u32| *v != INFINITY && self.signs.point(*v) == point;
@@ -180,6 +201,8 @@ impl Builder {
 
     /// Collects the refuted cells, which hang together, and the walls around them.
     fn dig(&mut self, vertex: u32, start: u32) {
+        // 4. Marks of earlier turns are smaller than those of this one, so nothing is reset from point to
+        // point.
         self.turn += 1;
         let (refuted, kept) = (2 * self.turn, 2 * self.turn + 1);
         self.cavity.clear();
@@ -187,6 +210,7 @@ impl Builder {
         self.marks[start as usize] = refuted;
         self.cavity.push(start);
         let mut seen = 0;
+        // Breadth first: the list of the cavity is the queue. Each cell is tested once.
         while let Some(&cell) = self.cavity.get(seen) {
             seen += 1;
             for side in self.cells[cell as usize].across {
@@ -199,6 +223,7 @@ impl Builder {
                         self.cavity.push(next);
                     }
                 }
+                // A face between a refuted and a kept cell is a wall.
                 if mark == kept {
                     self.walls.push(side);
                 }
@@ -208,11 +233,13 @@ impl Builder {
 
     /// Puts a cell between the point and each wall of the cavity.
     fn fill(&mut self, vertex: u32) {
+        // 5. Three edges a wall; each is met by the two walls that share it.
         self.edges.clear(3 * self.walls.len());
         self.unused.append(&mut self.cavity);
         for i in 0..self.walls.len() {
             let wall = self.walls[i];
             let [p, q, r] = self.cells[wall.cell() as usize].face(wall.face());
+            // Opposite the new point (vertex 3) lies the cell behind the wall.
             let cell = Cell {
                 vertices: [p, r, q, vertex],
                 across: [Side::NOWHERE, Side::NOWHERE, Side::NOWHERE, wall],
@@ -228,10 +255,12 @@ impl Builder {
                     self.cells.len() as u32 - 1
                 }
             };
+            // The kept cell's neighbor across the wall was refuted; the new cell takes its place.
             self.cells[wall.cell() as usize].across[wall.face()] = Side::new(at, 3);
             self.link(at);
             self.last = at;
         }
+        // A cavity may have fewer walls than cells: what is left over is dead until a later point needs it.
         for &at in &self.unused {
             self.cells[at as usize].vertices = [INFINITY; 4];
         }
@@ -241,6 +270,7 @@ impl Builder {
     /// with it.
     #[inline]
     fn link(&mut self, at: u32) {
+        // 6. Faces 0 to 2 hold the new point; each is known by its edge in the wall.
         let [p, q, r, _] = self.cells[at as usize].vertices;
         for (face, edge) in [[q, r], [r, p], [p, q]].into_iter().enumerate() {
             let side = Side::new(at, face);
@@ -269,8 +299,9 @@ impl Edges {
     fn new() -> Self {
         Self { slots: Vec::new(), stamp: 0 }
     }
-    /// Forgets all edges and makes room for so many.
+    /// Forgets all edges and makes room for this many.
     fn clear(&mut self, edges: usize) {
+        // At least twice as many slots as edges, so that probes stay short.
         self.stamp += 1;
         if self.slots.len() < 2 * edges {
             let empty = Slot { stamp: 0, edge: [0; 2], side: Side::NOWHERE };
@@ -280,12 +311,16 @@ impl Edges {
     /// The side that met this edge before; remembers this side if none did.
     #[inline]
     fn meet(&mut self, [a, b]: [u32; 2], side: Side) -> Option<Side> {
+        // Both walls name the edge, in opposite directions.
         let edge = [a.min(b), a.max(b)];
         let mask = self.slots.len() - 1;
+        // Multiplication by 2⁶⁴ over the golden ratio (Knuth) mixes upwards, so the high bits choose the
+        // slot.
         let mixed = (u64::from(edge[0]) << 32 | u64::from(edge[1])).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut at = (mixed >> 40) as usize & mask;
         loop {
             let slot = &mut self.slots[at];
+            // A slot of an earlier stamp is as good as empty.
             if slot.stamp != self.stamp {
                 *slot = Slot { stamp: self.stamp, edge, side };
                 return None;

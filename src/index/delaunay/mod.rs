@@ -57,9 +57,12 @@ impl Delaunay {
     /// Triangulates finite points; none of them need be distinct. `None` when cancelled.
     pub fn new(points: Vec<Vec3>, cancelled: impl Fn() -> bool) -> Option<Self> {
         let wide: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+        // 1. Points are numbered anew in the order of insertion, so that the builder counts upwards.
         let order = order::insertion_order(&wide);
         let sorted = order.iter().map(|&i| wide[i as usize]).collect();
+        // 2. Cells over all of space, those at infinity included.
         let built = Builder::triangulate(Signs::new(sorted), cancelled)?;
+        // 3. Back to the numbers of the points as given, without infinity.
         let duplicates = built.duplicates.iter().map(|pair| pair.map(|v| order[v as usize])).collect();
         Some(Self { points, tetrahedra: finite(&built.cells, &order), duplicates })
     }
@@ -80,6 +83,8 @@ impl Delaunay {
 
 /// The cells without those at infinity, with the points' own numbers.
 fn finite(cells: &[Cell], order: &[u32]) -> Vec<Tetrahedron> {
+    // Finite cells are numbered in their order; `NONE` stays for those at infinity, and so names what lies
+    // beyond the hull.
     let mut numbers = vec![NONE; cells.len()];
     let kept = numbers.iter_mut().zip(cells).filter(|(_, c)| !c.is_dead() && c.infinite().is_none());
     kept.enumerate().for_each(|(count, (number, _))| *number = count as u32);

@@ -1,9 +1,13 @@
 //! The order in which points are inserted: random rounds, along a space-filling curve within each.
 //!
-//! Amenta, Choi and Rote, "Incremental Constructions con BRIO", SoCG 2003: a biased randomized order keeps
-//! the expected cost of random insertion, and within a round the points may come in any order; along a
-//! Hilbert curve (Skilling, "Programming the Hilbert Curve", 2004) each is found a few tetrahedra away from
-//! the last. Cost: O(n log n).
+//! 1. Amenta, Choi and Rote, "Incremental Constructions con BRIO", SoCG 2003: each point belongs to the last
+//!    round with probability 3/4, else to the one before with 3/4, and so on. Such a biased randomized order
+//!    keeps the expected cost of random insertion, and within a round the points may come in any order.
+//! 2. Within a round they come along a Hilbert curve (Skilling, "Programming the Hilbert Curve", 2004): each
+//!    is found a few tetrahedra away from the last.
+//!
+//! Departure: the paper halves from round to round; four points to one make half as many rounds, each of
+//! which crosses all of space once. Cost: O(n log n).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;
@@ -11,22 +15,25 @@ use rand_pcg::rand_core::Rng;
 
 /// Bits of each coordinate along the curve; three of them and the round fit 64 bits.
 const BITS: u32 = 20;
-/// Points that the first round holds at least.
+/// Points that the first round holds at least, on average: few enough that long walks among them cost little.
 const FIRST_ROUND: u32 = 64;
-/// Bits of the round.
+/// The last round at most: 3 · 20 bits of the curve and 4 of the round fill the key.
 const MOST_ROUNDS: u32 = 15;
 
 /// The numbers of the points in the order of insertion. The same points give the same order.
 pub fn insertion_order(points: &[DVec3]) -> Vec<u32> {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    // One scale for all axes: cells of the grid are cubes, as the curve wants them.
     let scale = f64::from((1 << BITS) - 1) / (high - low).max_element().max(f64::MIN_POSITIVE);
     // Each round has four times the points of the one before.
     let last = ((points.len() as u32 / FIRST_ROUND).max(1).ilog2() / 2).min(MOST_ROUNDS);
     let mut rng = Pcg32::new(1, 3);
     let mut keys: Vec<(u64, u32)> = Vec::with_capacity(points.len());
     for (number, point) in points.iter().enumerate() {
+        // 1. Pairs of leading zeros come with probability 1/4 each.
         let round = last - (rng.next_u32().leading_zeros() / 2).min(last);
+        // 2. The round above the place on the curve: one sort does both.
         let cell = ((*point - low) * scale).to_array().map(|v| v as u32);
         keys.push((u64::from(round) << (3 * BITS) | along_hilbert(cell), number as u32));
     }
@@ -36,7 +43,8 @@ pub fn insertion_order(points: &[DVec3]) -> Vec<u32> {
 
 /// The place of a cell of the grid on the Hilbert curve through all of them.
 fn along_hilbert(mut cell: [u32; 3]) -> u64 {
-    // Undo the rotations and reflections of the curve's pieces, from the largest ones down.
+    // Skilling's transform: undo the rotations and reflections of the curve's pieces, from the largest ones
+    // down.
     for bit in (1..BITS).rev() {
         let (half, below) = (1 << bit, (1 << bit) - 1);
         for axis in 0..3 {
@@ -49,13 +57,14 @@ fn along_hilbert(mut cell: [u32; 3]) -> u64 {
             }
         }
     }
-    // Gray code.
+    // The steps of a Hilbert curve follow a Gray code.
     cell[1] ^= cell[0];
     cell[2] ^= cell[1];
     let flips = (1..BITS)
         .rev()
         .filter(|bit| cell[2] >> bit & 1 == 1)
         .fold(0, |flips, bit| flips ^ ((1u32 << bit) - 1));
+    // The bits of the axes take turns, the highest first.
     let [x, y, z] = cell.map(|v| spread(v ^ flips));
     x << 2 | y << 1 | z
 }

@@ -46,9 +46,12 @@ impl Signs {
     /// if on it.
     #[inline]
     pub fn orient(&self, [a, b, c]: [u32; 3], d: u32) -> f64 {
+        // Relative to `d`: one rounding a difference, and a determinant of three rows instead of four.
         let origin = self.point(d);
         let [p, q, r] = [a, b, c].map(|v| self.point(v) - origin);
         let det = -p.dot(q.cross(r));
+        // The filter: beyond this the sign cannot be wrong. The bound follows the size of each axis, so flat
+        // scenes keep a sharp one.
         let most = p.abs().max(q.abs()).max(r.abs());
         if det.abs() > ORIENT_ERROR * most.x * most.y * most.z {
             det
@@ -60,6 +63,7 @@ impl Signs {
     fn orient_exactly(&self, vertices: [u32; 4]) -> f64 {
         let [a, b, c, d] = vertices.map(|v| self.point(v));
         let Some(scale) = self.grid else { return orient3d(a, b, c, d) };
+        // Below 2²⁴, so a cross product stays below 2⁴⁹, and the sum is taken in 128 bits.
         let [p, q, r] = [a, b, c].map(|v| ((v - d) * scale).as_i64vec3());
         let det: i128 = (0..3).map(|i| i128::from(p[i]) * i128::from(q.cross(r)[i])).sum();
         -det.signum() as f64
@@ -70,6 +74,8 @@ impl Signs {
     pub fn insphere(&self, tetrahedron: [u32; 4], e: u32) -> f64 {
         let center = self.point(e);
         let [p, q, r, s] = tetrahedron.map(|v| self.point(v) - center);
+        // The determinant of five points by 2 × 2 minors in x and y, then 3 × 3 with z, then the squared
+        // lengths: each minor is computed once.
         let minor = |a: DVec3, b: DVec3| a.x * b.y - b.x * a.y;
         let (pq, pr, ps, qr, qs, rs) =
             (minor(p, q), minor(p, r), minor(p, s), minor(q, r), minor(q, s), minor(r, s));
@@ -80,6 +86,7 @@ impl Signs {
         let det = (p.length_squared() * qrs - q.length_squared() * prs)
             + (r.length_squared() * pqs - s.length_squared() * pqr);
         let most = p.abs().max(q.abs()).max(r.abs()).max(s.abs());
+        // A squared length has three such squares; the constant counts them.
         let longest = most.max_element();
         let error = INSPHERE_ERROR * most.x * most.y * most.z * longest * longest;
         if det.abs() > error { det } else { self.insphere_exactly(tetrahedron, e) }
@@ -89,6 +96,7 @@ impl Signs {
         let center = self.point(e);
         let [a, b, c, d] = tetrahedron.map(|v| self.point(v));
         let Some(scale) = self.grid else { return insphere(a, b, c, d, center) };
+        // Squared lengths below 3 · 2⁴⁸ fit 64 bits; their products with 3 × 3 minors need 128.
         let arms = [a, b, c, d].map(|v| ((v - center) * scale).as_i64vec3());
         // The determinant by its first column, the squared lengths; the rest of each row is an arm.
         let term = |i: usize| {
@@ -108,6 +116,8 @@ fn grid(points: &[DVec3]) -> Option<f64> {
         ((v.to_bits() >> 52 & 0x7ff) as i32) - 1075
             + (v.to_bits() & ((1 << 52) - 1) | 1 << 52).trailing_zeros() as i32
     };
+    // The finest of all last bits is the step of the grid; its inverse is a power of two, so products with it
+    // are exact.
     let exponent = coordinates.map(last_bit).min()?;
     let scale = f64::from_bits(((1023 - exponent) as u64) << 52);
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
@@ -118,17 +128,16 @@ fn grid(points: &[DVec3]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand_pcg::Pcg32;
-    use rand_pcg::rand_core::Rng;
+    use crate::geometry::dice::Dice;
 
     #[test]
     fn signs_are_those_of_exact_expansions() {
-        let mut rng = Pcg32::new(3, 9);
+        let mut dice = Dice::new(3);
         let (mut ties, mut inside) = (0, 0);
         for case in 0..4000 {
             // Small grids, where ties abound; large ones; numbers of very different size; and no grid at all.
             let mut number = || {
-                let v = rng.next_u32();
+                let v = dice.bits();
                 match case % 4 {
                     0 => f64::from(v % 4) - 2.0,
                     1 => f64::from(v >> 8) * 0.125,

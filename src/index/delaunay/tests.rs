@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng;
 
 use super::{Delaunay, FACES};
+use crate::geometry::dice::Dice;
 use crate::geometry::{insphere, orient3d};
 
 fn triangulate(points: Vec<Vec3>) -> Delaunay {
@@ -89,48 +88,40 @@ fn hull_volume(points: &[DVec3]) -> f64 {
     sum
 }
 
-struct Random(Pcg32);
+/// A point of the unit cube.
+fn point(dice: &mut Dice) -> Vec3 {
+    Vec3::new(dice.unit(), dice.unit(), dice.unit())
+}
 
-impl Random {
-    fn new(seed: u64) -> Self {
-        Self(Pcg32::new(seed, 17))
-    }
-    fn below(&mut self, n: u32) -> u32 {
-        ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
-    }
-    fn unit(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 / (1u32 << 24) as f32
-    }
-    fn point(&mut self) -> Vec3 {
-        Vec3::new(self.unit(), self.unit(), self.unit())
-    }
-    fn grid_point(&mut self, [x, y, z]: [u32; 3]) -> Vec3 {
-        Vec3::new(self.below(x) as f32, self.below(y) as f32, self.below(z) as f32)
-    }
+/// A point of a grid of this many places along each axis.
+fn grid_point(dice: &mut Dice, [x, y, z]: [u32; 3]) -> Vec3 {
+    Vec3::new(dice.below(x) as f32, dice.below(y) as f32, dice.below(z) as f32)
 }
 
 #[test]
 fn random_points_are_triangulated_and_fill_their_hull() {
-    let mut random = Random::new(1);
+    let mut dice = Dice::new(1);
     for case in 0..60 {
-        let n = 4 + random.below(28) as usize;
-        let d = triangulate((0..n).map(|_| random.point()).collect());
+        let n = 4 + dice.below(28) as usize;
+        let d = triangulate((0..n).map(|_| point(&mut dice)).collect());
         assert_eq!(fault(&d), None, "case {case}");
         let (filled, hull) =
             (volume(&d), hull_volume(&d.points.iter().map(|p| p.as_dvec3()).collect::<Vec<_>>()));
         assert!((filled - hull).abs() < 1e-12, "case {case}: {filled} of {hull}");
     }
-    let d = triangulate((0..3000).map(|_| random.point()).collect());
+    let d = triangulate((0..3000).map(|_| point(&mut dice)).collect());
     assert_eq!(fault(&d), None);
     assert!((6.0..7.0).contains(&(d.tetrahedra.len() as f64 / 3000.0)), "{}", d.tetrahedra.len());
 }
 
 #[test]
 fn no_point_lies_in_any_sphere() {
-    let mut random = Random::new(2);
+    let mut dice = Dice::new(2);
     for case in 0..20 {
         let d = triangulate(
-            (0..60).map(|_| if case % 2 == 0 { random.point() } else { random.grid_point([4; 3]) }).collect(),
+            (0..60)
+                .map(|_| if case % 2 == 0 { point(&mut dice) } else { grid_point(&mut dice, [4; 3]) })
+                .collect(),
         );
         for t in 0..d.tetrahedra.len() {
             let [a, b, c, e] = corners(&d, t);
@@ -141,12 +132,12 @@ fn no_point_lies_in_any_sphere() {
 
 #[test]
 fn small_sets_on_small_grids_have_ties_of_every_kind() {
-    let mut random = Random::new(3);
+    let mut dice = Dice::new(3);
     let (mut flat, mut doubled) = (0, 0);
     for case in 0..20_000 {
-        let n = random.below(24) as usize;
-        let size = [1 + random.below(4), 1 + random.below(4), 1 + random.below(4)];
-        let d = triangulate((0..n).map(|_| random.grid_point(size)).collect());
+        let n = dice.below(24) as usize;
+        let size = [1 + dice.below(4), 1 + dice.below(4), 1 + dice.below(4)];
+        let d = triangulate((0..n).map(|_| grid_point(&mut dice, size)).collect());
         assert_eq!(fault(&d), None, "case {case}: {:?}", d.points);
         flat += u32::from(d.tetrahedra.is_empty());
         doubled += u32::from(!d.duplicates.is_empty());
@@ -170,10 +161,10 @@ fn whole_grids_fill_their_box() {
 
 #[test]
 fn points_near_a_sphere_and_of_mixed_size_are_no_trouble() {
-    let mut random = Random::new(4);
-    let sphere = (0..400).map(|_| (random.point() * 2.0 - 1.0).normalize()).collect();
-    let mixed = (0..400).map(|i| random.point() * 10f32.powi(i % 60 - 30)).collect();
-    let clusters = (0..400).map(|i| Vec3::splat((i % 7) as f32 * 1000.0) + random.point() * 1e-3).collect();
+    let mut dice = Dice::new(4);
+    let sphere = (0..400).map(|_| (point(&mut dice) * 2.0 - 1.0).normalize()).collect();
+    let mixed = (0..400).map(|i| point(&mut dice) * 10f32.powi(i % 60 - 30)).collect();
+    let clusters = (0..400).map(|i| Vec3::splat((i % 7) as f32 * 1000.0) + point(&mut dice) * 1e-3).collect();
     for points in [sphere, mixed, clusters] {
         let d = triangulate(points);
         assert_eq!(fault(&d), None);
@@ -198,8 +189,8 @@ fn sets_without_volume_have_no_cells() {
 
 #[test]
 fn duplicates_are_named_once_each() {
-    let mut random = Random::new(5);
-    let mut points: Vec<Vec3> = (0..200).map(|_| random.point()).collect();
+    let mut dice = Dice::new(5);
+    let mut points: Vec<Vec3> = (0..200).map(|_| point(&mut dice)).collect();
     points.extend_from_within(..);
     points.push(-points[0] * 0.0);
     points.push(points[0] * 0.0);
@@ -209,22 +200,22 @@ fn duplicates_are_named_once_each() {
 
 #[test]
 fn the_same_points_give_the_same_cells() {
-    let mut random = Random::new(6);
-    let points: Vec<Vec3> = (0..500).map(|_| random.grid_point([9; 3])).collect();
+    let mut dice = Dice::new(6);
+    let points: Vec<Vec3> = (0..500).map(|_| grid_point(&mut dice, [9; 3])).collect();
     let (a, b) = (triangulate(points.clone()), triangulate(points));
     assert_eq!((&a.tetrahedra, &a.duplicates), (&b.tetrahedra, &b.duplicates));
 }
 
 #[test]
 fn a_triangulation_can_be_cancelled() {
-    let mut random = Random::new(8);
-    assert!(Delaunay::new((0..9000).map(|_| random.point()).collect(), || true).is_none());
+    let mut dice = Dice::new(8);
+    assert!(Delaunay::new((0..9000).map(|_| point(&mut dice)).collect(), || true).is_none());
 }
 
 #[test]
 fn the_checks_see_what_is_wrong() {
-    let mut random = Random::new(9);
-    let good = triangulate((0..40).map(|_| random.point()).collect());
+    let mut dice = Dice::new(9);
+    let good = triangulate((0..40).map(|_| point(&mut dice)).collect());
     let broken = |f: &dyn Fn(&mut Delaunay)| {
         let mut bad = good.clone();
         f(&mut bad);

@@ -4,12 +4,16 @@
 //! boundary, so a primitive may be in several lists and must be drawn only once. Here a list has two parts:
 //! primitives of this cell alone, which need no mark, and shared ones by a number under which they are
 //! marked.
+//!
+//! 1. Each primitive finds the cells that it meets (Section 3.1 scan-converts it into them).
+//! 2. Pairs of cell and primitive are sorted by cell into one table a kind.
+//! 3. A last pass finds the most primitives of any cell, ρ_max (Section 3.1).
 
 use super::{Cellular, Tessellation};
 use crate::geometry::{CellId, PrimId};
 use crate::scene::{Progress, Scene};
 
-/// Primitives asked for progress every so many.
+/// Primitives from one report of progress to the next.
 const PATIENCE: usize = 1 << 14;
 
 /// The primitives of every cell.
@@ -41,11 +45,14 @@ impl Assignment {
                 }
                 progress.report(count as f32 / scene.live().len() as f32, "assigning primitives to cells");
             }
+            // 1. Primitives of a file that follow each other are near each other: the search begins where the
+            // last one ended.
             corners.clear();
             corners.extend(scene.prim_points(prim));
             met.clear();
             cells.meeting(&corners, near, &mut met);
             near = met[0];
+            // Numbers of shared primitives count up in the order of their ids, so marks are a dense table.
             if let [cell] = met[..] {
                 own.push((cell, prim));
             } else {
@@ -53,12 +60,15 @@ impl Assignment {
                 numbered.push(prim);
             }
         }
+        // 2. Own primitives by cell first, then the shared ones: the end of the table is the list of the
+        // latter.
         let (own_starts, mut prims) = by_cell(cells.count(), &own);
         prims.extend(numbered);
         let (shared_starts, shared) = by_cell(cells.count(), &shared);
         Some(Self::finish(prims, own_starts, shared, shared_starts))
     }
     fn finish(prims: Vec<PrimId>, own_starts: Vec<u32>, shared: Vec<u32>, shared_starts: Vec<u32>) -> Self {
+        // 3.
         let mut made = Self { prims, own_starts, shared, shared_starts, most: 0 };
         made.most = (0..made.cells() as u32).map(|c| made.held(CellId(c))).max().unwrap_or(0);
         made
@@ -121,6 +131,7 @@ impl Assignment {
         cells: usize,
         scene: &Scene<S>,
     ) -> Option<Self> {
+        // Every slice taken later must lie in its table.
         let ascending = |starts: &[u32], end: usize| {
             starts.len() == cells + 1
                 && starts[0] == 0
@@ -128,6 +139,8 @@ impl Assignment {
                 && starts[cells] as usize <= end
         };
         let prims: Vec<PrimId> = prims.into_iter().map(PrimId).collect();
+        // Every live primitive once; what meets which cell is taken on trust, since checking it is building
+        // it.
         let mut sorted = prims.clone();
         sorted.sort_unstable();
         let fits = sorted == scene.live()
@@ -141,6 +154,7 @@ impl Assignment {
 
 /// Sorts pairs into lists by cell, keeping their order within each.
 fn by_cell<T: Copy>(cells: usize, pairs: &[(CellId, T)]) -> (Vec<u32>, Vec<T>) {
+    // Counting sort: how many in each cell, where each list begins, then every pair to its place.
     let mut starts = vec![0u32; cells + 1];
     pairs.iter().for_each(|(cell, _)| starts[cell.at() + 1] += 1);
     (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);

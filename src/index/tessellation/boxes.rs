@@ -1,13 +1,17 @@
 //! Cells that are boxes: the leaves of a binary tree that divides a box by axis-parallel planes.
 //!
-//! An octree is such a tree too: its nodes are divided along each axis in turn. Neighbors across levels of
-//! any difference are found by descending both sides of every dividing plane together (in place of the
-//! paper's walk up and down the octree, Section 4.3 and Figure 9): O(pairs of neighbors + nodes).
+//! 1. The tree is built from a rule that divides a box, or makes it a leaf ([`BoxCells::build`]). An octree
+//!    is such a tree too: its nodes are divided along each axis in turn.
+//! 2. Neighbors are found by descending both sides of every dividing plane together ([`join`]), across levels
+//!    of any difference, in O(pairs of neighbors + nodes). Departure: Section 4.3 of Klosowski and Silva 2000
+//!    (Figure 9) walks up and down the octree from each leaf, and lets deeper leaves complete the lists of
+//!    higher ones.
 
 use super::{Adjacency, Cellular, Exit, Neighbor, Tessellation};
 use crate::geometry::{Aabb, CellId, Vector};
 
-/// Deeper than this no tree divides, so that recursion stays shallow.
+/// Deeper than this no tree divides, so that recursion stays shallow. These are 32 halvings on
+/// each of three axes, more than the 24 bits of f32 can tell apart.
 const MAX_LEVEL: u32 = 96;
 
 /// A node: divided at `split` along `axis`, or a leaf.
@@ -41,7 +45,7 @@ pub struct BoxCells<V> {
 pub(super) type Divide<'a, V> = dyn FnMut(&Aabb<V>, u32, &mut [V]) -> Option<(usize, f32)> + 'a;
 
 impl<V: Vector> BoxCells<V> {
-    /// Divides a box as `divide` says, which is asked with box, level and the points in the box. `None` when
+    /// Divides a box by the rule `divide`, a function of box, level and the points in the box. `None` when
     /// cancelled.
     pub(super) fn build(
         region: Aabb<V>,
@@ -52,11 +56,14 @@ impl<V: Vector> BoxCells<V> {
         let leaf = Node { bounds: region, split: 0.0, axis: Node::<V>::LEAF, link: 0 };
         let (mut nodes, mut leaves) = (vec![leaf], Vec::new());
         let mut open = vec![(0u32, 0u32, points)];
+        // 1. Depth first, the lower child first, so cells are numbered along the tree and near ones have near
+        // numbers.
         while let Some((at, level, points)) = open.pop() {
             if cancelled() {
                 return None;
             }
             let bounds = nodes[at as usize].bounds;
+            // A plane on a side of the box would leave a cell without volume, and rounding can put it there.
             let inside = |(axis, split): &(usize, f32)| {
                 bounds.min.get(*axis) < *split && *split < bounds.max.get(*axis)
             };
@@ -67,6 +74,7 @@ impl<V: Vector> BoxCells<V> {
                 leaves.push(at);
                 continue;
             };
+            // Children are neighbors in the list, so one number names both.
             let first = nodes.len() as u32;
             let cut = |low: bool, a: usize, v: f32| if a == axis && low { split } else { v };
             let below = Aabb { min: bounds.min, max: V::from_fn(|a| cut(true, a, bounds.max.get(a))) };
@@ -75,6 +83,7 @@ impl<V: Vector> BoxCells<V> {
             nodes.push(Node { bounds: above, ..leaf });
             (nodes[at as usize].axis, nodes[at as usize].split, nodes[at as usize].link) =
                 (axis as u8, split, first);
+            // Points on the plane belong to the upper half, as in `locate`.
             let middle = partition(points, |p| p.get(axis) < split);
             let (low, high) = points.split_at_mut(middle);
             open.push((first + 1, level + 1, high));
@@ -83,6 +92,7 @@ impl<V: Vector> BoxCells<V> {
         Some(Self::joined(nodes, leaves))
     }
     fn joined(nodes: Vec<Node<V>>, leaves: Vec<u32>) -> Self {
+        // 2. Two leaves that touch are parted by exactly one plane: that of the last node above both.
         let mut pairs = Vec::new();
         for node in nodes.iter().filter(|n| !n.is_leaf()) {
             join(&nodes, node.link, node.link + 1, node.axis as usize, &mut pairs);
@@ -116,9 +126,11 @@ impl<V: Vector> BoxCells<V> {
         }
         order
     }
-    /// The tree of [`BoxCells::tables`]; `None` if they are not one's.
+    /// The tree of [`BoxCells::tables`]; `None` if they are not those of a tree.
     pub fn of_tables(region: Aabb<V>, table: &[(u32, f32)]) -> Option<Self> {
         let mut rows = table.iter();
+        // The rule of the table's rows replaces the one that made them; the tree comes out the same, since
+        // both divide in the same order.
         let mut short = !region.min.is_finite()
             || !region.max.is_finite()
             || (0..V::AXES).any(|a| region.min.get(a) >= region.max.get(a));
@@ -131,6 +143,7 @@ impl<V: Vector> BoxCells<V> {
             if axis < V::AXES && bounds.min.get(axis) < *split && *split < bounds.max.get(axis) {
                 return Some((axis, *split));
             }
+            // An axis whose plane misses the box is a fault; a leaf's row has no axis.
             short |= axis < V::AXES;
             None
         };
@@ -159,6 +172,7 @@ fn join<V: Vector>(
     axis: usize,
     pairs: &mut Vec<(CellId, Neighbor<V>)>,
 ) {
+    // Below and above the plane.
     let (b, a) = (&nodes[below as usize], &nodes[above as usize]);
     // They must share more than an edge.
     let shares = |k: usize| {
@@ -171,10 +185,12 @@ fn join<V: Vector>(
         // Of a node divided along the axis only the half at the plane touches it.
         let first = if b.axis as usize == axis { 1 } else { 0 };
         (first..2).for_each(|i| join(nodes, b.link + i, above, axis, pairs));
+    // The same from above, once the lower side is a leaf.
     } else if !a.is_leaf() {
         let last = if a.axis as usize == axis { 1 } else { 2 };
         (0..last).for_each(|i| join(nodes, below, a.link + i, axis, pairs));
     } else {
+        // Two leaves that share part of the plane: each lists the other.
         let normal = V::from_fn(|k| if k == axis { 1.0 } else { 0.0 });
         pairs.push((CellId(b.link), Neighbor { cell: CellId(a.link), normal }));
         pairs.push((CellId(a.link), Neighbor { cell: CellId(b.link), normal: -normal }));
@@ -203,6 +219,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
             return None;
         }
         while !node.is_leaf() {
+            // A point on a dividing plane goes up, so that one cell is found for it, always the same.
             let above = point.get(node.axis as usize) >= node.split;
             node = &self.nodes[node.link as usize + usize::from(above)];
         }
@@ -212,6 +229,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
         let cell = self.cell(from);
         let center = cell.center();
         let way = point - center;
+        // When the way passes the plane of the side ahead, on each axis; parts of its whole length.
         let at = |a: usize| match way.get(a) {
             0.0 => f32::INFINITY,
             w if w > 0.0 => (cell.max.get(a) - center.get(a)) / w,
@@ -222,6 +240,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
         if first >= 1.0 {
             return Exit::Ends;
         }
+        // A neighbor is entered if it lies at the side passed first and holds the place of passage.
         let leads_into = |next: &Aabb<S::Vector>, a: usize| {
             let faces = if way.get(a) > 0.0 {
                 cell.max.get(a) == next.min.get(a)
@@ -233,6 +252,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
             };
             faces && axes.clone().all(|k| k == a || reaches(k))
         };
+        // Neighbors ascend by id, so on an edge the lowest wins.
         let through = |n: &&Neighbor<S::Vector>| {
             axes.clone().any(|a| at(a) == first && leads_into(self.cell(n.cell), a))
         };
@@ -241,6 +261,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
     fn meeting(&self, prim: &[S::Vector], _: CellId, to: &mut Vec<CellId>) {
         let bounds = Aabb::of(prim.iter().copied());
         let start = to.len();
+        // A stack on the stack: two entries a level are enough.
         let mut open = [0u32; 2 * MAX_LEVEL as usize];
         let mut count = 1;
         while count > 0 {
@@ -251,13 +272,15 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
                 continue;
             }
             let axis = node.axis as usize;
+            // Bounds that touch a plane go to both sides: cells are closed.
             let (below, above) = (bounds.min.get(axis) <= node.split, bounds.max.get(axis) >= node.split);
             for (_, child) in [(above, 1), (below, 0)].into_iter().filter(|(met, _)| *met) {
                 open[count] = node.link + child;
                 count += 1;
             }
         }
-        // Where the bounds meet one box only, so does the primitive.
+        // Where the bounds meet one box only, so does the primitive. Where they meet several, a slanted one
+        // may miss some.
         if to.len() > start + 1 {
             let mut kept = start;
             for at in start..to.len() {

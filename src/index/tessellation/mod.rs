@@ -82,6 +82,7 @@ struct Adjacency<V> {
 impl<V: Vector> Adjacency<V> {
     /// Sorts pairs of a cell and a neighbor of it into lists for `count` cells.
     fn new(count: usize, mut pairs: Vec<(CellId, Neighbor<V>)>) -> Self {
+        // By cell, then by neighbor: no two pairs are equal, so the order is one.
         pairs.sort_unstable_by_key(|(cell, n)| (*cell, n.cell));
         let mut starts = vec![0; count + 1];
         pairs.iter().for_each(|(cell, _)| starts[cell.at() + 1] += 1);
@@ -108,13 +109,15 @@ pub struct Fineness {
 
 impl Default for Fineness {
     fn default() -> Self {
-        // Section 4.3, footnote 4: 5 %. Vertices are not limited there.
+        // Section 4.3, footnote 4: a node with a side shorter than 5 % of the scene's longest is a leaf. The
+        // number of vertices is not limited there.
         Self { leaf_share: 0.05, leaf_vertices: 0 }
     }
 }
 
 /// The points that live primitives use, in the order of their numbers.
 fn vertices<S: Space>(scene: &Scene<S>) -> Vec<S::Vector> {
+    // Welding and dropped primitives can leave points that nothing uses; they would refine cells for nothing.
     let mut used = vec![false; scene.points().len()];
     let corners = scene.live().iter().filter_map(|&p| scene.corners(p));
     corners.for_each(|c| c.as_ref().iter().for_each(|i| used[*i as usize] = true));
@@ -130,7 +133,8 @@ fn region<S: Space>(scene: &Scene<S>) -> Aabb<S::Vector> {
     let center = bounds.center();
     let longest = (0..S::Vector::AXES).map(|a| bounds.size().get(a)).fold(0.0, f32::max);
     let far = (0..S::Vector::AXES).map(|a| center.get(a).abs()).fold(0.0, f32::max);
-    // Also for a scene that is a point, far from the origin.
+    // The largest of three: the scene's half side; a share of its distance from the origin, for below that
+    // f32 would not tell the sides apart; a number that is not 0.
     let half = S::Vector::splat((longest * (0.5 + SLACK)).max(far * SLACK).max(f32::MIN_POSITIVE / SLACK));
     Aabb { min: center - half, max: center + half }
 }

@@ -1,8 +1,12 @@
 //! Cells that are simplices: the Delaunay triangulation of perturbed cell centers.
 //!
-//! Klosowski and Silva 2000, Section 4.3. The centers of an octree's leaves lie on a lattice; they are moved
-//! at random, by a seed. Departure: the corners of the region are added, so that the cells cover the whole
-//! scene and not only the convex hull of the centers; what reaches beyond that hull would belong to no cell.
+//! Klosowski and Silva 2000, Section 4.3:
+//!
+//! 1. The centers of an octree's leaves, which lie on a lattice, are moved at random, by a seed.
+//! 2. Their Delaunay triangulation makes the cells, with adjacency.
+//!
+//! Departure: the corners of the region are added, so that the cells cover the whole scene and not only the
+//! convex hull of the centers; what reaches beyond that hull would belong to no cell.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -12,7 +16,8 @@ use crate::geometry::{Aabb, CellId, Vector};
 
 /// No neighbor.
 pub(super) const NONE: u32 = u32::MAX;
-/// A center is moved by at most this share of its cell's size along each axis.
+/// A center is moved by at most this share of its cell's size along each axis. The paper gives no amount; at
+/// an eighth it stays well inside its leaf.
 const JITTER: f32 = 0.125;
 /// The vertices of the face opposite each vertex, so that the cell's inside is in front of the face.
 const FACES: [[[usize; 3]; 4]; 2] =
@@ -42,6 +47,7 @@ impl<S: Cellular> SimplexCells<S> {
     /// The Delaunay triangulation of the centers of boxes, moved at random. `None` when cancelled.
     pub fn of_centers(boxes: &BoxCells<S::Vector>, seed: u32, cancelled: &dyn Fn() -> bool) -> Option<Self> {
         let mut rng = Pcg32::new(seed.into(), 7);
+        // 1. The corners of the region come first, and are not moved.
         let mut share = || ((rng.next_u32() >> 8) as f32 / (1u32 << 23) as f32 - 1.0) * JITTER;
         let mut points: Vec<S::Vector> = boxes.region().corners().collect();
         for cell in (0..Tessellation::<S>::count(boxes) as u32).map(CellId) {
@@ -49,6 +55,7 @@ impl<S: Cellular> SimplexCells<S> {
             points
                 .push(Tessellation::<S>::center(boxes, cell) + S::Vector::from_fn(|a| size.get(a) * share()));
         }
+        // 2.
         let cells = S::triangulate(&points, cancelled)?;
         Some(Self::of(points, cells))
     }
@@ -58,7 +65,7 @@ impl<S: Cellular> SimplexCells<S> {
         let mut pairs = Vec::with_capacity(made.cells.len() * Self::CORNERS);
         for (cell, simplex) in made.cells.iter().enumerate() {
             for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
-                // Face normals point inside.
+                // Face normals point inside, those of neighbors outside.
                 let normal = -S::normal(&made.face(simplex, face)[..S::CORNERS]);
                 let unit = normal * (1.0 / normal.length().max(f32::MIN_POSITIVE));
                 pairs.push((
@@ -77,6 +84,7 @@ impl<S: Cellular> SimplexCells<S> {
     /// The cells of [`SimplexCells::tables`]; `None` if they are not a triangulation's: numbers out of range,
     /// a cell that is not positive, faces that do not match.
     pub fn of_tables(points: Vec<S::Vector>, cells: Vec<Simplex>) -> Option<Self> {
+        // Numbers first, since what follows uses them as places.
         let in_range = |c: &Simplex| {
             let corners = (0..Self::CORNERS).all(|i| (c.vertices[i] as usize) < points.len());
             corners
@@ -87,6 +95,7 @@ impl<S: Cellular> SimplexCells<S> {
             return None;
         }
         let made = Self { points, cells, adjacency: Adjacency { starts: Vec::new(), neighbors: Vec::new() } };
+        // Every cell positive and every face matched: then walks from cell to cell stay in the tables.
         let sound = made.cells.iter().enumerate().all(|(cell, c)| {
             made.is_positive(c) && (0..Self::CORNERS).all(|f| made.matches(cell as u32, c, f))
         });
@@ -101,6 +110,7 @@ impl<S: Cellular> SimplexCells<S> {
     fn matches(&self, cell: u32, simplex: &Simplex, face: usize) -> bool {
         let Some(other) = self.cells.get(simplex.neighbors[face] as usize) else { return true };
         let Some(back) = (0..Self::CORNERS).find(|k| other.neighbors[*k] == cell) else { return false };
+        // As sets: the two cells name the corners of their common face in different orders.
         let others = |s: &Simplex, without: usize| {
             let mut list: Vec<u32> =
                 (0..Self::CORNERS).filter(|k| *k != without).map(|k| s.vertices[k]).collect();
@@ -146,6 +156,7 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
     }
     fn contains(&self, cell: CellId, point: S::Vector) -> bool {
         let simplex = &self.cells[cell.at()];
+        // Exact signs, so that a point lies in some cell, and in two only on a face.
         (0..Self::CORNERS).all(|face| self.side(simplex, face, point) >= 0.0)
     }
     fn neighbors(&self, cell: CellId) -> &[Neighbor<S::Vector>] {
@@ -155,6 +166,7 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
     /// come from damaged files only, and there the number of steps ends it.
     fn locate(&self, point: S::Vector, near: CellId) -> Option<CellId> {
         let mut at = near;
+        // No such walk visits a cell twice.
         for _ in 0..=self.cells.len() {
             let simplex = &self.cells[at.at()];
             let Some(face) = (0..Self::CORNERS).find(|face| self.side(simplex, *face, point) < 0.0) else {
@@ -190,7 +202,7 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
     fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>) {
         let start = to.len();
         to.push(self.locate(prim[0], near).unwrap_or(near));
-        // The cells that meet a connected set hang together by faces.
+        // The cells that meet a connected set hang together by faces: breadth first, the list is the queue.
         let mut seen = start;
         while seen < to.len() {
             let at = to[seen];
@@ -198,6 +210,8 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
             let simplex = self.cells[at.at()];
             for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
                 let next = CellId(simplex.neighbors[face]);
+                // In the order of cost: known already, some corner at or beyond the face, the separating
+                // axes.
                 let reaches = || prim.iter().any(|p| self.side(&simplex, face, *p) <= 0.0);
                 if !to[start..].contains(&next) && reaches() && S::meets_simplex(prim, &self.corners(next)) {
                     to.push(next);

@@ -1,12 +1,11 @@
 //! Tessellations of both spaces and all three kinds against brute force.
 
-use rand_pcg::Pcg32;
-use rand_pcg::rand_core::Rng;
 use std::sync::Arc;
 
 use super::{
     Assignment, BoxCells, Cellular, Exit, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree,
 };
+use crate::geometry::dice::Dice;
 use crate::geometry::{Aabb, CellId, Flat, PrimId, Solid, Space, Vector};
 use crate::scene::{Quiet, Scene, samples};
 
@@ -45,30 +44,20 @@ fn all(count: usize) -> impl Iterator<Item = CellId> {
     (0..count as u32).map(CellId)
 }
 
-struct Random(Pcg32);
-
-impl Random {
-    fn unit(&mut self) -> f32 {
-        (self.0.next_u32() >> 8) as f32 / (1u32 << 24) as f32
-    }
-    fn below(&mut self, n: usize) -> u32 {
-        self.0.next_u32() % n as u32
-    }
-    /// A point of the whole region, a little beyond the scene.
-    fn point<S: Space>(&mut self, scene: &Scene<S>) -> S::Vector {
-        let (center, size) = (scene.bounds().center(), scene.bounds().size());
-        S::Vector::from_fn(|a| center.get(a) + size.get(a) * (self.unit() - 0.5))
-    }
+/// A point of the whole scene.
+fn point_of<S: Space>(scene: &Scene<S>, dice: &mut Dice) -> S::Vector {
+    let (center, size) = (scene.bounds().center(), scene.bounds().size());
+    S::Vector::from_fn(|a| center.get(a) + size.get(a) * dice.signed(0.5))
 }
 
 fn tiles<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S>) {
     assert!(cells.count() > 20, "{name}: {}", cells.count());
-    let mut random = Random(Pcg32::new(1, 1));
+    let mut dice = Dice::new(1);
     for _ in 0..60 {
-        let point = random.point(scene);
+        let point = point_of(scene, &mut dice);
         let holding: Vec<_> = all(cells.count()).filter(|c| cells.contains(*c, point)).collect();
         assert_eq!(holding.len(), 1, "{name}: no point at random lies on a boundary");
-        assert_eq!(cells.locate(point, CellId(random.below(cells.count()))), Some(holding[0]), "{name}");
+        assert_eq!(cells.locate(point, CellId(dice.below(cells.count() as u32))), Some(holding[0]), "{name}");
     }
     assert_eq!(cells.locate(scene.bounds().max + scene.bounds().size(), CellId(0)), None, "{name}");
     for cell in all(cells.count()) {
@@ -168,10 +157,10 @@ fn simplices_share_whole_faces_and_fill_the_region() {
 /// The way from a cell's center to a point leaves through one face, and right behind it lies the neighbor
 /// that is named.
 fn is_left<S: Cellular>(scene: &Scene<S>, name: &str, cells: &dyn Tessellation<S>) {
-    let mut random = Random(Pcg32::new(5, 1));
+    let mut dice = Dice::new(5);
     let mut left = 0;
     for _ in 0..400 {
-        let (cell, point) = (CellId(random.below(cells.count())), random.point(scene));
+        let (cell, point) = (CellId(dice.below(cells.count() as u32)), point_of(scene, &mut dice));
         let exit = cells.exit(cell, point);
         let (center, way) = (cells.center(cell), point - cells.center(cell));
         // Where it leaves, by halving.

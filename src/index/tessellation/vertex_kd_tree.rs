@@ -26,10 +26,12 @@ pub fn vertex_kd_tree<S: Space>(
         if points.len() <= fineness.leaf_vertices as usize || size.get(axis) < least {
             return None;
         }
+        // The median vertex balances the halves; equal coordinates may put more than half on one side.
         let middle = points.len() / 2;
         let median =
             points.select_nth_unstable_by(middle, |p, q| p.get(axis).total_cmp(&q.get(axis))).1.get(axis);
         let (low, high) = (bounds.min.get(axis), bounds.max.get(axis));
+        // Off the sides of the node.
         let rim = (high - low) * LEAST_HALF;
         Some((axis, median.clamp(low + rim, high - rim)))
     };

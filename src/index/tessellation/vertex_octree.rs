@@ -18,6 +18,7 @@ pub fn vertex_octree<S: Space>(
     let axes = S::Vector::AXES;
     let least = region.size().get(0) * fineness.leaf_share;
     let mut divide = |bounds: &crate::geometry::Aabb<S::Vector>, level: u32, points: &mut [S::Vector]| {
+        // Three levels of the binary tree are one of the octree, two of the quadtree.
         let axis = level as usize % axes;
         // An octree's node is divided along all axes or none: the first one decides.
         let whole =

@@ -6,56 +6,15 @@ mod pyramid;
 mod rules;
 
 use glam::{DVec3, Vec2, Vec3};
-use rand_pcg::Pcg64Mcg;
-use rand_pcg::rand_core::Rng;
 
 use super::*;
-use crate::geometry::{Eye, MaterialId, ObjectId};
-use crate::scene::{Material, Object, Parts, Report};
-
-/// Seeded numbers for tests.
-pub(super) struct Dice(Pcg64Mcg);
-
-impl Dice {
-    pub fn new(seed: u64) -> Self {
-        Self(Pcg64Mcg::new(u128::from(seed) << 64 | 0xcafe_f00d_d15e_a5e5))
-    }
-    /// Uniform in 0..n.
-    pub fn below(&mut self, n: u32) -> u32 {
-        ((u64::from(self.0.next_u32()) * u64::from(n)) >> 32) as u32
-    }
-    /// Uniform in low..high.
-    pub fn between(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * ((self.0.next_u32() >> 8) as f32 / (1 << 24) as f32)
-    }
-    pub fn point(&mut self, reach: f32) -> Vec3 {
-        Vec3::new(self.between(-reach, reach), self.between(-reach, reach), self.between(-reach, reach))
-    }
-    pub fn shuffle<T>(&mut self, list: &mut [T]) {
-        for i in (1..list.len()).rev() {
-            list.swap(i, self.below(i as u32 + 1) as usize);
-        }
-    }
-}
+use crate::geometry::Eye;
+use crate::geometry::dice::Dice;
+use crate::scene::Parts;
 
 /// A scene of one object and one material.
 pub(super) fn scene_of<S: Space>(points: Vec<S::Vector>, prims: Vec<S::Corners>) -> Scene<S> {
-    let n = prims.len();
-    let parts = Parts {
-        name: "test".into(),
-        source: "test".into(),
-        points,
-        prims: prims.into_iter().map(Some).collect(),
-        prim_object: vec![ObjectId(0); n],
-        prim_material: vec![MaterialId(0); n],
-        faces: Vec::new(),
-        objects: vec![Object { name: "all".into(), group: String::new(), motion: None }],
-        materials: vec![Material { name: "gray".into(), color: [0.5; 3] }],
-        origin: DVec3::ZERO,
-        paths: Vec::new(),
-        report: Report::default(),
-    };
-    Scene::new(parts).expect("the test's scene is valid")
+    Scene::new(Parts::simple("test", points, prims)).expect("the test's scene is valid")
 }
 
 /// Triangles with points of their own.
@@ -79,10 +38,19 @@ pub(super) fn at_px(size: u32, x: f64, y: f64, w: f64) -> Vec3 {
     DVec3::new((x / half - 1.0) * w, (1.0 - y / half) * w, -w).as_vec3()
 }
 
-/// Every way to draw: instruction sets and threads.
+/// Every way to draw that this machine has: instruction sets and threads. Reports once which sets it lacks,
+/// and so no test here sees.
 pub(super) fn all_options(backface_culling: bool) -> Vec<Options> {
-    let isas = [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().filter(|&i| i <= Isa::detect());
-    isas.flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa, window: None }))
+    let (here, missing): (Vec<Isa>, Vec<Isa>) =
+        [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().partition(|&i| i <= Isa::best());
+    static REPORT: std::sync::Once = std::sync::Once::new();
+    REPORT.call_once(|| {
+        for isa in missing {
+            eprintln!("not tested, this machine lacks it: {}", isa.label());
+        }
+    });
+    here.into_iter()
+        .flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa, window: None }))
         .collect()
 }
 
@@ -100,7 +68,7 @@ pub(super) fn assert_equal<S: Drawable>(
         let mut target = Target::new(view);
         S::draw(&mut target, scene, view, prims, &options);
         // The sieve is the same code on every instruction set.
-        if options.isa == Isa::detect() {
+        if options.isa == Isa::best() {
             sifted_is_the_same(scene, view, prims, &options, &target, what);
         }
         if let Some(i) = (0..target.item.len()).find(|&i| {

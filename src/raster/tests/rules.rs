@@ -221,7 +221,7 @@ fn ray_cast(triangles: &[[Vec3; 3]], view: &View<Solid>, x: u32, y: u32) -> Opti
 #[test]
 fn near_crossing_triangles_agree_with_rays() {
     let dice = &mut Dice::new(14);
-    let (mut told, mut hits) = (0, 0);
+    let (mut compared, mut hits) = (0, 0);
     for round in 0..150 {
         let reach = [2.0, 10.0, 500.0][round % 3];
         let triangles: Vec<[Vec3; 3]> = (0..4).map(|_| [(); 3].map(|()| dice.point(reach))).collect();
@@ -230,7 +230,7 @@ fn near_crossing_triangles_agree_with_rays() {
         let image = render(&scene, &view, scene.live());
         for (x, y) in (0..32).flat_map(|y| (0..32).map(move |x| (x, y))) {
             let Some(expected) = ray_cast(&triangles, &view, x, y) else { continue };
-            told += 1;
+            compared += 1;
             assert_eq!(pick(&image, x, y), expected.map(|e| PrimId(e.0)), "round {round}, pixel ({x}, {y})");
             if let Some((_, w)) = expected {
                 hits += 1;
@@ -242,7 +242,7 @@ fn near_crossing_triangles_agree_with_rays() {
             }
         }
     }
-    assert!(told > 80_000 && hits > 10_000, "rays told too little: {told} pixels, {hits} hits");
+    assert!(compared > 80_000 && hits > 10_000, "too few rays are clear: {compared} pixels, {hits} hits");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::plan::{divide, signed};
+use super::plan::{Rect, corners, divide, signed};
 
 /// Four corners in the order north-west, north-east, south-east, south-west; side k runs from corner k to k +
 /// 1.
@@ -61,7 +61,7 @@ pub(super) struct House {
     pub(super) ends: [usize; 2],
     /// Which sides face a street.
     pub(super) street: [bool; 4],
-    /// Who joins on each side.
+    /// The house that joins on each side.
     pub(super) joined: [Option<Neighbor>; 4],
 }
 
@@ -178,15 +178,52 @@ fn within(quad: &Quad, u: f64, v: f64) -> DVec3 {
     (quad[0] * (1.0 - u) + quad[1] * u) * (1.0 - v) + (quad[3] * (1.0 - u) + quad[2] * u) * v
 }
 
+/// A piece of ground for a house.
+struct Lot {
+    /// Its corner in the north-west and that in the south-east: `[u0, v0, u1, v1]` of the block.
+    place: Rect,
+    /// Sides to the lot before and after it in the ring.
+    ends: [usize; 2],
+    /// Which sides face a street.
+    street: [bool; 4],
+}
+
+impl Lot {
+    /// Corner lots face two streets.
+    fn is_corner(&self) -> bool {
+        self.street.iter().filter(|s| **s).count() == 2
+    }
+}
+
 /// Houses around a yard, clockwise from the north-west.
 fn ring(line: &Quad, rng: &mut Pcg32) -> Vec<House> {
     let length = |a: usize, b: usize| line[a].distance(line[b]);
-    let (wide, deep) = (length(0, 1).min(length(3, 2)), length(0, 3).min(length(1, 2)));
+    let size = [length(0, 1).min(length(3, 2)), length(0, 3).min(length(1, 2))];
+    let lots = lots(size, rng);
+    let mut houses = Vec::with_capacity(lots.len());
+    let mut apart = Vec::with_capacity(lots.len());
+    for mut lot in lots {
+        let passage = !lot.is_corner() && rng.next_u32().is_multiple_of(5);
+        if passage {
+            // The side towards the house before is drawn back.
+            let step = PASSAGE / size[1 - lot.ends[0] % 2];
+            let (place, sign) = [(1, 1.0), (2, -1.0), (3, -1.0), (0, 1.0)][lot.ends[0]];
+            lot.place[place] += sign * step;
+        }
+        apart.push(passage);
+        houses.push(house(line, &lot, rng));
+    }
+    join(&mut houses, &apart);
+    houses
+}
+
+/// The lots around a block of this width and depth in meters, clockwise from the north-west.
+fn lots([wide, deep]: [f64; 2], rng: &mut Pcg32) -> Vec<Lot> {
     let (du, dv) = (DEPTH / wide, DEPTH / deep);
     let inner = |part: f64, whole: f64, rng: &mut Pcg32| {
         divide(part, 1.0 - part, ((1.0 - 2.0 * part) * whole / WIDTH + 0.5).floor().max(1.0) as u64, rng)
     };
-    let mut lots: Vec<([f64; 4], [usize; 2], [bool; 4])> = Vec::new();
+    let mut lots = Vec::new();
     // Each side of the ring begins with the corner house at its start.
     for side in 0..4 {
         let corner = [
@@ -195,10 +232,14 @@ fn ring(line: &Quad, rng: &mut Pcg32) -> Vec<House> {
             [1.0 - du, 1.0 - dv, 1.0, 1.0],
             [0.0, 1.0 - dv, du, 1.0],
         ][side];
-        let (before, after) = ((side + 2) % 4, (side + 1) % 4);
-        lots.push((corner, [before, after], std::array::from_fn(|k| k == side || k == (side + 3) % 4)));
+        let (before, opposite, after) = ((side + 3) % 4, (side + 2) % 4, (side + 1) % 4);
+        lots.push(Lot {
+            place: corner,
+            ends: [opposite, after],
+            street: std::array::from_fn(|k| k == side || k == before),
+        });
         let cuts = if side % 2 == 0 { inner(du, wide, rng) } else { inner(dv, deep, rng) };
-        let mut row: Vec<[f64; 4]> = cuts
+        let mut row: Vec<Rect> = cuts
             .windows(2)
             .map(|w| match side {
                 0 => [w[0], 0.0, w[1], dv],
@@ -207,44 +248,38 @@ fn ring(line: &Quad, rng: &mut Pcg32) -> Vec<House> {
                 _ => [0.0, w[0], du, w[1]],
             })
             .collect();
+        // Cuts ascend, but the ring runs west along the south side and north along the west side.
         if side >= 2 {
             row.reverse();
         }
-        lots.extend(
-            row.into_iter().map(|lot| (lot, [(side + 3) % 4, after], std::array::from_fn(|k| k == side))),
-        );
+        let street = std::array::from_fn(|k| k == side);
+        lots.extend(row.into_iter().map(|place| Lot { place, ends: [before, after], street }));
     }
-    let mut houses = Vec::with_capacity(lots.len());
-    let mut apart = Vec::with_capacity(lots.len());
-    for (mut lot, ends, street) in lots {
-        let is_corner = street.iter().filter(|s| **s).count() == 2;
-        let passage = !is_corner && rng.next_u32().is_multiple_of(5);
-        if passage {
-            // The side towards the house before is drawn back.
-            let step = PASSAGE / if ends[0] % 2 == 0 { deep } else { wide };
-            let (place, sign) = [(1, 1.0), (2, -1.0), (3, -1.0), (0, 1.0)][ends[0]];
-            lot[place] += sign * step;
-        }
-        apart.push(passage);
-        let [u0, v0, u1, v1] = lot;
-        let ground = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| within(line, u, v));
-        let roof = match (is_corner, rng.next_u32() % 3) {
-            (_, 0) => Roof::Flat,
-            (true, _) => Roof::Tent,
-            (false, _) => Roof::Gabled,
-        };
-        let (storeys, paint) = (2 + rng.next_u32() % 4, rng.next_u32());
-        houses.push(House { ground, storeys, roof, paint, ends, street, joined: [None; 4] });
-    }
+    lots
+}
+
+/// A house of a random kind on a lot; nothing joins it yet.
+fn house(line: &Quad, lot: &Lot, rng: &mut Pcg32) -> House {
+    let ground = corners(lot.place).map(|[u, v]| within(line, u, v));
+    let roof = match (lot.is_corner(), rng.next_u32() % 3) {
+        (_, 0) => Roof::Flat,
+        (true, _) => Roof::Tent,
+        (false, _) => Roof::Gabled,
+    };
+    let (storeys, paint) = (2 + rng.next_u32() % 4, rng.next_u32());
+    House { ground, storeys, roof, paint, ends: lot.ends, street: lot.street, joined: [None; 4] }
+}
+
+/// Makes each house of a ring and the next one neighbors, unless the next one stands `apart`.
+fn join(houses: &mut [House], apart: &[bool]) {
     for k in 0..houses.len() {
         let next = (k + 1) % houses.len();
         if !apart[next] {
-            let tell = |h: &House| Neighbor { eaves: h.eaves(), roof: h.roof };
-            let (here, there) = (tell(&houses[k]), tell(&houses[next]));
+            let seen = |h: &House| Neighbor { eaves: h.eaves(), roof: h.roof };
+            let (here, there) = (seen(&houses[k]), seen(&houses[next]));
             let (end, start) = (houses[k].ends[1], houses[next].ends[0]);
             houses[k].joined[end] = Some(there);
             houses[next].joined[start] = Some(here);
         }
     }
-    houses
 }

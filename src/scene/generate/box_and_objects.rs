@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::furniture::{self, MATERIALS};
+use super::plan::corners;
 use super::sculpture::{KINDS, sculpture};
 use super::shapes::{Frame, Sink, block};
 use super::walk::flight;
@@ -97,8 +98,8 @@ fn furnish(sink: &mut Sink, row: &Row, each: u64) {
     let (wide, deep) = (row.half.max(row.cover) + 3.0, row.eye + 3.0);
     sink.begin(|| ("floor".into(), String::new()));
     sink.paint(furniture::FLOOR);
-    let corners = [(-wide, ROW - 4.0), (wide, ROW - 4.0), (wide, deep), (-wide, deep)];
-    sink.face(&corners.map(|(x, z)| DVec3::new(x, 0.0, z)), DVec3::Y);
+    let ground = corners([-wide, ROW - 4.0, wide, deep]);
+    sink.face(&ground.map(|[x, z]| DVec3::new(x, 0.0, z)), DVec3::Y);
     sink.begin(|| ("box".into(), String::new()));
     sink.paint(furniture::WOOD);
     let frame = Frame { origin: DVec3::ZERO, right: DVec3::X, away: DVec3::Z };

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rand_pcg::Pcg32;
 
 use super::furniture::{self as piece, Piece};
-use super::plan::{CORRIDOR, HEIGHT, Plan, Rect, Room, Side, Wall};
+use super::plan::{CORRIDOR, HEIGHT, Plan, Rect, Room, Side, Wall, corners};
 use super::shapes::{Frame, Sink};
 use super::stand::{Inside, Spot};
 use super::walk::{EYE, Manner, figure_8};
@@ -231,10 +231,10 @@ fn structure(sink: &mut Sink, plan: &Plan) {
 }
 
 /// Floor and ceiling of a rectangle, of two materials.
-pub(super) fn slab(sink: &mut Sink, [x0, z0, x1, z1]: Rect, [floor, ceiling]: [u32; 2], height: f64) {
+pub(super) fn slab(sink: &mut Sink, rect: Rect, [floor, ceiling]: [u32; 2], height: f64) {
     for (material, y, outward) in [(floor, 0.0, DVec3::Y), (ceiling, height, -DVec3::Y)] {
         sink.paint(material);
-        sink.face(&[(x0, z0), (x1, z0), (x1, z1), (x0, z1)].map(|(x, z)| DVec3::new(x, y, z)), outward);
+        sink.face(&corners(rect).map(|[x, z]| DVec3::new(x, y, z)), outward);
     }
 }
 

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::lathe::{capsule, drum, grid, lathe, sheet};
-use super::shapes::{Frame, Sink, ball, block, circle, rounded};
+use super::shapes::{Frame, Sink, ball, block, circle, parts, rounded};
 
 /// Materials, in the order of their numbers.
 pub(super) const MATERIALS: &[(&str, [f32; 3])] = &[
@@ -40,8 +40,8 @@ const AXLES: [f64; 2] = [-1.3, 1.36];
 const WHEEL: f64 = 0.31;
 const TRACK: f64 = 0.72;
 
-/// A car whose skin has about `skin` triangles (none if that is 0) and whose other parts are as fine as
-/// `detail` says.
+/// A car whose skin has about `skin` triangles (none if that is 0) and whose other parts are refined
+/// by `detail`.
 pub(super) fn car(sink: &mut Sink, frame: &Frame, detail: u32, skin: u64, group: &str) {
     let begin = |sink: &mut Sink, name: &str| sink.begin(|| (name.to_owned(), group.to_owned()));
     // Below 2 some parts would have too few cells.
@@ -70,11 +70,6 @@ const PARTS: [(&str, Made); 10] = [
     ("seats", seats),
     ("dashboard", dashboard),
 ];
-
-/// So many cells at detail 4, in proportion at any other.
-fn parts(cells: u32, detail: u32) -> u32 {
-    (cells * detail).div_ceil(4)
-}
 
 /// 3t² − 2t³ between two places, 0 before and 1 behind.
 fn smooth(from: f64, to: f64, x: f64) -> f64 {

@@ -16,7 +16,7 @@ use super::stand::{Inside, Spot};
 use super::walk::{EYE, Manner, figure_8};
 use super::{
     Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for, house,
-    street,
+    paint, street,
 };
 use crate::geometry::{Solid, ViewPath};
 use crate::scene::Report;
@@ -53,49 +53,6 @@ pub(super) const GENERATOR: Generator = Generator {
     make,
 };
 
-/// Materials of the streets and of the outside of houses; they follow those of the furniture.
-const MATERIALS: &[(&str, [f32; 3])] = &[
-    ("asphalt", [0.16, 0.16, 0.17]),
-    ("pavement", [0.42, 0.41, 0.39]),
-    ("grass", [0.22, 0.34, 0.14]),
-    ("window frame", [0.80, 0.79, 0.75]),
-    ("glass", [0.10, 0.15, 0.20]),
-    ("flat roof", [0.30, 0.29, 0.28]),
-    ("bark", [0.20, 0.14, 0.09]),
-    ("facade cream", [0.76, 0.68, 0.50]),
-    ("facade ochre", [0.66, 0.47, 0.24]),
-    ("facade brick", [0.46, 0.20, 0.14]),
-    ("facade gray", [0.50, 0.51, 0.52]),
-    ("facade blue", [0.36, 0.46, 0.56]),
-    ("facade rose", [0.66, 0.42, 0.38]),
-    ("facade olive", [0.42, 0.45, 0.28]),
-    ("roof tiles", [0.40, 0.15, 0.09]),
-    ("roof slate", [0.17, 0.19, 0.23]),
-    ("roof brown", [0.26, 0.16, 0.11]),
-    ("door green", [0.07, 0.22, 0.14]),
-    ("door red", [0.35, 0.06, 0.05]),
-    ("door brown", [0.22, 0.11, 0.05]),
-    ("car red", [0.55, 0.07, 0.06]),
-    ("car silver", [0.58, 0.60, 0.62]),
-    ("car blue", [0.08, 0.16, 0.40]),
-];
-const FIRST: u32 = piece::MATERIALS.len() as u32;
-const ASPHALT: u32 = FIRST;
-const PAVEMENT: u32 = FIRST + 1;
-const GRASS: u32 = FIRST + 2;
-pub(super) const FRAME: u32 = FIRST + 3;
-pub(super) const GLASS: u32 = FIRST + 4;
-pub(super) const FLAT_ROOF: u32 = FIRST + 5;
-pub(super) const BARK: u32 = FIRST + 6;
-pub(super) const FACADE: u32 = FIRST + 7;
-pub(super) const FACADES: u32 = 7;
-pub(super) const ROOF: u32 = FIRST + 14;
-pub(super) const ROOFS: u32 = 3;
-pub(super) const DOOR: u32 = FIRST + 17;
-pub(super) const DOORS: u32 = 3;
-pub(super) const CAR: u32 = FIRST + 20;
-pub(super) const CARS: u32 = 3;
-
 fn make(
     values: &Values,
     source: &str,
@@ -122,7 +79,7 @@ fn make(
     let detail =
         detail_for(polygons, source, progress, |sink, detail| furnish(sink, &city, seed, detail, polygons))?;
     progress.report(0.3, "furnishing");
-    let mut sink = Sink::keeping(&[piece::MATERIALS, MATERIALS].concat());
+    let mut sink = Sink::keeping(&[piece::MATERIALS, paint::MATERIALS].concat());
     furnish(&mut sink, &city, seed, detail, polygons);
     let rest = Part { whole: progress, start: 0.5, length: 0.5 };
     let mut parts = assemble(sink.into_mesh(), "city", source, options, Report::default(), &rest)?;
@@ -221,7 +178,7 @@ fn house_round(
         }
         Round::Chimney if h.roof == Roof::Gabled && sink.triangles < budget => {
             sink.begin(|| ("chimney".into(), group()));
-            sink.paint(FACADE + 2);
+            sink.paint(paint::FACADE + 2);
             let mut frame = floor(h, 0).frame(Spot::Back(0.3 * signed(rng)));
             frame.origin.y = h.eaves();
             block(sink, &frame, [-0.35, 0.2, -2.0], [0.35, 3.4, -1.4]);
@@ -274,10 +231,10 @@ fn structure(sink: &mut Sink, city: &City) {
     for (k, cell) in city.cells.iter().enumerate() {
         let flat = cell.meadow;
         sink.begin(|| ((if flat { "meadow" } else { "pavement" }).into(), format!("block_{k}")));
-        sink.paint(if cell.houses.is_empty() { GRASS } else { PAVEMENT });
+        sink.paint(if cell.houses.is_empty() { paint::GRASS } else { paint::PAVEMENT });
         sink.face(&cell.ground.map(|c| c.with_y(if flat { 0.0 } else { CURB })), DVec3::Y);
         if !flat {
-            sink.paint(PAVEMENT);
+            sink.paint(paint::PAVEMENT);
             for side in 0..4 {
                 let (a, b) = (cell.ground[side], cell.ground[(side + 1) % 4]);
                 sink.face(&[a, b, b.with_y(CURB), a.with_y(CURB)], DVec3::Y.cross(b - a));
@@ -287,7 +244,7 @@ fn structure(sink: &mut Sink, city: &City) {
     let mut road = 0;
     let mut pave = |sink: &mut Sink, name: &str, corners: [DVec3; 4]| {
         sink.begin(|| (name.to_owned(), format!("road_{road}")));
-        sink.paint(ASPHALT);
+        sink.paint(paint::ASPHALT);
         sink.face(&corners, DVec3::Y);
         road += 1;
     };

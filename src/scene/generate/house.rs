@@ -7,9 +7,9 @@
 use glam::DVec3;
 
 use super::blocks::{CURB, House, Neighbor, RISE, Roof, STOREY};
-use super::plan::HEIGHT;
+use super::plan::{HEIGHT, corners};
 use super::shapes::{Frame, Sink};
-use super::{city as paint, furniture};
+use super::{furniture, paint};
 
 /// How far a wall inside stays away from the walls outside, m.
 const DRAWN_BACK: f64 = 0.06;
@@ -125,7 +125,7 @@ fn bays(house: &House, side: usize) -> (u32, impl Fn(u32) -> Frame) {
 
 /// A quad parallel to the wall: from, to, bottom, top, and how far before it.
 fn sheet(sink: &mut Sink, frame: &Frame, [x0, x1, y0, y1]: [f64; 4], before: f64) {
-    sink.face(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| frame.at([x, y, -before])), -frame.away);
+    sink.face(&corners([x0, y0, x1, y1]).map(|[x, y]| frame.at([x, y, -before])), -frame.away);
 }
 
 /// The windows of a storey on one side, and the house's door. None where there is a neighbor.

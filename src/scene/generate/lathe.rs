@@ -71,7 +71,7 @@ pub(super) fn capsule(length: f64, radius: f64, dome: f64, cells: u32) -> Vec<St
     profile
 }
 
-/// Columns and rows of a grid of about so many triangles, with `ratio` rows a column.
+/// Columns and rows of a grid of about this many triangles, with `ratio` rows a column.
 pub(super) fn grid(triangles: u64, ratio: f64) -> (u32, u32) {
     let columns = ((triangles as f64 / (2.0 * ratio)).sqrt() as u32).max(3);
     (columns, ((triangles as f64 / f64::from(2 * columns) + 0.5) as u32).max(3))

@@ -1,7 +1,7 @@
 //! `generate:machine-room`: four rooms of a ship full of machines, and a torpedo behind three bulkheads.
 //!
 //! After the submarine that Georges (1995, Section 5.2) tested with: many large polygons that hide, and one
-//! very dense object that is hidden from most of the way. The doors of the bulkheads stand such that no line
+//! very dense object that is hidden from most of the way. The doors of the bulkheads stand so that no line
 //! of sight passes two of them, so the body is hidden from all of the first two rooms and most of the third.
 //! The number of triangles is met as in the building. Cost: O(polygons).
 

@@ -6,7 +6,7 @@ use rand_pcg::Pcg32;
 
 use super::lathe::{Station, capsule, drum, lathe, sheet};
 use super::plan::signed;
-use super::shapes::{Frame, Sink, ball, block, circle, rounded};
+use super::shapes::{Frame, Sink, ball, block, circle, parts, rounded};
 
 /// Materials of machines, in the order of their numbers.
 pub(super) const MATERIALS: &[(&str, [f32; 3])] = &[
@@ -43,12 +43,6 @@ const CONSOLE: u32 = 12;
 const DIAL: u32 = 13;
 const TORPEDO: u32 = 14;
 const YELLOW: u32 = 15;
-
-/// So many cells at detail 4, in proportion at any other: steps of detail small enough to meet a budget
-/// closely.
-fn parts(cells: u32, detail: u32) -> u32 {
-    (cells * detail).div_ceil(4)
-}
 
 /// A bolt's head on a surface at `at` that looks along `out`: a hexagon, on a washer where things are fine.
 pub(super) fn bolt(sink: &mut Sink, at: DVec3, out: DVec3, size: f64, detail: u32) {
@@ -340,7 +334,7 @@ pub(super) fn oil_drum(sink: &mut Sink, frame: &Frame, detail: u32, rng: &mut Pc
     lathe(sink, frame.at([0.16, 0.86, 0.0]), DVec3::Y, &drum(0.02, 0.035, 1), parts(6, detail));
 }
 
-/// The body with fins and a propeller, of about so many triangles, 9 m along `away`.
+/// The body with fins and a propeller, of about this many triangles, 9 m along `away`.
 pub(super) fn torpedo(sink: &mut Sink, frame: &Frame, triangles: u64) {
     let (length, radius) = (9.0, 0.55);
     let (sides, rows) = super::lathe::grid(triangles.saturating_sub(84).max(60), 2.4);

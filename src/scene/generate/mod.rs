@@ -14,6 +14,7 @@ mod house;
 mod lathe;
 mod machine_room;
 mod machinery;
+mod paint;
 mod plan;
 mod sculpture;
 mod seminar_room;
@@ -126,7 +127,7 @@ pub(super) fn generate(
 /// Finest detail; a ball then has 131,072 triangles.
 const MAX_DETAIL: u32 = 64;
 
-/// The least detail at which `furnish` makes as many triangles as the budget asks, or the finest.
+/// The least detail at which `furnish` makes as many triangles as the budget allows for, or the finest.
 fn detail_for(
     budget: u64,
     source: &str,

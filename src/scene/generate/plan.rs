@@ -31,6 +31,11 @@ pub(super) enum Side {
 /// A rectangle of the plan: `[x0, z0, x1, z1]`.
 pub(super) type Rect = [f64; 4];
 
+/// The corners of a rectangle `[u0, v0, u1, v1]` in order around it.
+pub(super) fn corners([u0, v0, u1, v1]: Rect) -> [[f64; 2]; 4] {
+    [[u0, v0], [u1, v0], [u1, v1], [u0, v1]]
+}
+
 /// A room, or a stretch of corridor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Room {

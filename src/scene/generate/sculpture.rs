@@ -8,7 +8,7 @@ use super::shapes::{Sink, circle};
 /// How many kinds there are.
 pub(super) const KINDS: u32 = 4;
 
-/// A sculpture of about so many triangles inside the ball around `center`.
+/// A sculpture of about this many triangles inside the ball around `center`.
 pub(super) fn sculpture(sink: &mut Sink, center: DVec3, radius: f64, kind: u32, triangles: u64) {
     match kind % KINDS {
         0 => knot(sink, center, radius, triangles),

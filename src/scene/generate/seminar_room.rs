@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 use super::building::{WALL, build_wall, slab};
 use super::furniture::{self as piece, FABRIC, MATERIALS, METAL, PAPER, Piece, WOOD};
 use super::plan::{HEIGHT, Wall, signed};
-use super::shapes::{Frame, Sink, ball, block, rounded, tube};
+use super::shapes::{Frame, Sink, ball, block, parts, rounded, tube};
 use super::walk::flight;
 use super::{Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for};
 use crate::geometry::{Solid, ViewPath};
@@ -83,12 +83,7 @@ fn seat(k: u32) -> Frame {
     }
 }
 
-/// So many cells at detail 4, in proportion at any other.
-fn parts(cells: u32, detail: u32) -> u32 {
-    (cells * detail).div_ceil(4)
-}
-
-/// The same around a tube, which has three sides at least.
+/// As [`parts`] around a tube, which has three sides at least.
 fn around(cells: u32, detail: u32) -> u32 {
     parts(cells, detail).max(3)
 }

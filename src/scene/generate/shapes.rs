@@ -1,6 +1,6 @@
 //! Boxes, cushions, cylinders and balls, and the mesh they are collected in.
 //!
-//! Each is convex, and its quads are turned to face away from its center. The tessellation is told by one
+//! Each is convex, and its quads are turned to face away from its center. The tessellation follows from one
 //! number `detail ≥ 1`; the number of triangles grows with its square. A counting sink makes the same calls
 //! and keeps nothing, so that a generator can find the detail that meets a budget.
 
@@ -44,7 +44,7 @@ impl Sink {
     pub(super) fn paint(&mut self, material: u32) {
         self.material = material;
     }
-    /// A convex planar polygon, turned such that its normal points along `outward`.
+    /// A convex planar polygon, turned so that its normal points along `outward`.
     pub(super) fn face(&mut self, corners: &[DVec3], outward: DVec3) {
         let turned = self.mesh.is_some() && crate::scene::polygon::newell(corners).dot(outward) < 0.0;
         self.push(corners, turned);
@@ -89,6 +89,12 @@ impl Frame {
     pub(super) fn moved(&self, p: [f64; 3]) -> Self {
         Self { origin: self.at(p), ..*self }
     }
+}
+
+/// The cells of a piece that has `cells` at detail 4, in proportion: steps of detail small enough to meet a
+/// budget closely.
+pub(super) fn parts(cells: u32, detail: u32) -> u32 {
+    (cells * detail).div_ceil(4)
 }
 
 /// The six sides of a cube: an axis, and the two others.

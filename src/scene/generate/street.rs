@@ -4,7 +4,7 @@ use rand_pcg::Pcg32;
 
 use super::plan::signed;
 use super::shapes::{Frame, Sink, ball, block, rounded, tube};
-use super::{city as paint, furniture};
+use super::{furniture, paint};
 
 /// A lamp post.
 pub(super) fn lamp_post(sink: &mut Sink, frame: &Frame, detail: u32, _: &mut Pcg32) {

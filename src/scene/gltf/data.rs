@@ -13,7 +13,7 @@ use ::gltf::{Accessor, Document};
 use base64::Engine as _;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 
-use crate::scene::load::MODEL_LIMIT_BYTES;
+use crate::scene::source::MODEL_LIMIT_BYTES;
 use crate::scene::text::{beside, read_file};
 
 /// Items of an accessor without data (all zeros) beyond which the file is taken to be broken.

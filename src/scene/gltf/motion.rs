@@ -94,33 +94,16 @@ impl Channel {
     }
 }
 
-/// Gives the objects of a scene their motions.
+/// Gives the objects of a scene their motions. What keeps the animation from being used becomes a note.
 pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts: &mut Parts<Solid>) {
     let Some(animation) = document.animations().next() else { return };
     if document.animations().len() > 1 {
         parts.report.note(format!("only the first of {} animations is used", document.animations().len()));
     }
-    // The crate validates samplers only, and then takes nodes and paths for granted.
-    let json = &document.as_json().animations[animation.index()];
-    let nodes = document.nodes().len();
-    let there = |c: &::gltf::json::animation::Channel| {
-        c.sampler.value() < json.samplers.len()
-            && c.target.node.value() < nodes
-            && matches!(c.target.path, Checked::Valid(_))
+    let channels = match channels(document, &animation, data, parts) {
+        Ok(channels) => channels,
+        Err(why) => return parts.report.note(format!("animation left out: {why}")),
     };
-    if !json.channels.iter().all(there) {
-        return parts
-            .report
-            .note("animation left out: it names a sampler, node or property that is not there");
-    }
-    let mut channels = Vec::new();
-    for channel in animation.channels() {
-        match read(&channel, data) {
-            Ok(Some(channel)) => channels.push(channel),
-            Ok(None) => parts.report.note("an animation of morph targets is left out"),
-            Err(why) => return parts.report.note(format!("animation left out: {why}")),
-        }
-    }
     let duration = channels.iter().filter_map(|c| c.times.last()).copied().fold(0.0, f64::max);
     let frames = ((duration * FRAMES_PER_SECOND) as usize + 1).min(MAX_FRAMES);
     if frames * placed.len() > MAX_POSES {
@@ -133,19 +116,7 @@ pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts:
             "animation of {duration:.1} s cut to {MAX_FRAMES} frames at {FRAMES_PER_SECOND} a second"
         ));
     }
-    let mut moves: Vec<Option<Vec<Pose>>> = vec![Some(Vec::with_capacity(frames)); placed.len()];
-    let parents = parents(document);
-    for frame in 0..frames {
-        let world = worlds(document, &parents, &channels, frame as f64 / FRAMES_PER_SECOND);
-        for (object, poses) in placed.iter().zip(&mut moves) {
-            if let Some(list) = poses {
-                match rigid(world[object.node] * object.world.inverse(), parts.origin) {
-                    Some(pose) => list.push(pose),
-                    None => *poses = None,
-                }
-            }
-        }
-    }
+    let moves = sample(document, &channels, placed, frames, parts.origin);
     let bent = moves.iter().filter(|m| m.is_none()).count();
     if bent > 0 {
         parts.report.note(format!("{bent} objects are scaled by the animation and stand still"));
@@ -154,6 +125,58 @@ pub(super) fn attach(document: &Document, data: &Data, placed: &[Placed], parts:
         let still = Pose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
         object.motion = poses.filter(|p| p.iter().any(|pose| *pose != still)).map(Arc::from);
     }
+}
+
+/// The channels of an animation that move nodes.
+fn channels(
+    document: &Document,
+    animation: &::gltf::Animation,
+    data: &Data,
+    parts: &mut Parts<Solid>,
+) -> Result<Vec<Channel>, String> {
+    // The crate validates samplers only, and then takes nodes and paths for granted.
+    let json = &document.as_json().animations[animation.index()];
+    let nodes = document.nodes().len();
+    let exists = |c: &::gltf::json::animation::Channel| {
+        c.sampler.value() < json.samplers.len()
+            && c.target.node.value() < nodes
+            && matches!(c.target.path, Checked::Valid(_))
+    };
+    if !json.channels.iter().all(exists) {
+        return Err("it names a sampler, node or property that is not there".into());
+    }
+    let mut channels = Vec::new();
+    for channel in animation.channels() {
+        match read(&channel, data)? {
+            Some(channel) => channels.push(channel),
+            None => parts.report.note("an animation of morph targets is left out"),
+        }
+    }
+    Ok(channels)
+}
+
+/// The poses of every object in each frame; `None` for one whose transform is not rigid in some frame.
+fn sample(
+    document: &Document,
+    channels: &[Channel],
+    placed: &[Placed],
+    frames: usize,
+    origin: DVec3,
+) -> Vec<Option<Vec<Pose>>> {
+    let mut moves: Vec<Option<Vec<Pose>>> = vec![Some(Vec::with_capacity(frames)); placed.len()];
+    let parents = parents(document);
+    for frame in 0..frames {
+        let world = worlds(document, &parents, channels, frame as f64 / FRAMES_PER_SECOND);
+        for (object, poses) in placed.iter().zip(&mut moves) {
+            if let Some(list) = poses {
+                match rigid(world[object.node] * object.world.inverse(), origin) {
+                    Some(pose) => list.push(pose),
+                    None => *poses = None,
+                }
+            }
+        }
+    }
+    moves
 }
 
 fn read(channel: &::gltf::animation::Channel, data: &Data) -> Result<Option<Channel>, String> {
