@@ -117,7 +117,7 @@ fn a_click_in_the_picture_selects() {
     press(&mut h, Modifiers::NONE, Key::End);
     let rect = h.get_by_label_contains("Observer view.").rect();
     let state = &h.state().state;
-    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(cullscope::geometry::Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let prim = stage.scene.live()[200];
     let middle = stage.scene.prim_points(prim).fold(glam::Vec2::ZERO, |sum, p| sum + p * 0.5);
     let scale = rect.height() / (2.0 * state.observer.distance);
@@ -140,7 +140,7 @@ fn a_click_in_the_picture_selects() {
 fn flat_eye(h: &Harness<'_, App>) -> (View<Flat>, egui::Pos2, f32) {
     let rect = h.get_by_label_contains("Observer view.").rect();
     let state = &h.state().state;
-    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(cullscope::geometry::Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let scale = rect.height() / (2.0 * state.observer.distance);
     let eye = stage.view.eye.position;
     (

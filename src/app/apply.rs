@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
-use super::any::{Any, AnyStage, each};
+use super::any::AnyStage;
 use super::command::{Action, Command};
+use super::open::AnyOpened;
 use super::session::Session;
 use super::stage::Stage;
 use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
 use crate::drawing::Subject;
-use crate::scene::{AnyPath, AnyScene};
+use crate::geometry::{Either, each};
 
 /// Selections that are remembered.
 const SELECTIONS: usize = 200;
@@ -99,7 +100,7 @@ impl State {
             Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
             Action::SelectCurrent => self.current_subject() != Subject::None,
             Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
-            Action::EyeHere => matches!(self.stage, Some(Any::Solid(_))) && !self.is_eye_locked,
+            Action::EyeHere => matches!(self.stage, Some(Either::Solid(_))) && !self.is_eye_locked,
             Action::Cancel => {
                 self.busy().is_some() || self.dialog != Dialog::None || !self.notices.is_empty()
             }
@@ -218,7 +219,7 @@ impl State {
             Action::EyeHere => {
                 let camera = self.observer;
                 self.change(0, |s| {
-                    if let Some(Any::Solid(stage)) = &mut s.stage {
+                    if let Some(Either::Solid(stage)) = &mut s.stage {
                         let look = camera.view(1, 1).eye;
                         (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) =
                             (look.position, look.target, look.up);
@@ -386,23 +387,15 @@ impl State {
     pub(super) fn record(&mut self) {
         let Some(stage) = &self.stage else { return };
         let (method, settings, cap) = (self.method.clone(), self.settings.clone(), self.film_cap);
-        macro_rules! request {
-            ($s:expr, $any:path) => {
-                $any(Request {
-                    scene: $s.scene.clone(),
-                    scene_serial: $s.serial,
-                    method,
-                    settings,
-                    before: $s.views()[..$s.frame].to_vec(),
-                    view: $s.view,
-                    cap,
-                })
-            };
-        }
-        let request = match stage {
-            Any::Flat(s) => request!(s, Any::Flat),
-            Any::Solid(s) => request!(s, Any::Solid),
-        };
+        let request = each!(stage, s => Either(Request {
+            scene: s.scene.clone(),
+            scene_serial: s.serial,
+            method,
+            settings,
+            before: s.views()[..s.frame].to_vec(),
+            view: s.view,
+            cap,
+        }));
         self.worker.ask("Culling", Job::Record(request));
     }
 
@@ -422,7 +415,7 @@ impl State {
     fn take(&mut self, wait: bool) -> bool {
         let Some(done) = self.worker.answer(wait) else { return false };
         match done {
-            Done::Loaded(scene, path) => self.put_on_stage(scene, path),
+            Done::Loaded(opened) => self.put_on_stage(opened),
             Done::LoadFailed(text) => {
                 self.recall = None;
                 self.fail(text);
@@ -439,14 +432,9 @@ impl State {
         true
     }
 
-    fn put_on_stage(&mut self, scene: AnyScene, path: Option<AnyPath>) {
+    fn put_on_stage(&mut self, opened: AnyOpened) {
         self.serial += 1;
-        let stage: AnyStage = match (scene, path) {
-            (AnyScene::Flat(s), Some(AnyPath::Flat(p))) => Any::Flat(Stage::new(s, Some(p), self.serial)),
-            (AnyScene::Flat(s), _) => Any::Flat(Stage::new(s, None, self.serial)),
-            (AnyScene::Solid(s), Some(AnyPath::Solid(p))) => Any::Solid(Stage::new(s, Some(p), self.serial)),
-            (AnyScene::Solid(s), _) => Any::Solid(Stage::new(s, None, self.serial)),
-        };
+        let stage: AnyStage = each!(opened, (scene, path) => Either(Stage::new(scene, path, self.serial)));
         let name = stage.get().scene_name().to_owned();
         let dropped = stage.get().report().dropped_total();
         if !stage.get().methods().iter().any(|m| m.key == self.method) {
@@ -455,8 +443,8 @@ impl State {
         }
         // Framed for a window of common shape; the window itself does it again for its own.
         match &stage {
-            Any::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
-            Any::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
+            Either::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
+            Either::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
         }
         self.stage = Some(stage);
         (self.step, self.selection) = (0, Subject::None);
@@ -481,8 +469,8 @@ impl State {
         // A step at the end stays at the end; any other keeps its number.
         let was_at_end = !self.is_empty() && self.step == self.len();
         match (&mut self.stage, recorded) {
-            (Some(Any::Flat(stage)), Any::Flat(film)) => stage.recorded = Some(film),
-            (Some(Any::Solid(stage)), Any::Solid(film)) => stage.recorded = Some(film),
+            (Some(Either::Flat(stage)), Either::Flat(film)) => stage.recorded = Some(film),
+            (Some(Either::Solid(stage)), Either::Solid(film)) => stage.recorded = Some(film),
             _ => return,
         }
         let nodes = self.staged().map_or(0, |s| s.node_count());

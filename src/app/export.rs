@@ -3,12 +3,11 @@
 
 use glam::Vec2;
 
-use super::any::Any;
 use super::session::{Session, SessionError, write_file};
 use super::state::{State, Theme};
 use crate::drawing::{Drawing, Pixels};
 use crate::figure::{self, Page, Panel, Paper, Picture, page, panels};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Either};
 use crate::render::{self, PngSize, SvgOptions};
 
 /// Width of the picture, points: two columns of a paper, 17.5 cm.
@@ -28,7 +27,7 @@ impl State {
         let aspect = aspect.clamp(0.2, 5.0);
         let picture = match (self.stage.as_ref()?, pixels) {
             (_, Some(pixels)) => Picture::Pixels(pixels),
-            (Any::Flat(s), None) => {
+            (Either::Flat(s), None) => {
                 let film = s.recorded.as_ref()?;
                 let half = Vec2::new(self.observer.distance * aspect, self.observer.distance);
                 let center = Vec2::new(self.observer.pivot[0], self.observer.pivot[1]);
@@ -37,7 +36,7 @@ impl State {
                     Aabb { min: center - half, max: center + half },
                 )
             }
-            (Any::Solid(s), None) => {
+            (Either::Solid(s), None) => {
                 let film = s.recorded.as_ref()?;
                 let view = self.observer.view(1200, (1200.0 / aspect) as u32);
                 Picture::Space(figure::world(&*film.film, &film.stamps, self.step, &look), view)

@@ -26,9 +26,7 @@ mod undo;
 mod why;
 mod worker;
 
-#[allow(unused_imports)]
-pub(crate) use any::each;
-pub use any::{Any, AnyStage, AnyView};
+pub use any::{AnyStage, AnyView};
 pub use camera::ObserverCamera;
 pub use command::{Action, Command, Gesture, Info, Menu, fuzzy};
 pub use export::VECTOR_PRIMS;

@@ -1,8 +1,10 @@
 //! Opening a scene with its views, and the examples that are one click away.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::scene::{self, AnyPath, AnyScene, LoadOptions, Progress, SceneError};
+use crate::geometry::{Either, Flat, Solid, ViewPath, each};
+use crate::scene::{self, AnyScene, LoadOptions, Progress, Scene, SceneError};
 
 /// A scene that the start screen offers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,16 +17,18 @@ pub struct Example {
     pub source: String,
 }
 
+/// A scene, and the views that were named with it.
+pub(super) type Opened<S> = (Arc<Scene<S>>, Option<ViewPath<S>>);
+/// The same of either space.
+pub(super) type AnyOpened = Either<Opened<Flat>, Opened<Solid>>;
+
 /// Loads a scene and, if named, a view file. The error is one line.
-pub(super) fn load(
-    source: &str,
-    views: Option<&str>,
-    progress: &dyn Progress,
-) -> Result<(AnyScene, Option<AnyPath>), String> {
+pub(super) fn load(source: &str, views: Option<&str>, progress: &dyn Progress) -> Result<AnyOpened, String> {
     let found = scene::load(source, &LoadOptions::default(), progress).or_else(|error| inside(source, error));
-    let scene = found.map_err(|e| e.to_string())?;
-    let path = views.map(|v| scene::read_views_for(v, &scene)).transpose().map_err(|e| e.to_string())?;
-    Ok((scene, path))
+    Ok(each!(found.map_err(|e| e.to_string())?, scene => Either({
+        let path = views.map(|v| scene::read_views(v, scene.origin())).transpose();
+        (scene, path.map_err(|e| e.to_string())?)
+    })))
 }
 
 /// The scene that travels inside the program, where the file of its name is not there.

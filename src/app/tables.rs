@@ -3,7 +3,6 @@
 
 use std::sync::Arc;
 
-use super::any::Any;
 use super::session::write_file;
 use super::state::{State, Theme};
 use super::worker::Job;
@@ -73,10 +72,7 @@ impl State {
     pub(super) fn tables(&mut self, asked: Tables) {
         match asked {
             Tables::Measure(name) => {
-                let scene = self.stage.as_ref().map(|stage| match stage {
-                    Any::Flat(s) => AnyScene::Flat(s.scene.clone()),
-                    Any::Solid(s) => AnyScene::Solid(s.scene.clone()),
-                });
+                let scene = self.stage.as_ref().map(|stage| stage.scene());
                 // The parameters that are set are taken over if they are those of its method.
                 let is_its = Experiment::named(name).is_some_and(|e| e.method == self.method);
                 let settings = if is_its { self.settings.clone() } else { Settings::default() };

@@ -4,7 +4,7 @@ use super::recall::spoken_command;
 use super::state::{Breakpoint, Detail, Dialog};
 use super::*;
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, PrimId};
+use crate::geometry::{Either, NodeId, PrimId};
 use crate::method::Verdict;
 
 /// A flatland scene that travels inside the program.
@@ -28,8 +28,8 @@ fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
 fn a_flight_becomes_a_path_that_can_be_followed() {
     let mut state = opened(FLAT);
     let place = |state: &State| state.staged().map(|s| s.place());
-    let Some(Any::Flat(start)) = state.stage.as_ref().map(|s| s.view()) else { panic!("a flat stage") };
-    let paths = |state: &State| if let Some(Any::Flat(s)) = &state.stage { s.paths.len() } else { 0 };
+    let Some(Either::Flat(start)) = state.stage.as_ref().map(|s| s.view()) else { panic!("a flat stage") };
+    let paths = |state: &State| if let Some(Either::Flat(s)) = &state.stage { s.paths.len() } else { 0 };
     let before = paths(&state);
     state.apply(Action::Flight);
     state.apply(Action::Flight);
@@ -40,14 +40,14 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
         let mut view = start;
         view.eye.position.x += k as f32;
         view.eye.target.x += k as f32;
-        state.apply(Command::Eye(Any::Flat(view), 7));
+        state.apply(Command::Eye(Either::Flat(view), 7));
         flown.push(view);
     }
     state.apply(Action::Flight);
     let name = format!("{FLAT}-flight.views.json");
     let text = std::fs::read_to_string(&name).expect("a view file");
     std::fs::remove_file(&name).expect("a file of our own");
-    let Some(Any::Flat(stage)) = &state.stage else { panic!("a flat stage") };
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("a flat stage") };
     assert_eq!(
         stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())),
         Some(("flight", flown.as_slice()))
@@ -56,7 +56,7 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
     assert!(text.contains("\"views\"") && text.matches("\"eye\"").count() == 5, "{text}");
     state.block_until_idle();
     state.apply(Command::Frame(before, 4));
-    assert!(matches!(state.stage.as_ref().map(|s| s.view()), Some(Any::Flat(v)) if v == flown[4]));
+    assert!(matches!(state.stage.as_ref().map(|s| s.view()), Some(Either::Flat(v)) if v == flown[4]));
 }
 
 #[test]
@@ -144,19 +144,19 @@ fn a_parameter_and_the_eye_are_culled_again_and_undone() {
     state.apply(Action::Undo);
 
     let before = state.stage.as_ref().expect("a stage").view();
-    let Any::Flat(mut view) = before else { panic!("flatland") };
+    let Either::Flat(mut view) = before else { panic!("flatland") };
     view.eye.position.y += 1.0;
-    state.apply(Command::Eye(Any::Flat(view), 2));
+    state.apply(Command::Eye(Either::Flat(view), 2));
     assert!(state.staged().expect("a stage").is_eye_moved());
     state.apply(Action::LockEye);
     view.eye.position.y += 1.0;
-    state.apply(Command::Eye(Any::Flat(view), 3));
-    assert_ne!(state.stage.as_ref().expect("a stage").view(), Any::Flat(view), "a locked Eye stays");
+    state.apply(Command::Eye(Either::Flat(view), 3));
+    assert_ne!(state.stage.as_ref().expect("a stage").view(), Either::Flat(view), "a locked Eye stays");
     state.apply(Action::Undo);
     assert_eq!(state.stage.as_ref().expect("a stage").view(), before);
     view.eye.target = view.eye.position;
     state.apply(Action::LockEye);
-    state.apply(Command::Eye(Any::Flat(view), 4));
+    state.apply(Command::Eye(Either::Flat(view), 4));
     assert_eq!(state.stage.as_ref().expect("a stage").view(), before, "an Eye that cannot see is refused");
     state.block_until_idle();
 }
@@ -266,9 +266,9 @@ fn a_session_brings_everything_back() {
     state.apply(Command::Set("budget".into(), "50%".into(), 0));
     state.apply(Command::Frame(0, frames.min(3) - 1));
     state.block_until_idle();
-    let Any::Flat(mut view) = state.stage.as_ref().expect("a stage").view() else { panic!("flatland") };
+    let Either::Flat(mut view) = state.stage.as_ref().expect("a stage").view() else { panic!("flatland") };
     view.eye.position.x += 0.123_456_7;
-    state.apply(Command::Eye(Any::Flat(view), 0));
+    state.apply(Command::Eye(Either::Flat(view), 0));
     state.block_until_idle();
     state.apply(Command::GoTo(40));
     state.apply(Action::Bookmark);
@@ -361,7 +361,7 @@ fn selections_are_remembered() {
 #[test]
 fn the_image_of_flatland_shows_the_nearest_segments() {
     let state = opened(FLAT);
-    let Some(Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let image = stage.image();
     let projection = stage.view.projection();
     let mut seen = 0;

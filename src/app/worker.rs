@@ -9,16 +9,16 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-use super::any::{Any, AnyRecorded};
+use super::any::AnyRecorded;
 use super::open;
 use super::stage::Recorded;
 use super::tables;
 use crate::culling::Methods;
-use crate::geometry::{Flat, Solid, View};
+use crate::geometry::{Either, Flat, Solid, View};
 use crate::measure::deadline::Paced;
 use crate::method::Settings;
 use crate::raster::Drawable;
-use crate::scene::{AnyPath, AnyScene, Progress, Scene};
+use crate::scene::{AnyScene, Progress, Scene};
 use crate::trace::{Moves, Stamps};
 
 /// Events that a film keeps: 10 million, about 160 MB, before it says that it is capped.
@@ -44,12 +44,12 @@ pub struct Request<S: Methods> {
 
 pub(super) enum Job {
     Load { source: String, views: Option<String> },
-    Record(Any<Request<Flat>, Request<Solid>>),
+    Record(Either<Request<Flat>, Request<Solid>>),
     Measure { name: &'static str, scene: Option<AnyScene>, settings: Settings },
 }
 
 pub(super) enum Done {
-    Loaded(AnyScene, Option<AnyPath>),
+    Loaded(open::AnyOpened),
     LoadFailed(String),
     Recorded(AnyRecorded),
     RecordFailed(String),
@@ -210,7 +210,7 @@ impl Bench {
     fn work(&mut self, job: Job, ticket: &Ticket) -> Done {
         match job {
             Job::Load { source, views } => match open::load(&source, views.as_deref(), ticket) {
-                Ok((scene, path)) => Done::Loaded(scene, path),
+                Ok(opened) => Done::Loaded(opened),
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::LoadFailed(error),
             },
@@ -219,15 +219,15 @@ impl Bench {
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::RecordFailed(error),
             },
-            Job::Record(Any::Flat(request)) => {
+            Job::Record(Either::Flat(request)) => {
                 self.serial += 1;
                 self.solid = None;
-                record(&mut self.flat, request, self.serial, ticket, Any::Flat)
+                record(&mut self.flat, request, self.serial, ticket, Either::Flat)
             }
-            Job::Record(Any::Solid(request)) => {
+            Job::Record(Either::Solid(request)) => {
                 self.serial += 1;
                 self.flat = None;
-                record(&mut self.solid, request, self.serial, ticket, Any::Solid)
+                record(&mut self.solid, request, self.serial, ticket, Either::Solid)
             }
         }
     }

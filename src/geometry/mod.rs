@@ -5,6 +5,7 @@
 //! relative to the distance from the eye and not to the distance from the origin.
 
 mod bounds;
+mod either;
 mod eye;
 mod frustum;
 mod id;
@@ -17,6 +18,8 @@ mod tests;
 mod walk;
 
 pub use bounds::Aabb;
+pub use either::Either;
+pub(crate) use either::each;
 pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};

@@ -7,10 +7,10 @@ use glam::Vec2;
 use super::handles::{self, Handle};
 use super::window::Cache;
 use super::{Answers, palette};
-use crate::app::{Any, Command, Stage, State};
+use crate::app::{Command, Stage, State};
 use crate::drawing::{Drawing, Subject};
 use crate::figure::{self, Sheet};
-use crate::geometry::{Aabb, Flat};
+use crate::geometry::{Aabb, Either, Flat};
 use crate::render::screen;
 
 /// Distance of the turning handle from the Eye, points.
@@ -135,7 +135,7 @@ fn interact(
             _ => camera.slide(-by),
         }
         if cache.held.is_some() && delta != egui::Vec2::ZERO {
-            answers.push(Command::Eye(Any::Flat(view), cache.gesture));
+            answers.push(Command::Eye(Either::Flat(view), cache.gesture));
         }
     }
     if response.drag_stopped() {

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::window::Cache;
 use super::{Answers, canvas, code, events, inspector, parameters, pictures, space, strip, timeline, why};
-use crate::app::{Any, Layout, State};
+use crate::app::{Layout, State};
+use crate::geometry::Either;
 
 /// A panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -143,11 +144,11 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
         let (state, answers) = (self.state, &mut *self.answers);
         ui.push_id(pane as u8, |ui| match pane {
             Pane::Eye | Pane::Observer => match &state.stage {
-                Some(Any::Flat(stage)) if pane == Pane::Observer => {
+                Some(Either::Flat(stage)) if pane == Pane::Observer => {
                     canvas::show(state, stage, self.cache, ui, answers)
                 }
-                Some(Any::Flat(stage)) => strip::show(state, stage, self.cache, ui, answers),
-                Some(Any::Solid(stage)) => {
+                Some(Either::Flat(stage)) => strip::show(state, stage, self.cache, ui, answers),
+                Some(Either::Solid(stage)) => {
                     space::show(state, stage, pane == Pane::Eye, self.cache, self.gpu, ui, answers)
                 }
                 None => {}

@@ -4,9 +4,10 @@
 use eframe::egui::{self, Sense, vec2};
 use glam::Vec2;
 
-use crate::app::{Any, State};
+use crate::app::State;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::figure::role_of;
+use crate::geometry::Either;
 use crate::method::Verdict;
 use crate::render::screen;
 use crate::trace::State as Known;
@@ -76,7 +77,7 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             });
             ui.add_space(6.0);
         }
-        let unit = if matches!(state.stage, Some(Any::Flat(_))) { "segments" } else { "triangles" };
+        let unit = if matches!(state.stage, Some(Either::Flat(_))) { "segments" } else { "triangles" };
         ui.weak(format!("(counts in {unit})"));
     });
 }

@@ -39,7 +39,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.separator();
         if let Some(stage) = state.staged() {
             method(state, ui, answers);
-            if matches!(state.stage, Some(crate::app::Any::Solid(_))) {
+            if matches!(state.stage, Some(crate::geometry::Either::Solid(_))) {
                 surface(state, ui, answers);
             }
             let boxes = egui::Button::selectable(state.shown.nodes, "Boxes");

@@ -4,8 +4,9 @@ use eframe::egui::{self, ScrollArea};
 
 use super::Answers;
 use super::window::Cache;
-use crate::app::{Action, Any, AnyView, Command, State};
+use crate::app::{Action, AnyView, Command, State};
 use crate::culling::Methods;
+use crate::geometry::{Either, Flat, Solid, each};
 use crate::method::{Budget, Knob, KnobValue};
 
 /// Shows the parameters.
@@ -33,8 +34,8 @@ fn wanted(state: &State) -> Vec<(Knob, KnobValue)> {
         S::method(&state.method).and_then(|m| m.knobs(&state.settings).ok()).unwrap_or_default()
     }
     match &state.stage {
-        Some(Any::Flat(_)) => of::<crate::geometry::Flat>(state),
-        Some(Any::Solid(_)) => of::<crate::geometry::Solid>(state),
+        Some(Either::Flat(_)) => of::<Flat>(state),
+        Some(Either::Solid(_)) => of::<Solid>(state),
         None => vec![],
     }
 }
@@ -164,12 +165,12 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
             answers,
         );
         super::action_button(state, ui, Action::EyeHome, "Back to path", answers);
-        if matches!(stage, Any::Solid(_)) {
+        if matches!(stage, Either::Solid(_)) {
             super::action_button(state, ui, Action::EyeHere, "From here", answers);
         }
     });
     let mut view = stage.view();
-    let extent = crate::app::each!(stage, s => s.scene.bounds().diagonal());
+    let extent = each!(stage, s => s.scene.bounds().diagonal());
     let speed = f64::from(extent) * 0.002;
     ui.add_enabled_ui(!state.is_eye_locked, |ui| {
         egui::Grid::new("eye").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
@@ -182,7 +183,7 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                 changed |= response.changed();
             };
             match &mut view {
-                Any::Flat(v) => {
+                Either::Flat(v) => {
                     vector(
                         ui,
                         "position",
@@ -193,7 +194,7 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                     vector(ui, "target", speed, &mut [&mut v.eye.target.x, &mut v.eye.target.y], &mut drag);
                     lens(ui, &mut v.eye.fov, &mut v.eye.near, &mut v.eye.far, speed, &mut drag);
                 }
-                Any::Solid(v) => {
+                Either::Solid(v) => {
                     let (p, t) = (&mut v.eye.position, &mut v.eye.target);
                     vector(ui, "position", speed, &mut [&mut p.x, &mut p.y, &mut p.z], &mut drag);
                     vector(ui, "target", speed, &mut [&mut t.x, &mut t.y, &mut t.z], &mut drag);

@@ -6,10 +6,10 @@ use glam::{Quat, Vec2, Vec3};
 use super::Answers;
 use super::handles::{self, Handle};
 use super::window::Cache;
-use crate::app::{Action, Any, Command, Stage, State};
+use crate::app::{Action, Command, Stage, State};
 use crate::drawing::Subject;
 use crate::figure;
-use crate::geometry::{Aabb, Solid, View};
+use crate::geometry::{Aabb, Either, Solid, View};
 use crate::render::gpu::SpaceCamera;
 
 /// Part of the Observer's distance to the Eye at which the turning handle stands.
@@ -133,7 +133,7 @@ fn drag_eye(stage: &Stage<Solid>, handle: Handle, by: Vec3, aim: Vec3, gesture: 
             eye.target = eye.position + (aim + by - eye.position).normalize_or(eye.forward()) * length;
         }
     }
-    answers.push(Command::Eye(Any::Solid(view), gesture));
+    answers.push(Command::Eye(Either::Solid(view), gesture));
 }
 
 /// The Eye's picture: dragging looks around, letters fly, a click selects.
@@ -182,7 +182,7 @@ pub fn look_around(
         eye.target += by;
     }
     if view != stage.view {
-        answers.push(Command::Eye(Any::Solid(view), cache.gesture));
+        answers.push(Command::Eye(Either::Solid(view), cache.gesture));
     }
 }
 

@@ -5,10 +5,10 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 
 use super::window::Cache;
 use super::{Answers, palette};
-use crate::app::{Any, Command, Stage, State};
+use crate::app::{Command, Stage, State};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
-use crate::geometry::Flat;
+use crate::geometry::{Either, Flat};
 use crate::method::Verdict;
 use crate::trace::State as Known;
 
@@ -110,7 +110,7 @@ fn interact(
         let turn = response.drag_delta().x / response.rect.width().max(1.0) * view.eye.fov;
         let toward = glam::Vec2::from_angle(turn).rotate(view.eye.target - view.eye.position);
         view.eye.target = view.eye.position + toward;
-        answers.push(Command::Eye(Any::Flat(view), super::window::LOOK_GESTURE));
+        answers.push(Command::Eye(Either::Flat(view), super::window::LOOK_GESTURE));
     }
     if let Some((prim, depth)) = response.hover_pos().and_then(|at| under(at.x)) {
         response

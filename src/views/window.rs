@@ -10,11 +10,11 @@ use super::handles::Handle;
 use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
 use crate::app::{
-    Action, Any, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS,
+    Action, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS,
 };
 use crate::drawing::Drawing;
 use crate::figure::Look;
-use crate::geometry::{Flat, PrimId, View};
+use crate::geometry::{Either, Flat, PrimId, View};
 use crate::render::screen;
 
 /// The gesture of looking around with the pointer in the Eye view.
@@ -236,7 +236,8 @@ impl App {
 
     /// The Observer's picture of a scene that is too large for vectors.
     fn pixels(&self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<crate::drawing::Pixels> {
-        let large = matches!(&self.state.stage, Some(Any::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
+        let large =
+            matches!(&self.state.stage, Some(Either::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
         gpu.filter(|_| large).and_then(super::space::pixels)
     }
 
