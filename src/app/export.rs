@@ -4,7 +4,8 @@
 use glam::Vec2;
 
 use super::session::{Session, SessionError, write_file};
-use super::state::{State, Theme};
+use super::shown::Theme;
+use super::state::State;
 use crate::drawing::{Drawing, Pixels};
 use crate::figure::{self, Page, Panel, Paper, Picture, page, panels};
 use crate::geometry::{Aabb, Either};

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::drawing::words::capitalized;
 use crate::geometry::{Either, Flat, Solid, ViewPath, each};
 use crate::scene::{self, AnyScene, LoadOptions, Progress, Scene, SceneError};
 
@@ -118,7 +119,5 @@ fn example(path: &Path) -> Example {
 
 /// `freedoom_e1m1` as `Freedoom e1m1`.
 fn title(stem: &str) -> String {
-    let words = stem.replace(['_', '-'], " ");
-    let mut chars = words.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+    capitalized(&stem.replace(['_', '-'], " "))
 }

@@ -2,10 +2,11 @@
 
 use super::any::ViewRecord;
 use super::command::{Action, Command};
+use super::measured::{Tables, tables};
 use super::session::{Picked, Session, Shown as Kept, VERSION};
+use super::shown::{Detail, Dialog, Layout, Shown, Surface, Theme};
 use super::start::Start;
-use super::state::{Detail, Layout, Shown, State, Surface, Theme};
-use super::tables::{Tables, tables};
+use super::state::{Effect, Notice, State};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Settings;
@@ -47,7 +48,7 @@ impl State {
         match self.session().write(path) {
             Ok(()) => {
                 self.session_path = Some(path.to_owned());
-                self.dialog = super::state::Dialog::None;
+                self.dialog = Dialog::None;
                 self.tell(format!("Saved as {path}."));
             }
             Err(error) => self.fail(error.to_string()),
@@ -84,7 +85,7 @@ impl State {
     pub(super) fn recall_inputs(&mut self, session: &Session) {
         let Some(stage) = &mut self.stage else { return };
         if !session.scene_hash.is_empty() && session.scene_hash != stage.get().hash_hex() {
-            self.notices.push(super::state::Notice {
+            self.notices.push(Notice {
                 is_error: false,
                 text: format!("{} is not the scene that was saved: its content has changed.", session.scene),
             });
@@ -118,7 +119,7 @@ impl State {
         self.bookmarks.sort_by_key(|b| b.step);
         if let Some(observer) = session.observer.filter(|o| o.is_sound()) {
             self.observer = observer;
-            self.effects.retain(|e| *e != super::state::Effect::Frame);
+            self.effects.retain(|e| *e != Effect::Frame);
         }
         self.step = session.step.min(end);
     }

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::culling::Methods;
+use crate::drawing::words::{Room, short};
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::method::{Card, Event, Field, Film, Knob, KnobValue, Verdict};
@@ -103,7 +104,7 @@ impl<S: Space> Stage<S> {
         self.view.eye.target = self.view.eye.target + by;
     }
     fn vector(v: S::Vector) -> String {
-        (0..S::Vector::AXES).map(|a| short(v.get(a))).collect::<Vec<_>>().join(", ")
+        (0..S::Vector::AXES).map(|a| short(v.get(a), Room::Row)).collect::<Vec<_>>().join(", ")
     }
 }
 
@@ -425,19 +426,8 @@ impl<S: Methods> Stage<S> {
             ("stands at", Self::vector(e.position)),
             ("looks at", Self::vector(e.target)),
             ("angle", format!("{:.1}°", e.fov.to_degrees())),
-            ("sees from", format!("{} to {} units", short(e.near), short(e.far))),
+            ("sees from", format!("{} to {} units", short(e.near, Room::Row), short(e.far, Room::Row))),
             ("image", format!("{} × {} pixels", v.width, v.height)),
         ]
-    }
-}
-
-/// A number with as many digits as a person reads.
-pub fn short(v: f32) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e6).contains(&a) => format!("{v:.2e}"),
-        a if a < 1.0 => format!("{v:.3}"),
-        a if a < 100.0 => format!("{v:.2}"),
-        _ => format!("{v:.0}"),
     }
 }

@@ -3,7 +3,8 @@
 use super::command::Action;
 use super::filter::{kind_name, subject_at, verdict_of};
 use super::session::Bookmark;
-use super::state::{Breakpoint, Dialog, State};
+use super::shown::{Breakpoint, Dialog};
+use super::state::State;
 use crate::drawing::Subject;
 use crate::method::Event;
 use crate::trace::{Detail, Moves};

@@ -1,7 +1,7 @@
 //! The explorer without its window, driven by commands.
 
 use super::recall::spoken_command;
-use super::state::{Breakpoint, Detail, Dialog};
+use super::shown::Detail;
 use super::*;
 use crate::drawing::Subject;
 use crate::geometry::{Either, NodeId, PrimId};

@@ -10,9 +10,9 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 
 use super::any::AnyRecorded;
+use super::measured::{self, Measured};
 use super::open;
 use super::stage::Recorded;
-use super::tables;
 use crate::culling::Methods;
 use crate::geometry::{Either, Flat, Solid, View};
 use crate::measure::deadline::Paced;
@@ -53,7 +53,7 @@ pub(super) enum Done {
     LoadFailed(String),
     Recorded(AnyRecorded),
     RecordFailed(String),
-    Measured(Box<tables::Measured>),
+    Measured(Box<Measured>),
     Cancelled,
 }
 
@@ -214,11 +214,13 @@ impl Bench {
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::LoadFailed(error),
             },
-            Job::Measure { name, scene, settings } => match tables::measure(name, scene, settings, ticket) {
-                Ok(measured) => Done::Measured(Box::new(measured)),
-                Err(_) if ticket.cancelled() => Done::Cancelled,
-                Err(error) => Done::RecordFailed(error),
-            },
+            Job::Measure { name, scene, settings } => {
+                match measured::measure(name, scene, settings, ticket) {
+                    Ok(measured) => Done::Measured(Box::new(measured)),
+                    Err(_) if ticket.cancelled() => Done::Cancelled,
+                    Err(error) => Done::RecordFailed(error),
+                }
+            }
             Job::Record(Either::Flat(request)) => {
                 self.serial += 1;
                 self.solid = None;

@@ -3,9 +3,9 @@
 use eframe::egui::{self, Grid, Key, Modal, RichText, ScrollArea, TextEdit};
 
 use super::Answers;
-use super::events::grouped;
 use super::window::Cache;
 use crate::app::{Action, Command, Dialog, Menu, State, fuzzy};
+use crate::drawing::words::count;
 
 /// Shows the open dialog, if there is one.
 pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut Answers) {
@@ -146,7 +146,7 @@ fn keys(ui: &mut egui::Ui) {
 
 fn go_to(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     ui.heading("Go to step");
-    ui.label(format!("0 to {}; a share such as 50% works too.", grouped(state.len())));
+    ui.label(format!("0 to {}; a share such as 50% works too.", count(state.len())));
     let response = field(ui, &mut cache.typed, "Step number", "", is_new);
     let typed = cache.typed.trim();
     let step = match typed.strip_suffix('%') {
@@ -215,22 +215,22 @@ fn report(state: &State, ui: &mut egui::Ui) {
     ui.label(format!("{} from {}", stage.scene_name(), stage.source()));
     ui.label(format!(
         "{} {}s in {} objects",
-        grouped(stage.prim_count()),
+        count(stage.prim_count()),
         stage.prim_name(),
-        grouped(stage.object_count())
+        count(stage.object_count())
     ));
     if report.dropped.is_empty() {
         ui.label("Nothing was dropped.");
     }
-    for (why, count) in &report.dropped {
-        ui.label(format!("{} dropped: {}", grouped(*count), why.label()));
+    for (why, dropped) in &report.dropped {
+        ui.label(format!("{} dropped: {}", count(*dropped), why.label()));
     }
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
         for note in &report.notes {
             ui.add(egui::Label::new(note).wrap());
         }
         if report.unsaid > 0 {
-            ui.weak(format!("… and {} more", grouped(report.unsaid)));
+            ui.weak(format!("… and {} more", count(report.unsaid)));
         }
     });
 }

@@ -9,6 +9,7 @@ use super::legend::verdict_mark;
 use super::window::Cache;
 use crate::app::{Command, Staged, State, kind_name, subject_at, verdict_of};
 use crate::drawing::Subject;
+use crate::drawing::words::{count, spaced};
 use crate::method::Event;
 
 /// Indent of a level.
@@ -24,16 +25,13 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut A
     if let Some(error) = state.outline.error() {
         ui.colored_label(ui.visuals().error_fg_color, error.to_string());
     }
-    let shown = if rows.len() == stage.events().len() {
-        String::new()
-    } else {
-        format!("{} of ", grouped(rows.len()))
-    };
-    ui.weak(format!("{shown}{} events", grouped(stage.events().len())));
+    let shown =
+        if rows.len() == stage.events().len() { String::new() } else { format!("{} of ", count(rows.len())) };
+    ui.weak(format!("{shown}{} events", count(stage.events().len())));
     if stage.lost() > 0 {
         ui.colored_label(
             ui.visuals().warn_fg_color,
-            format!("Capped: {} later events were not kept.", grouped(stage.lost() as usize)),
+            format!("Capped: {} later events were not kept.", count(stage.lost() as usize)),
         );
     }
     let height = ui.spacing().interact_size.y;
@@ -159,29 +157,4 @@ pub fn label(stage: &dyn Staged, at: usize) -> String {
             _ => kind,
         },
     }
-}
-
-/// `NodeClassified` as `node classified`.
-pub fn spaced(kind: &str) -> String {
-    let mut text = String::new();
-    for c in kind.chars() {
-        if c.is_uppercase() && !text.is_empty() {
-            text.push(' ');
-        }
-        text.extend(c.to_lowercase());
-    }
-    text
-}
-
-/// A count with thin groups of three digits.
-pub fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(c);
-    }
-    text
 }

@@ -3,21 +3,21 @@
 use eframe::egui::{self, Grid, RichText, ScrollArea};
 
 use super::Answers;
-use super::events::spaced;
-use super::why::{capitalized, subject_name};
-use crate::app::{Command, State, short};
+use super::why::subject_name;
+use crate::app::{Command, State};
 use crate::drawing::Subject;
+use crate::drawing::words::{Room, capitalized, short, spaced};
 use crate::method::Value;
 
 /// A value as a person reads it.
 pub fn value(value: &Value) -> String {
     match value {
-        Value::Number(v) => short(*v as f32),
+        Value::Number(v) => short(*v as f32, Room::Row),
         Value::Integer(v) => v.to_string(),
         Value::Switch(true) => "yes".into(),
         Value::Switch(false) => "no".into(),
         Value::Word(w) => w.clone(),
-        Value::List(list) => list.iter().map(|v| short(*v as f32)).collect::<Vec<_>>().join(", "),
+        Value::List(list) => list.iter().map(|v| short(*v as f32, Room::Row)).collect::<Vec<_>>().join(", "),
     }
 }
 

@@ -5,6 +5,7 @@ use eframe::egui::{self, Sense, vec2};
 use glam::Vec2;
 
 use crate::app::State;
+use crate::drawing::words::count;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::figure::role_of;
 use crate::geometry::Either;
@@ -64,11 +65,11 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             if !verdicts.is_empty() && total == 0 && !matches!(role, Role::Visible | Role::Outside) {
                 continue;
             }
-            let count: usize = verdicts.iter().map(|&v| here.of(v)).sum();
+            let now: usize = verdicts.iter().map(|&v| here.of(v)).sum();
             let text = match role {
-                Role::Scene => format!("{words} {}", super::events::grouped(here.undecided)),
+                Role::Scene => format!("{words} {}", count(here.undecided)),
                 _ if verdicts.is_empty() => words.to_owned(),
-                _ => format!("{words} {}", super::events::grouped(count)),
+                _ => format!("{words} {}", count(now)),
             };
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 3.0;

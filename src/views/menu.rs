@@ -5,6 +5,7 @@ use eframe::egui;
 use super::Answers;
 use super::icons::Icon;
 use crate::app::{Action, Command, Dialog, Menu, State, Surface, Theme};
+use crate::drawing::words::count;
 
 /// Shows the menus.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -48,12 +49,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
             ui.separator();
             let report = stage.report();
-            let text = format!(
-                "{}: {} {}s",
-                stage.scene_name(),
-                super::events::grouped(stage.prim_count()),
-                stage.prim_name()
-            );
+            let text =
+                format!("{}: {} {}s", stage.scene_name(), count(stage.prim_count()), stage.prim_name());
             let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
             let text = if has_news { format!("{text} (!)") } else { text };
             if ui.link(text).on_hover_text("Loading report").clicked() {

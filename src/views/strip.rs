@@ -6,6 +6,7 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 use super::window::Cache;
 use super::{Answers, palette};
 use crate::app::{Command, Stage, State};
+use crate::drawing::words::{Room, short};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
 use crate::geometry::{Either, Flat};
@@ -115,6 +116,6 @@ fn interact(
     if let Some((prim, depth)) = response.hover_pos().and_then(|at| under(at.x)) {
         response
             .clone()
-            .on_hover_text_at_pointer(format!("segment {prim}, {} units away", crate::app::short(depth)));
+            .on_hover_text_at_pointer(format!("segment {prim}, {} units away", short(depth, Room::Row)));
     }
 }

@@ -6,7 +6,8 @@ use super::icons::Icon;
 use super::window::Cache;
 use super::{Answers, palette};
 use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes, subject_at, verdict_of};
-use crate::drawing::Subject;
+use crate::drawing::words::count;
+use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
 use crate::method::Event;
 use crate::trace::{Detail, State as Known};
@@ -22,8 +23,8 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut A
     if stage.lost() > 0 {
         let text = format!(
             "This film is capped: it shows the first {} events; {} more happened.",
-            super::events::grouped(state.len()),
-            super::events::grouped(stage.lost() as usize)
+            count(state.len()),
+            count(stage.lost() as usize)
         );
         ui.colored_label(ui.visuals().warn_fg_color, text);
     }
@@ -53,7 +54,7 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         if response.changed() {
             answers.push(Command::GoTo(step));
         }
-        ui.label(format!("of {}", super::events::grouped(state.len())));
+        ui.label(format!("of {}", count(state.len())));
         ui.add_space(4.0);
         let mut speed = state.speed;
         // One widget, so that the name and the number wrap together.
@@ -187,7 +188,7 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
         (Lane::Walk, _) => {
             let rise = rect.height() * cell.depth as f32 / deepest as f32;
             let low = Rect::from_min_max(pos2(rect.left(), rect.bottom() - rise.max(1.0)), rect.max);
-            painter.rect_filled(low, 0.0, palette::role(state, crate::drawing::Role::Faint));
+            painter.rect_filled(low, 0.0, palette::role(state, Role::Faint));
         }
         (_, Some(verdict)) => {
             // Form as well as hue: what is kept fills the lane, what is culled hangs in its upper half.
@@ -203,7 +204,7 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
             painter.rect_filled(
                 rect.shrink2(vec2(0.0, rect.height() * 0.3)),
                 0.0,
-                palette::role(state, crate::drawing::Role::Evidence),
+                palette::role(state, Role::Evidence),
             );
         }
     }

@@ -5,6 +5,7 @@ use eframe::egui::{self, ScrollArea};
 use super::Answers;
 use crate::app::{Action, Command, State, why};
 use crate::drawing::Subject;
+use crate::drawing::words::capitalized;
 
 /// A thing by its name.
 pub fn subject_name(state: &State, subject: Subject) -> String {
@@ -65,10 +66,4 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         });
     });
-}
-
-/// With a capital letter.
-pub fn capitalized(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
