@@ -1,7 +1,5 @@
 //! The only way that anything changes.
 
-use std::sync::Arc;
-
 use super::any::AnyStage;
 use super::command::{Action, Command};
 use super::open::AnyOpened;
@@ -139,7 +137,7 @@ impl State {
                 self.selection = Subject::None;
             }
             Action::Reload => {
-                if let Some(source) = self.staged().map(|s| s.source().to_owned()) {
+                if let Some(source) = self.staged().map(|s| s.scene().source().to_owned()) {
                     self.recall = Some(self.session());
                     self.load(&source, None);
                 }
@@ -241,8 +239,8 @@ impl State {
         match action {
             Action::Find => self.effects.push(Effect::FocusFilter),
             Action::FoldAll | Action::UnfoldAll => {
-                if let Some(stage) = &self.stage {
-                    self.outline.fold_all(stage.get(), action == Action::FoldAll);
+                if let Some(film) = self.stage.as_ref().and_then(|s| s.get().film()) {
+                    self.outline.fold_all(film.reel.events(), action == Action::FoldAll);
                 }
             }
             Action::FrameSelection => self.effects.push(Effect::Frame),
@@ -330,7 +328,7 @@ impl State {
         let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
         let path = format!(
             "{}-flight.views.json",
-            self.staged().map_or("scene", |s| s.scene_name()).replace(['/', '\\', ' '], "-")
+            self.staged().map_or("scene", |s| s.scene().name()).replace(['/', '\\', ' '], "-")
         );
         match super::session::write_file(&path, text.as_bytes()) {
             Ok(()) => {
@@ -436,8 +434,8 @@ impl State {
     fn put_on_stage(&mut self, opened: AnyOpened) {
         self.serial += 1;
         let stage: AnyStage = each!(opened, (scene, path) => Either(Stage::new(scene, path, self.serial)));
-        let name = stage.get().scene_name().to_owned();
-        let dropped = stage.get().report().dropped_total();
+        let name = stage.get().scene().name().to_owned();
+        let dropped = stage.get().scene().report().dropped_total();
         if !stage.get().methods().iter().any(|m| m.key == self.method) {
             self.method = "frustum".into();
             self.settings.0.clear();
@@ -474,7 +472,7 @@ impl State {
             (Some(Either::Solid(stage)), Either::Solid(film)) => stage.recorded = Some(film),
             _ => return,
         }
-        let nodes = self.staged().map_or(0, |s| s.node_count());
+        let nodes = self.film().map_or(0, |f| f.node_count());
         if matches!(self.selection, Subject::Node(n) if n.at() >= nodes) {
             self.selection = Subject::None;
         }
@@ -483,10 +481,5 @@ impl State {
         }
         self.step = if was_at_end { self.len() } else { self.step.min(self.len()) };
         self.run_commands();
-    }
-
-    /// Shared so that caches may hold on to it.
-    pub fn pseudocode(&self) -> Arc<[crate::method::CodeLine]> {
-        self.staged().and_then(|s| s.card()).map_or_else(|| Arc::from(vec![]), |c| Arc::from(c.code.to_vec()))
     }
 }

@@ -25,6 +25,7 @@ impl State {
     /// are the Observer's picture of a scene that is too large for vectors.
     pub fn figure(&self, aspect: f32, pixels: Option<Pixels>) -> Option<Drawing> {
         let (stage, look) = (self.staged()?, self.look());
+        let scene = stage.scene();
         let aspect = aspect.clamp(0.2, 5.0);
         let picture = match (self.stage.as_ref()?, pixels) {
             (_, Some(pixels)) => Picture::Pixels(pixels),
@@ -45,15 +46,16 @@ impl State {
         };
         let label = format!("step {} of {}", self.step, self.len());
         let content = panels(WIDTH_PT, 1, &[Panel { label, picture }]);
-        let card = stage.card()?;
+        let film = stage.film()?.reel;
+        let card = film.card();
         let knobs =
-            stage.film_knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
+            film.knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
         let caption = format!(
             "{}, {}: {} {}s; {knobs}. {}",
             card.name,
-            stage.scene_name(),
-            stage.prim_count(),
-            stage.prim_name(),
+            scene.name(),
+            scene.live_count(),
+            scene.prim_name(),
             self.sentence()
         );
         let page = Page {
@@ -81,7 +83,7 @@ impl State {
             "pdf" => render::pdf(&drawing, Theme::Print, Some(&recipe)),
             _ => render::png(&drawing, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
         };
-        let scene = self.staged().map_or("figure", |s| s.scene_name()).replace(['/', '\\', ' '], "-");
+        let scene = self.staged().map_or("figure", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
         let path = format!("{scene}-{}-step-{}.{format}", self.method, self.step);
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {

@@ -39,7 +39,7 @@ pub use open::{Example, examples};
 pub use outline::Outline;
 pub use session::{Bookmark, Session, SessionError, write_file};
 pub use shown::{Breakpoint, Dialog, Gesture, Layout, Shown, Surface, Theme};
-pub use stage::{Recorded, Stage, Staged};
+pub use stage::{Footage, Recorded, SceneFacts, Stage, Staged};
 pub use start::{Shot, Start};
 pub use state::{Effect, Notice, State};
 pub use why::{Because, spoken, why};

@@ -19,8 +19,8 @@ impl State {
         let s = &self.shown;
         Session {
             cullscope_session: VERSION,
-            scene: stage.map_or(String::new(), |s| s.source().to_owned()),
-            scene_hash: stage.map_or(String::new(), |s| s.hash_hex()),
+            scene: stage.map_or(String::new(), |s| s.scene().source().to_owned()),
+            scene_hash: stage.map_or(String::new(), |s| s.scene().hash_hex()),
             method: self.method.clone(),
             settings: self.settings.0.clone(),
             place: stage.map_or((0, 0), |s| s.place()),
@@ -84,7 +84,7 @@ impl State {
     /// What culling depends on, before the film is recorded.
     pub(super) fn recall_inputs(&mut self, session: &Session) {
         let Some(stage) = &mut self.stage else { return };
-        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().hash_hex() {
+        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().scene().hash_hex() {
             self.notices.push(Notice {
                 is_error: false,
                 text: format!("{} is not the scene that was saved: its content has changed.", session.scene),
@@ -104,10 +104,11 @@ impl State {
     /// What refers to the film, once it is there.
     pub(super) fn recall_rest(&mut self, session: &Session) {
         let Some(stage) = self.staged() else { return };
+        let nodes = stage.film().map_or(0, |f| f.node_count());
         self.selection = match session.selected {
-            Picked::Prim(p) if stage.has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
-            Picked::Node(n) if (n as usize) < stage.node_count() => Subject::Node(NodeId(n)),
-            Picked::Object(o) if (o as usize) < stage.object_count() => Subject::Object(ObjectId(o)),
+            Picked::Prim(p) if stage.scene().has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
+            Picked::Node(n) if (n as usize) < nodes => Subject::Node(NodeId(n)),
+            Picked::Object(o) if (o as usize) < stage.scene().object_count() => Subject::Object(ObjectId(o)),
             Picked::Eye => Subject::Eye,
             _ => Subject::None,
         };

@@ -4,15 +4,16 @@ use std::collections::BTreeSet;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
+use super::filter::subject_at;
 use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
-use super::stage::Staged;
+use super::stage::{Footage, Staged};
 use super::undo::History;
 use super::worker::{Busy, Worker};
 use crate::drawing::Subject;
-use crate::method::Settings;
+use crate::method::{Event, Settings};
 
 /// Something that the person should read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,10 +27,6 @@ pub struct Notice {
 /// What the window has to do, as the state cannot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Show the system's dialog to choose a scene.
-    AskOpen,
-    /// Show the system's dialog to choose a name for the session.
-    AskSave,
     /// Write the picture on screen as `svg`, `pdf` or `png`.
     Export(&'static str),
     /// Put text on the clipboard.
@@ -150,9 +147,17 @@ impl State {
     pub fn staged(&self) -> Option<&dyn Staged> {
         self.stage.as_ref().map(|s| s.get())
     }
+    /// The recorded film, once there is one.
+    pub fn film(&self) -> Option<Footage<'_>> {
+        self.staged()?.film()
+    }
+    /// Events of the film; none before it is recorded.
+    pub fn events(&self) -> &[Event] {
+        self.film().map_or(&[], |f| f.reel.events())
+    }
     /// Number of events of the film.
     pub fn len(&self) -> usize {
-        self.staged().map_or(0, |s| s.events().len())
+        self.events().len()
     }
     /// Whether there is nothing to step through.
     pub fn is_empty(&self) -> bool {
@@ -172,29 +177,26 @@ impl State {
     }
     /// What happened last, in one sentence: the status line, the caption, and what screen readers say.
     pub fn sentence(&self) -> String {
-        match (self.staged(), self.current()) {
-            (None, _) => "Nothing is open.".into(),
-            (Some(stage), _) if !stage.has_film() => {
-                format!("{} is open; nothing is recorded yet.", stage.scene_name())
-            }
+        let Some(stage) = self.staged() else { return "Nothing is open.".into() };
+        match (stage.film(), self.current()) {
+            (None, _) => format!("{} is open; nothing is recorded yet.", stage.scene().name()),
             (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
-            (Some(stage), Some(at)) => stage.sentence(at),
+            (Some(film), Some(at)) => film.reel.sentence(at),
         }
     }
     /// The line of pseudocode at this step.
     pub fn line(&self) -> Option<u8> {
-        let stage = self.staged()?;
-        stage.moves()?.line(stage.events(), self.step)
+        let film = self.film()?;
+        film.moves.line(film.reel.events(), self.step)
     }
     /// What the current event, or the evidence around it, is about.
     pub fn current_subject(&self) -> Subject {
-        let Some(stage) = self.staged() else { return Subject::None };
-        let Some(at) = self.current() else { return Subject::None };
-        match super::filter::subject_at(stage, at) {
-            Subject::None => stage
-                .moves()
-                .and_then(|m| m.stack(stage.events(), self.step).last().copied())
-                .map_or(Subject::None, Subject::Node),
+        let (Some(film), Some(at)) = (self.film(), self.current()) else { return Subject::None };
+        match subject_at(film.reel, at) {
+            Subject::None => {
+                let open = film.moves.stack(film.reel.events(), self.step);
+                open.last().map_or(Subject::None, |&node| Subject::Node(node))
+            }
             subject => subject,
         }
     }

@@ -40,7 +40,7 @@ impl State {
 
     /// Measuring takes the place of a film that was being recorded.
     fn record_if_missing(&mut self) {
-        if self.staged().is_some_and(|s| !s.has_film()) {
+        if self.stage.is_some() && self.film().is_none() {
             self.record();
         }
     }

@@ -14,14 +14,14 @@ fn opened(source: &str) -> State {
     let mut state = State::new();
     state.apply(Command::Open(source.into()));
     state.block_until_idle();
-    assert!(state.staged().is_some_and(|s| s.has_film()), "{:?}", state.notices);
+    assert!(state.film().is_some(), "{:?}", state.notices);
     state
 }
 
 /// What a person sees that a step decides.
 fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
-    let stage = state.staged().expect("a stage");
-    (state.step, state.sentence(), state.line(), stage.counts(state.step))
+    let film = state.film().expect("a film");
+    (state.step, state.sentence(), state.line(), film.stamps.counts(state.step))
 }
 
 #[test]
@@ -127,13 +127,13 @@ fn a_run_stops_at_breakpoints_forwards_and_backwards() {
 #[test]
 fn a_parameter_and_the_eye_are_culled_again_and_undone() {
     let mut state = opened(FLAT);
-    let first = state.staged().expect("a stage").film_serial();
+    let first = state.film().map(|f| f.serial);
     let events = state.len();
     state.apply(Command::Set("tree-height".into(), "3".into(), 1));
     state.apply(Command::Set("tree-height".into(), "2".into(), 1));
     state.block_until_idle();
     assert!(state.len() < events);
-    assert_ne!(state.staged().expect("a stage").film_serial(), first);
+    assert_ne!(state.film().map(|f| f.serial), first);
     // Both changes were one gesture.
     state.apply(Action::Undo);
     state.block_until_idle();
@@ -196,14 +196,14 @@ fn stale_answers_are_dropped() {
         state.apply(Command::Set("tree-height".into(), height.to_string(), 0));
     }
     state.block_until_idle();
-    let knobs = state.staged().expect("a stage").film_knobs();
+    let knobs = state.film().expect("a film").reel.knobs();
     assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
     // What was cancelled never arrives.
     state.apply(Command::Set("tree-height".into(), "2".into(), 0));
     state.apply(Action::Cancel);
     std::thread::sleep(std::time::Duration::from_millis(100));
     state.poll();
-    let knobs = state.staged().expect("a stage").film_knobs();
+    let knobs = state.film().expect("a film").reel.knobs();
     assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
 }
 
@@ -211,10 +211,10 @@ fn stale_answers_are_dropped() {
 fn why_names_the_decision_and_its_evidence() {
     let mut state = opened(FLAT);
     state.apply(Action::Last);
-    let stage = state.staged().expect("a stage");
+    let (stage, film) = (state.staged().expect("a stage"), state.film().expect("a film"));
     let mut kinds = std::collections::BTreeSet::new();
-    for p in (0..400).map(PrimId).filter(|&p| stage.has_prim(p)) {
-        let (at, verdict) = stage.prim_decision(p).expect("decided");
+    for p in (0..400).map(PrimId).filter(|&p| stage.scene().has_prim(p)) {
+        let (at, verdict) = film.stamps.prim_decision(p).expect("decided");
         kinds.insert(verdict);
         let lines = why(stage, Subject::Prim(p), state.step);
         assert!(lines.len() >= 3, "{lines:?}");
@@ -225,12 +225,13 @@ fn why_names_the_decision_and_its_evidence() {
         assert!(early[0].text.contains("yet"), "{early:?}");
     }
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [Verdict::Outside, Verdict::Visible]);
-    for n in (0..stage.node_count() as u32).map(NodeId) {
+    for n in (0..film.node_count() as u32).map(NodeId) {
         assert!(!why(stage, Subject::Node(n), state.step).is_empty(), "{n}");
     }
     state.apply(Command::Select(Subject::Prim(PrimId(0))));
     state.apply(Action::Why);
-    assert_eq!(Some(state.step), state.staged().expect("a stage").prim_decision(PrimId(0)).map(|d| d.0));
+    let decided = state.film().and_then(|f| f.stamps.prim_decision(PrimId(0)));
+    assert_eq!(Some(state.step), decided.map(|d| d.0));
 }
 
 #[test]
@@ -244,8 +245,8 @@ fn the_event_tree_folds_filters_and_reveals() {
     state.apply(Command::GoTo(100));
     assert!(state.outline.rows().contains(&99), "the current event is shown");
     state.apply(Command::Filter("verdict:outside kind:node".into()));
-    let (rows, stage) = (state.outline.rows(), state.staged().expect("a stage"));
-    let outside = stage.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
+    let rows = state.outline.rows();
+    let outside = state.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
     assert_eq!(rows.len(), outside);
     state.apply(Command::Filter("under:3 -line".into()));
     let within = state.outline.rows().len();
@@ -261,7 +262,7 @@ fn the_event_tree_folds_filters_and_reveals() {
 #[test]
 fn a_session_brings_everything_back() {
     let mut state = opened(FLAT);
-    let (_, frames) = state.staged().expect("a stage").path_names()[0];
+    let (_, frames) = state.staged().expect("a stage").paths()[0];
     state.apply(Command::Method("centroid".into()));
     state.apply(Command::Set("budget".into(), "50%".into(), 0));
     state.apply(Command::Frame(0, frames.min(3) - 1));

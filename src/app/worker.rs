@@ -282,11 +282,5 @@ fn record<S: Methods + Drawable>(
     ticket.report(0.8, "reading the film");
     let stamps = Arc::new(Stamps::new(&*recording.film));
     let moves = Arc::new(Moves::new(recording.film.events()));
-    Done::Recorded(wrap(Recorded {
-        film: recording.film,
-        stamps,
-        moves,
-        drawn: recording.list.prims.len(),
-        serial,
-    }))
+    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial }))
 }

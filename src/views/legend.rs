@@ -11,7 +11,7 @@ use crate::figure::role_of;
 use crate::geometry::Either;
 use crate::method::Verdict;
 use crate::render::screen;
-use crate::trace::State as Known;
+use crate::trace::{Counts, State as Known};
 
 /// Size of a mark.
 const MARK: egui::Vec2 = vec2(18.0, 12.0);
@@ -47,8 +47,8 @@ const STATES: [(Role, &str); 9] = [
 /// The legend in one wrapping line: the states that this film has, then the marks of the moment.
 pub fn show(state: &State, ui: &mut egui::Ui) {
     let Some(stage) = state.staged() else { return };
-    let end = stage.counts(stage.events().len());
-    let here = stage.counts(state.step);
+    let counts = |step| state.film().map_or(Counts::default(), |f| f.stamps.counts(step));
+    let (end, here) = (counts(state.len()), counts(state.step));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let shown = stage.evidence_roles(state.step);
@@ -56,7 +56,7 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             if role == Role::Occluder && !shown.contains(&role) {
                 continue;
             }
-            let verdicts: Vec<Verdict> = crate::trace::Counts::VERDICTS
+            let verdicts: Vec<Verdict> = Counts::VERDICTS
                 .into_iter()
                 .filter(|&v| v != Verdict::Partial && role_of(Known::Decided(v)) == role)
                 .collect();

@@ -48,9 +48,9 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 answers.push(Action::ShowNodes.into());
             }
             ui.separator();
-            let report = stage.report();
-            let text =
-                format!("{}: {} {}s", stage.scene_name(), count(stage.prim_count()), stage.prim_name());
+            let scene = stage.scene();
+            let report = scene.report();
+            let text = format!("{}: {} {}s", scene.name(), count(scene.live_count()), scene.prim_name());
             let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
             let text = if has_news { format!("{text} (!)") } else { text };
             if ui.link(text).on_hover_text("Loading report").clicked() {

@@ -1,8 +1,10 @@
 //! The explorer's window: panels that read [`State`] and answer in commands.
 //!
 //! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds what the person asked for.
-//! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`window::App`].
+//! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`cache::Cache`], and each
+//! panel is given its part.
 
+mod cache;
 mod canvas;
 mod code;
 mod dialogs;

@@ -3,27 +3,25 @@
 use eframe::egui::{self, ScrollArea};
 
 use super::Answers;
-use super::window::Cache;
-use crate::app::{Action, AnyView, Command, State};
+use crate::app::{Action, Command, Gesture, State};
 use crate::culling::Methods;
 use crate::geometry::{Either, Flat, Solid, each};
 use crate::method::{Budget, Knob, KnobValue};
 
 /// Shows the parameters.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
-    let Some(stage) = state.staged() else { return };
+pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &mut Answers) {
     ScrollArea::vertical().auto_shrink(false).id_salt("parameters").show(ui, |ui| {
         for (knob, value) in wanted(state) {
-            edit(state, cache, ui, knob, &value, answers);
+            edit(state, gesture, ui, knob, &value, answers);
         }
         if !state.settings.0.is_empty() {
             super::action_button(state, ui, Action::ResetSettings, "Reset", answers);
         }
         ui.separator();
-        eye(state, cache, ui, answers);
+        eye(state, gesture, ui, answers);
         ui.add_space(4.0);
-        if let Some(card) = stage.card() {
-            ui.weak(card.summary);
+        if let Some(film) = state.film() {
+            ui.weak(film.reel.card().summary);
         }
     });
 }
@@ -42,7 +40,7 @@ fn wanted(state: &State) -> Vec<(Knob, KnobValue)> {
 
 fn edit(
     state: &State,
-    cache: &mut Cache,
+    gesture: &mut Gesture,
     ui: &mut egui::Ui,
     knob: Knob,
     value: &KnobValue,
@@ -66,10 +64,10 @@ fn edit(
             let response =
                 ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if response.changed() {
-                answers.push(set(v.to_string(), cache.gesture));
+                answers.push(set(v.to_string(), *gesture));
             }
         }
         KnobValue::Real(v, range) => {
@@ -94,22 +92,22 @@ fn edit(
                 answers.push(set(options[chosen].to_owned(), 0));
             }
         }
-        KnobValue::Budget(budget) => self::budget(state, cache, ui, &title, &help, *budget, &set, answers),
+        KnobValue::Budget(budget) => self::budget(state, gesture, ui, &title, &help, *budget, &set, answers),
     }
 }
 
 #[allow(clippy::too_many_arguments)]
 fn budget(
     state: &State,
-    cache: &mut Cache,
+    gesture: &mut Gesture,
     ui: &mut egui::Ui,
     title: &str,
     help: &str,
     now: Budget,
-    set: &dyn Fn(String, u64) -> Command,
+    set: &dyn Fn(String, Gesture) -> Command,
     answers: &mut Answers,
 ) {
-    let most = state.staged().map_or(1, |s| s.prim_count()) as u32;
+    let most = state.staged().map_or(1, |s| s.scene().live_count()) as u32;
     let label = ui.label(title).on_hover_text(help);
     ui.horizontal(|ui| {
         let (mut next, response) = match now {
@@ -130,7 +128,7 @@ fn budget(
         };
         let response = response.labelled_by(label.id).on_hover_text(help);
         if response.drag_started() || (response.changed() && !response.dragged()) {
-            cache.gesture += 1;
+            *gesture += 1;
         }
         let drawn = now.of(most as usize) as u32;
         let share = Budget::Percent((drawn as f32 * 100.0 / most.max(1) as f32 * 10.0).round() / 10.0);
@@ -143,17 +141,17 @@ fn budget(
             let is_now = std::mem::discriminant(&start) == std::mem::discriminant(&now);
             if ui.selectable_label(is_now, name).on_hover_text(meaning).clicked() && !is_now {
                 next = start;
-                cache.gesture += 1;
+                *gesture += 1;
             }
         }
         if next != now {
-            answers.push(set(next.to_string(), cache.gesture));
+            answers.push(set(next.to_string(), *gesture));
         }
     });
 }
 
 /// The Eye in numbers.
-fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+fn eye(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = &state.stage else { return };
     ui.horizontal_wrapped(|ui| {
         ui.strong("Eye");
@@ -202,10 +200,10 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                 }
             }
             if began {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if changed {
-                answers.push(Command::Eye(view as AnyView, cache.gesture));
+                answers.push(Command::Eye(view, *gesture));
             }
         });
     });

@@ -11,9 +11,9 @@ use crate::drawing::words::capitalized;
 pub fn subject_name(state: &State, subject: Subject) -> String {
     let Some(stage) = state.staged() else { return "nothing".into() };
     match subject {
-        Subject::Prim(p) => format!("{} {p}", stage.prim_name()),
+        Subject::Prim(p) => format!("{} {p}", stage.scene().prim_name()),
         Subject::Node(n) => format!("node {n}"),
-        Subject::Object(o) => format!("object {}", stage.object_name(o)),
+        Subject::Object(o) => format!("object {}", stage.scene().object_name(o)),
         Subject::Plane(i) => format!("plane {i} of the frustum"),
         Subject::Eye => "the Eye".into(),
         Subject::None => "nothing".into(),
@@ -41,8 +41,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.horizontal_wrapped(|ui| {
             ui.strong(capitalized(&subject_name(state, state.selection)));
             if let Subject::Prim(p) = state.selection {
-                let object = stage.object_of(p);
-                let name = stage.object_name(object);
+                let object = stage.scene().object_of(p);
+                let name = stage.scene().object_name(object);
                 if !name.is_empty() && ui.link(name).on_hover_text("Select the object").clicked() {
                     answers.push(Command::Select(Subject::Object(object)));
                 }
