@@ -26,7 +26,7 @@ impl AnyStage {
     pub fn scene(&self) -> AnyScene {
         each!(self, s => Either(s.scene.clone()))
     }
-    /// Sets the Eye, if it is of this space and can see. Says whether it was.
+    /// Sets the Eye if it is of this space and can see; returns whether it did.
     pub fn set_view(&mut self, view: &AnyView) -> bool {
         match (self, view) {
             (Either::Flat(s), Either::Flat(v)) if v.eye.fault().is_none() => s.view = *v,

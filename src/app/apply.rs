@@ -3,7 +3,7 @@
 use super::any::AnyStage;
 use super::command::{Action, Command};
 use super::open::AnyOpened;
-use super::session::Session;
+use super::session::{Session, write_file};
 use super::shown::{Breakpoint, Dialog, Layout, Surface, Theme};
 use super::stage::Stage;
 use super::state::{Effect, State};
@@ -16,7 +16,7 @@ use crate::geometry::{Either, each};
 const SELECTIONS: usize = 200;
 
 impl State {
-    /// Does what is asked.
+    /// Carries out a command.
     pub fn apply(&mut self, command: impl Into<Command>) {
         match command.into() {
             Command::Do(action) => self.act(action),
@@ -74,7 +74,7 @@ impl State {
         self.refresh();
     }
 
-    /// Brings what is derived up to date.
+    /// Updates what is derived from the rest: the rows of the event tree.
     pub(super) fn refresh(&mut self) {
         if let Some(stage) = &self.stage {
             self.outline.refresh(stage.get(), self.detail, &self.filter);
@@ -164,7 +164,7 @@ impl State {
         }
     }
 
-    /// Actions of the menu Edit.
+    /// Carries out an action of the menu Edit; returns whether it was one.
     fn edit(&mut self, action: Action) -> bool {
         match action {
             Action::Undo | Action::Redo => self.undo(action == Action::Undo),
@@ -233,7 +233,7 @@ impl State {
         true
     }
 
-    /// Actions of the menus View and Help.
+    /// Carries out an action of the menus View and Help; returns whether it was one.
     fn show(&mut self, action: Action) -> bool {
         let shown = &mut self.shown;
         match action {
@@ -317,7 +317,7 @@ impl State {
         }
     }
 
-    /// Begins a flight, or ends it: a path of the stage, and a view file in the working folder.
+    /// Begins a flight, or ends it: its views become a path of the stage, and a view file.
     fn fly(&mut self) {
         let Some(stage) = &mut self.stage else { return };
         let flown = each!(stage, s => s.fly());
@@ -326,11 +326,9 @@ impl State {
                 .tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
         };
         let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
-        let path = format!(
-            "{}-flight.views.json",
-            self.staged().map_or("scene", |s| s.scene().name()).replace(['/', '\\', ' '], "-")
-        );
-        match super::session::write_file(&path, text.as_bytes()) {
+        let scene = self.staged().map_or("scene", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
+        let path = self.path_of(&format!("{scene}-flight.views.json"));
+        match write_file(&path, text.as_bytes()) {
             Ok(()) => {
                 self.tell(format!("The flight of {frames} views is a path now, and was written to {path}."))
             }
@@ -398,7 +396,7 @@ impl State {
         self.worker.ask("Culling", Job::Record(request));
     }
 
-    /// Takes in what the worker has finished. Says whether anything changed.
+    /// Takes in what the worker has finished; returns whether anything changed.
     pub fn poll(&mut self) -> bool {
         self.take(false)
     }

@@ -1,4 +1,4 @@
-//! Everything that can be asked of the explorer. An [`Action`] is menu item, palette entry, shortcut,
+//! Everything that the explorer can do. An [`Action`] is menu item, palette entry, shortcut,
 //! tooltip and test name at once; a [`Command`] is an action or something with operands.
 
 use super::any::AnyView;
@@ -58,7 +58,7 @@ pub struct Info {
 
 macro_rules! actions {
     ($($menu:ident $action:ident $name:literal $title:literal [$($key:literal),*] $help:literal;)*) => {
-        /// Something that can be asked for without operands.
+        /// A command without operands.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Action {
             $(#[doc = $help] $action,)*
@@ -216,7 +216,7 @@ impl Action {
     }
 }
 
-/// Something that is asked of the explorer.
+/// A command to the explorer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Without operands.

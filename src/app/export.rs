@@ -15,7 +15,7 @@ use crate::render::{self, PngSize, SvgOptions};
 const WIDTH_PT: f32 = 490.0;
 /// Resolution of PNG files, for print.
 const DPI: f32 = 300.0;
-/// Scenes of space up to so many triangles become vectors; larger ones need pixels.
+/// Scenes of space with up to this many triangles become vectors; larger ones need pixels.
 pub const VECTOR_PRIMS: usize = 5000;
 /// Longest figure file that is searched for a session, bytes.
 const LIMIT_BYTES: u64 = 256 << 20;
@@ -67,7 +67,7 @@ impl State {
         Some(page.compose(&content))
     }
 
-    /// Writes the present picture as `svg`, `pdf` or `png` into the working folder and says where.
+    /// Writes the picture on screen as `svg`, `pdf` or `png` into [`State::folder`], and reports where.
     pub fn export(&mut self, format: &str, aspect: f32, pixels: Option<Pixels>) {
         let Some(drawing) = self.figure(aspect, pixels) else {
             return self.fail("There is nothing to export yet.");
@@ -84,7 +84,7 @@ impl State {
             _ => render::png(&drawing, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
         };
         let scene = self.staged().map_or("figure", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
-        let path = format!("{scene}-{}-step-{}.{format}", self.method, self.step);
+        let path = self.path_of(&format!("{scene}-{}-step-{}.{format}", self.method, self.step));
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {
             Ok(()) => self.tell(format!("The figure was written to {path}.")),

@@ -63,7 +63,7 @@ impl Filter {
     pub fn is_empty(&self) -> bool {
         self.terms.is_empty()
     }
-    /// The filter with what depends on the film looked up; ask it once a film.
+    /// Binds the filter to a film, looking up once what depends on it.
     pub fn on<'a>(&'a self, scene: &'a dyn SceneFacts, film: Footage<'a>) -> Applied<'a> {
         let ranges = self.terms.iter().map(|(_, term)| term.range(film)).collect();
         Applied { filter: self, scene, film, ranges }
@@ -95,7 +95,7 @@ impl Term {
             ))),
         }
     }
-    /// Events between entering and leaving a node.
+    /// The events from entering the node of `under:` to leaving it.
     fn range(&self, film: Footage<'_>) -> Option<(usize, usize)> {
         let Self::UnderNode(node) = self else { return None };
         let node = Some(NodeId(*node)).filter(|n| n.at() < film.node_count())?;
@@ -162,7 +162,7 @@ pub fn verdict_of(event: Event) -> Option<Verdict> {
     event.verdict()
 }
 
-/// Kind of an event, without making its operands where that can be avoided.
+/// Kind of an event; its operands are made only where it is a note.
 pub fn kind_name(reel: &dyn Reel, at: usize) -> &'static str {
     match reel.events()[at] {
         Event::FrameBegan => "FrameBegan",
@@ -176,7 +176,7 @@ pub fn kind_name(reel: &dyn Reel, at: usize) -> &'static str {
     }
 }
 
-/// What an event is about; of evidence, what it was gathered about.
+/// The node or primitive that an event or a note is about.
 pub fn subject_at(reel: &dyn Reel, at: usize) -> Subject {
     let Some(event) = reel.events().get(at) else { return Subject::None };
     match (event, subject(event)) {

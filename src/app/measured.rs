@@ -6,10 +6,10 @@ use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
 use crate::method::Settings;
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 
-/// Frames a scene: few enough to wait for.
+/// Frames in each scene: few enough to wait for.
 const FRAMES: usize = 96;
 
-/// What is asked about tables.
+/// What to do with the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tables {
     /// Measures the table with this name.

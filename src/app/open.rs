@@ -99,20 +99,20 @@ fn example(path: &Path) -> Example {
     let (mut name, mut summary) = (title(&stem), format!("{space}."));
     if is_flat && std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() < DESCRIPTION_BYTES) {
         let text = std::fs::read_to_string(path).unwrap_or_default();
-        let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        let file: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
         let word =
-            |key: &str| said.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
+            |key: &str| file.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
         name = word("title").unwrap_or(name);
         summary = word("teaches").unwrap_or(summary);
     } else if let Some(line) = path.parent().and_then(|p| std::fs::read_to_string(p.join("SOURCE.txt")).ok())
     {
-        let told = line
+        let about = line
             .lines()
             .map(str::trim)
             .find(|l| !l.is_empty() && !l.starts_with("Name:"))
             .unwrap_or_default();
-        let told = told.split_once(": ").map_or(told, |(_, rest)| rest);
-        summary = format!("{space}. {}", told.split([',', ';', '(']).next().unwrap_or_default().trim());
+        let about = about.split_once(": ").map_or(about, |(_, rest)| rest);
+        summary = format!("{space}. {}", about.split([',', ';', '(']).next().unwrap_or_default().trim());
     }
     Example { title: name, summary, source }
 }

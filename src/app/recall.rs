@@ -1,4 +1,4 @@
-//! Starting with what was asked for or was open last, and saving it.
+//! Starting with what the command line names or what was open last, and saving it.
 
 use super::any::ViewRecord;
 use super::command::{Action, Command};
@@ -55,7 +55,7 @@ impl State {
         }
     }
 
-    /// Opens what a session says.
+    /// Opens the scene of a session; the rest follows when it is loaded.
     pub fn restore(&mut self, session: Session) {
         self.recall_look(&session);
         if session.scene.is_empty() {
@@ -125,7 +125,7 @@ impl State {
         self.step = session.step.min(end);
     }
 
-    /// Starts with what was asked for, or with what was open last, or with nothing.
+    /// Starts with what the command line names, or else with what was open last, or else with nothing.
     pub fn start(&mut self, start: &Start, last: Option<Session>) {
         let last = last.filter(|_| !start.fresh);
         if let Some(key) = &start.method {

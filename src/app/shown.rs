@@ -9,10 +9,10 @@ pub use crate::trace::Detail;
 /// Joins changes that belong together, such as those of one drag, into one step of undo; 0 joins nothing.
 pub type Gesture = u64;
 
-/// What is asked in front of everything else.
+/// The dialog in front of everything else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dialog {
-    /// Nothing.
+    /// No dialog.
     #[default]
     None,
     /// The command palette.

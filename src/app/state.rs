@@ -1,6 +1,8 @@
 //! Everything that the explorer knows.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
@@ -11,8 +13,9 @@ use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Footage, Staged};
 use super::undo::History;
-use super::worker::{Busy, Worker};
+use super::worker::{Busy, FILM_CAP_EVENTS, Worker};
 use crate::drawing::Subject;
+use crate::figure::Look;
 use crate::method::{Event, Settings};
 
 /// Something that the person should read.
@@ -24,7 +27,7 @@ pub struct Notice {
     pub text: String,
 }
 
-/// What the window has to do, as the state cannot.
+/// What only the window can do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Write the picture on screen as `svg`, `pdf` or `png`.
@@ -75,14 +78,14 @@ pub struct State {
     pub is_eye_locked: bool,
     /// What is shown and how.
     pub shown: Shown,
-    /// What is asked in front of everything else.
+    /// The dialog in front of everything else.
     pub dialog: Dialog,
     /// Filter of the event tree.
     pub filter: String,
     /// Rows of the event tree.
     pub outline: Outline,
     /// The table that was measured last.
-    pub measured: Option<std::sync::Arc<Measured>>,
+    pub measured: Option<Arc<Measured>>,
     /// Messages, the newest last.
     pub notices: Vec<Notice>,
     /// What the window has to do.
@@ -91,12 +94,19 @@ pub struct State {
     pub is_dirty: bool,
     /// The session file.
     pub session_path: Option<String>,
+    /// Where files go whose names the explorer makes; empty for the working folder.
+    pub folder: PathBuf,
     pub(super) history: History,
     pub(super) worker: Worker,
+    /// The session that is being opened, until its scene and film are there.
     pub(super) recall: Option<Session>,
+    /// Events that a film keeps.
     pub(super) film_cap: usize,
-    pub(super) owed: f32,
+    /// Events that playing has yet to show, less than one after each tick.
+    pub(super) pending: f32,
+    /// Number of the scene that was put on stage last.
     pub(super) serial: u64,
+    /// Commands of the start that are still to run.
     pub(super) commands: Vec<String>,
 }
 
@@ -134,11 +144,12 @@ impl State {
             effects: vec![],
             is_dirty: false,
             session_path: None,
+            folder: PathBuf::new(),
             history: History::default(),
             worker: Worker::start(),
             recall: None,
-            film_cap: super::worker::FILM_CAP_EVENTS,
-            owed: 0.0,
+            film_cap: FILM_CAP_EVENTS,
+            pending: 0.0,
             serial: 0,
             commands: vec![],
         }
@@ -201,9 +212,9 @@ impl State {
         }
     }
     /// What is on screen in a picture of this state.
-    pub fn look(&self) -> crate::figure::Look {
+    pub fn look(&self) -> Look {
         let s = &self.shown;
-        crate::figure::Look {
+        Look {
             prims: s.prims,
             nodes: s.nodes,
             eye: s.eye,
@@ -212,11 +223,11 @@ impl State {
             current: self.current_subject(),
         }
     }
-    /// Tells the person something.
+    /// Shows the person a message.
     pub fn tell(&mut self, text: impl Into<String>) {
         self.notice(false, text.into());
     }
-    /// Tells the person that something failed.
+    /// Shows the person what failed.
     pub fn fail(&mut self, text: impl Into<String>) {
         self.notice(true, text.into());
     }
@@ -227,6 +238,10 @@ impl State {
         // Only the newest are worth the room.
         let extra = self.notices.len().saturating_sub(4);
         self.notices.drain(..extra);
+    }
+    /// The path of a file whose name the explorer makes.
+    pub(super) fn path_of(&self, name: &str) -> String {
+        self.folder.join(name).to_string_lossy().into_owned()
     }
     /// Whether there is anything to undo, and to redo.
     pub fn can_undo(&self) -> (bool, bool) {

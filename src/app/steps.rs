@@ -21,7 +21,7 @@ impl State {
     }
 
     /// The step that an action leads to; `None` if the action is no move or leads nowhere.
-    fn led_by(&self, action: Action) -> Option<usize> {
+    fn target_of(&self, action: Action) -> Option<usize> {
         let Footage { reel, moves, .. } = self.film()?;
         let (events, step, detail) = (reel.events(), self.step, self.detail);
         let at = self.current();
@@ -64,7 +64,7 @@ impl State {
         }
     }
 
-    /// Nearest step on or back whose event `wanted` accepts.
+    /// The nearest step, forward or back, whose event `wanted` accepts.
     fn seek(&self, forward: bool, wanted: impl Fn(usize) -> bool) -> Option<usize> {
         if forward {
             (self.step..self.len()).find(|&i| wanted(i)).map(|i| i + 1)
@@ -85,12 +85,12 @@ impl State {
         })
     }
 
-    /// Does what an action of the menu Step asks. Says whether the action was one.
+    /// Carries out an action of the menu Step; returns whether it was one.
     pub(super) fn do_step(&mut self, action: Action) -> bool {
         match action {
             Action::PlayPause => {
                 self.is_playing = !self.is_playing && !self.is_empty();
-                self.owed = 0.0;
+                self.pending = 0.0;
                 if self.is_playing && self.step == self.len() {
                     self.go_to(0);
                 }
@@ -120,7 +120,7 @@ impl State {
             }
             _ if action.info().menu == super::command::Menu::Step => {
                 self.is_playing = false;
-                match self.led_by(action) {
+                match self.target_of(action) {
                     Some(step) => self.go_to(step),
                     None => self.tell(format!("{}: there is none.", action.info().title)),
                 }
@@ -159,14 +159,14 @@ impl State {
         }
     }
 
-    /// Time passes: a playing film moves on. Says whether it plays still.
+    /// Moves a playing film on by some seconds; returns whether it still plays.
     pub fn tick(&mut self, seconds: f32) -> bool {
         if !self.is_playing || self.is_empty() {
             return false;
         }
-        self.owed += seconds.clamp(0.0, 1.0) * self.speed;
-        let whole = self.owed as usize;
-        self.owed -= whole as f32;
+        self.pending += seconds.clamp(0.0, 1.0) * self.speed;
+        let whole = self.pending as usize;
+        self.pending -= whole as f32;
         let Some(Footage { reel, moves, .. }) = self.film() else { return false };
         let mut step = self.step;
         for _ in 0..whole {

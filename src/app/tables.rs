@@ -62,7 +62,7 @@ impl State {
             "pdf" => render::pdf(chart, Theme::Print, Some(&recipe)),
             _ => render::png(chart, Theme::Print, PngSize::Dpi(DPI), Some(&recipe)),
         };
-        let path = format!("{}.{format}", report.name);
+        let path = self.path_of(&format!("{}.{format}", report.name));
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {
             Ok(()) => self.tell(format!("The table was written to {path}.")),

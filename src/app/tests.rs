@@ -43,10 +43,12 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
         state.apply(Command::Eye(Either::Flat(view), 7));
         flown.push(view);
     }
+    state.folder = std::env::temp_dir().join(format!("cullscope-flight-{}", std::process::id()));
+    std::fs::create_dir_all(&state.folder).expect("a folder of our own");
     state.apply(Action::Flight);
-    let name = format!("{FLAT}-flight.views.json");
-    let text = std::fs::read_to_string(&name).expect("a view file");
-    std::fs::remove_file(&name).expect("a file of our own");
+    let text = std::fs::read_to_string(state.folder.join(format!("{FLAT}-flight.views.json")));
+    std::fs::remove_dir_all(&state.folder).expect("a folder of our own");
+    let text = text.expect("a view file");
     let Some(Either::Flat(stage)) = &state.stage else { panic!("a flat stage") };
     assert_eq!(
         stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())),

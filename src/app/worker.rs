@@ -21,7 +21,7 @@ use crate::raster::Drawable;
 use crate::scene::{AnyScene, Progress, Scene};
 use crate::trace::{Moves, Stamps};
 
-/// Events that a film keeps: 10 million, about 160 MB, before it says that it is capped.
+/// Events that a film keeps: 10 million, about 160 MB, before it is capped.
 pub const FILM_CAP_EVENTS: usize = 10_000_000;
 
 /// A film to record.
@@ -175,6 +175,7 @@ impl Worker {
             } else {
                 self.done.try_recv().ok()?
             };
+            // Answers to earlier requests are dropped.
             if got.0 == self.asked && self.open.is_some() {
                 self.open = None;
                 return Some(got.1);
@@ -235,6 +236,7 @@ impl Bench {
     }
 }
 
+/// Records a film, on the index that is ready if it still fits.
 fn record<S: Methods + Drawable>(
     ready: &mut Option<Ready<S>>,
     request: Request<S>,
@@ -265,6 +267,7 @@ fn record<S: Methods + Drawable>(
         }
     }
     let Some(Ready { run, .. }) = ready else { return Done::Cancelled };
+    // A film does not depend on what was looked at before: memory is built anew from the path's earlier views.
     ticket.report(0.5, "recording");
     run.forget();
     if run.remembers() {

@@ -121,6 +121,7 @@ fn interact(
             camera.zoom_flat(factor, world(at));
         }
     }
+    // A drag holds what lies under the point where the button went down, not where the drag was noticed.
     if response.drag_started() {
         let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
         let primary = response.dragged_by(egui::PointerButton::Primary) && !ui.input(|i| i.modifiers.shift);
@@ -141,6 +142,7 @@ fn interact(
                 let toward = (world(at) - view.eye.position).normalize_or(view.eye.forward());
                 view.eye.target = view.eye.position + toward * length;
             }
+            // Nothing is held: the picture itself is.
             _ => camera.slide(-by),
         }
         if hand.held.is_some() && delta != egui::Vec2::ZERO {

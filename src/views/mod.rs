@@ -1,6 +1,6 @@
 //! The explorer's window: panels that read [`State`] and answer in commands.
 //!
-//! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds what the person asked for.
+//! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds the commands that the person gives.
 //! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`cache::Cache`], and each
 //! panel is given its part.
 
@@ -36,7 +36,7 @@ use crate::app::{Action, Command, State};
 use crate::drawing::{Drawing, Mark};
 use crate::figure;
 
-/// What a person asked for in a frame.
+/// The commands that the person gives in a frame.
 pub type Answers = Vec<Command>;
 
 /// A button with a sign for an action.

@@ -21,13 +21,17 @@ pub struct App {
     tree: Tree<Pane>,
     keys: Keys,
     start: Start,
+    /// Theme, layout and scale (in thousandths) that egui was set up for.
     dressed: Option<(Theme, Layout, u32)>,
     title: String,
     is_fullscreen: bool,
+    /// Frames in a row in which nothing was waited for.
     quiet_frames: u32,
     is_shot: bool,
 }
 
+/// Frames without work before a screenshot is taken.
+const QUIET_FRAMES: u32 = 8;
 /// Keys in eframe's storage.
 const LAYOUT: &str = "layout-1";
 const SESSION: &str = "session-1";
@@ -96,8 +100,8 @@ impl App {
         dialogs::show(state, &mut self.cache.typing, ui.ctx(), answers);
     }
 
-    /// What the hook of the keys needs to know before the next frame.
-    fn tell_keys(&mut self, ctx: &egui::Context) {
+    /// Prepares the hook of the keys for the next frame, whose keys it sees before any panel.
+    fn prepare_keys(&mut self, ctx: &egui::Context) {
         let mut inbox = self.keys.inbox();
         inbox.enabled = Action::ALL.iter().map(|i| i.action).filter(|&a| self.state.can(a)).collect();
         inbox.is_picture_focused = self.cache.hand.is_picture_focused;
@@ -110,9 +114,10 @@ impl App {
         self.cache.hand.is_picture_focused = false;
     }
 
+    /// Commands that come from outside the panels: keys, dropped files, the system's dialog.
     fn outside_world(&mut self, ctx: &egui::Context) -> Answers {
         let mut answers: Answers =
-            std::mem::take(&mut self.keys.inbox().asked).into_iter().map(Command::from).collect();
+            std::mem::take(&mut self.keys.inbox().pressed).into_iter().map(Command::from).collect();
         let dropped =
             ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_string_lossy().into_owned()));
         answers.extend(dropped.map(Command::Open));
@@ -154,13 +159,13 @@ impl App {
         gpu.filter(|_| large).and_then(super::space::pixels)
     }
 
-    /// Writes the picture that the start asked for, once everything has been quiet for some frames, and
-    /// quits.
+    /// Writes the screenshot of the command line once the window has been quiet for some frames, and quits.
     fn shoot(&mut self, ctx: &egui::Context) {
         let Some(shot) = self.start.shot.clone().filter(|_| !self.is_shot) else { return };
         self.quiet_frames = if self.state.busy().is_none() { self.quiet_frames + 1 } else { 0 };
         ctx.request_repaint();
-        if self.quiet_frames < 8 {
+        // Layout and textures settle over some frames after the last change.
+        if self.quiet_frames < QUIET_FRAMES {
             return;
         }
         self.is_shot = true;
@@ -183,11 +188,13 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         self.state.poll();
         self.dress(&ctx);
+        // Keys and files come before the panels, which then show what they did in this frame.
         let mut answers = self.outside_world(&ctx);
         for command in answers.drain(..) {
             self.state.apply(command);
         }
         self.panels(ui, frame, &mut answers);
+        // What the panels answer is not shown before the next frame.
         for command in answers {
             self.state.apply(command);
             ctx.request_repaint();
@@ -196,7 +203,7 @@ impl eframe::App for App {
         if self.state.tick(ctx.input(|i| i.stable_dt)) {
             ctx.request_repaint();
         }
-        self.tell_keys(&ctx);
+        self.prepare_keys(&ctx);
         let title = self
             .state
             .staged()
