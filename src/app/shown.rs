@@ -1,4 +1,4 @@
-//! The words of the explorer that commands, state, undo and session share: what is shown and how, where runs stop.
+//! The words that commands, state, undo and session share: what is shown and how, where runs stop.
 
 use crate::geometry::{NodeId, PrimId};
 use crate::method::Verdict;

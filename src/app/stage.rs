@@ -96,6 +96,21 @@ impl<S: Space> Stage<S> {
             flight.push(self.view);
         }
     }
+    /// The box of a primitive, an object or a node; `None` of anything else.
+    pub fn bounds_of(&self, subject: Subject) -> Option<Aabb<S::Vector>> {
+        match subject {
+            Subject::Prim(prim) => Some(self.scene.prim_bounds(prim)),
+            Subject::Object(object) => {
+                let boxes = self.prims_of(object).map(|p| self.scene.prim_bounds(p));
+                Some(boxes.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b)))
+            }
+            Subject::Node(node) => self.hierarchy().map(|h| h.bounds(node)),
+            _ => None,
+        }
+    }
+    fn prims_of(&self, object: ObjectId) -> impl Iterator<Item = PrimId> + '_ {
+        self.scene.live().iter().copied().filter(move |&p| self.scene.object_of(p) == object)
+    }
     /// The index of the film.
     fn hierarchy(&self) -> Option<&dyn Hierarchy<S>> {
         self.recorded.as_ref().map(|r| r.film.hierarchy())
@@ -313,15 +328,11 @@ impl<S: Methods> Stage<S> {
         ]
     }
     fn object_facts(&self, object: ObjectId) -> Vec<(&'static str, String)> {
-        let prims: Vec<_> =
-            self.scene.live().iter().filter(|&&p| self.scene.object_of(p) == object).collect();
-        let bounds =
-            prims.iter().fold(Aabb::empty(), |b: Aabb<S::Vector>, &&p| b.union(self.scene.prim_bounds(p)));
         let mut facts = vec![
             ("name", self.scene.object_name(object).to_owned()),
-            ("holds", format!("{} {}s", prims.len(), S::PRIM)),
+            ("holds", format!("{} {}s", self.prims_of(object).count(), S::PRIM)),
         ];
-        if !bounds.is_empty() {
+        if let Some(bounds) = self.bounds_of(Subject::Object(object)).filter(|b| !b.is_empty()) {
             facts.push(("box", Self::box_text(&bounds)));
         }
         facts

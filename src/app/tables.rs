@@ -1,5 +1,5 @@
-//! The papers' tables in the explorer: an experiment runs on the worker, and its table and chart stay until the next
-//! one.
+//! The papers' tables in the explorer: an experiment runs on the worker, and its table and chart stay until
+//! the next one.
 
 use std::sync::Arc;
 

@@ -267,7 +267,7 @@ fn record<S: Methods + Drawable>(
         }
     }
     let Some(Ready { run, .. }) = ready else { return Done::Cancelled };
-    // A film does not depend on what was looked at before: memory is built anew from the path's earlier views.
+    // A film does not depend on what was looked at before: the path's earlier views make the memory anew.
     ticket.report(0.5, "recording");
     run.forget();
     if run.remembers() {

@@ -9,8 +9,8 @@ pub enum Either<F, S> {
     Solid(S),
 }
 
-/// Evaluates one expression on a thing of either space; `Either(…)` around the expression keeps the answer in its
-/// space.
+/// Evaluates one expression on a thing of either space; `Either(…)` around the expression keeps the answer in
+/// its space.
 macro_rules! each {
     ($either:expr, $it:pat => Either($body:expr)) => {
         match $either {

@@ -149,7 +149,7 @@ impl Stamps {
         let stamp = self.prims[prim.at()];
         if stamp.step as usize <= step { State::Decided(stamp.verdict) } else { State::Unseen }
     }
-    /// The step from which on a primitive's decision holds, which is what "jump to why" jumps to, and the decision.
+    /// The step from which on a primitive's decision holds (what "jump to why" jumps to), and the decision.
     pub fn prim_decision(&self, prim: PrimId) -> Option<(usize, Verdict)> {
         self.prims[prim.at()].decision()
     }

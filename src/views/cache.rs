@@ -1,5 +1,5 @@
-//! What only the screen needs, from frame to frame: pictures drawn once, half-typed text, what the pointer holds. Each
-//! panel is given its own part.
+//! What only the screen needs, from frame to frame: pictures drawn once, half-typed text, what the pointer
+//! holds. Each panel is given its own part.
 
 use super::handles::Hand;
 use super::{canvas, dialogs, events, pictures, space, strip, timeline};

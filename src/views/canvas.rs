@@ -86,17 +86,10 @@ fn sheet(state: &State, rect: egui::Rect) -> Sheet {
 
 /// What `F` brings into the picture.
 fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
-    let scene = &stage.scene;
-    match (state.selection, &stage.recorded) {
-        (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => scene
-            .live()
-            .iter()
-            .filter(|&&p| scene.object_of(p) == o)
-            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
-        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
-        (Subject::Eye, _) => Aabb::of([stage.view.eye.position, stage.view.eye.target]),
-        _ => scene.bounds().with(stage.view.eye.position),
+    let eye = &stage.view.eye;
+    match state.selection {
+        Subject::Eye => Aabb::of([eye.position, eye.target]),
+        selected => stage.bounds_of(selected).unwrap_or_else(|| stage.scene.bounds().with(eye.position)),
     }
 }
 

@@ -18,20 +18,13 @@ const AIM: f32 = 0.12;
 
 /// What `F` brings into the picture.
 pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
-    let scene = &stage.scene;
-    match (state.selection, &stage.recorded) {
-        (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => scene
-            .live()
-            .iter()
-            .filter(|&&p| scene.object_of(p) == o)
-            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
-        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
-        (Subject::Eye, _) => {
-            let around = Vec3::splat(scene.bounds().diagonal() * 0.1);
-            Aabb { min: stage.view.eye.position - around, max: stage.view.eye.position + around }
+    let (whole, eye) = (stage.scene.bounds(), stage.view.eye.position);
+    match state.selection {
+        Subject::Eye => {
+            let around = Vec3::splat(whole.diagonal() * 0.1);
+            Aabb { min: eye - around, max: eye + around }
         }
-        _ => scene.bounds(),
+        selected => stage.bounds_of(selected).unwrap_or(whole),
     }
 }
 
@@ -110,7 +103,7 @@ impl Outside<'_> {
         }
         if response.dragged() {
             let delta = Vec2::new(response.drag_delta().x, response.drag_delta().y);
-            // World length of a point of the screen at the Eye's depth, so that the Eye stays under the pointer.
+            // World units of a screen point at the Eye's depth, so that the Eye stays under the pointer.
             let unit = 2.0 * self.depth * (self.view.eye.fov * 0.5).tan() / height;
             let by = observer.rotation() * Vec3::new(delta.x * unit, -delta.y * unit, 0.0);
             match hand.held {
