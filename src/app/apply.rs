@@ -5,7 +5,7 @@ use super::command::{Action, Command};
 use super::open::AnyOpened;
 use super::session::{Session, write_file};
 use super::shown::{Breakpoint, Dialog, Layout, Surface, Theme};
-use super::stage::Stage;
+use super::stage::{Flight, Stage};
 use super::state::{Effect, State};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
@@ -320,12 +320,15 @@ impl State {
     /// Begins a flight, or ends it: its views become a path of the stage, and a view file.
     fn fly(&mut self) {
         let Some(stage) = &mut self.stage else { return };
-        let flown = each!(stage, s => s.fly());
-        let Some((frames, text)) = flown else {
-            return self
-                .tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
+        let (frames, text) = match each!(stage, s => s.fly()) {
+            Flight::Begun => {
+                return self.tell(
+                    "The flight is recorded: move the Eye, and choose the same command again to end it.",
+                );
+            }
+            Flight::Dropped => return self.tell("The flight is dropped: the Eye was not moved."),
+            Flight::Ended { frames, text } => (frames, text),
         };
-        let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
         let scene = self.staged().map_or("scene", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
         let path = self.path_of(&format!("{scene}-flight.views.json"));
         match write_file(&path, text.as_bytes()) {

@@ -49,6 +49,21 @@ pub struct Stage<S: Space> {
     flight: Option<Vec<View<S>>>,
 }
 
+/// What became of a flight.
+pub enum Flight {
+    /// It is recorded from now on.
+    Begun,
+    /// The Eye was not moved, so there is nothing to keep.
+    Dropped,
+    /// It is a path now.
+    Ended {
+        /// Number of views, at least 2.
+        frames: usize,
+        /// The view file.
+        text: String,
+    },
+}
+
 impl<S: Space> Stage<S> {
     /// Puts a scene on stage, with its own view paths or one view that frames it.
     pub fn new(scene: Arc<Scene<S>>, own: Option<ViewPath<S>>, serial: u64) -> Self {
@@ -71,22 +86,22 @@ impl<S: Space> Stage<S> {
         self.frame = frame.min(self.views().len() - 1);
         self.view = self.views()[self.frame];
     }
-    /// Begins a flight at the present view (`None`), or ends it: the number of its views, and the view file's
-    /// text if the Eye was moved at all. It is then the last path, and followed from its first view.
-    pub fn fly(&mut self) -> Option<(usize, Option<String>)> {
+    /// Begins a flight at the present view, or ends it. It is then the last path, and followed from its first
+    /// view.
+    pub fn fly(&mut self) -> Flight {
         let Some(views) = self.flight.take() else {
             self.flight = Some(vec![self.view]);
-            return None;
+            return Flight::Begun;
         };
         let frames = views.len();
         if frames < 2 {
-            return Some((frames, None));
+            return Flight::Dropped;
         }
         let path = ViewPath { name: "flight".into(), views };
         let text = write_views(&path, self.scene.origin());
         self.paths.push(path);
         self.go(self.paths.len() - 1, 0);
-        Some((frames, Some(text)))
+        Flight::Ended { frames, text }
     }
     /// Adds the present view to a flight that is being recorded, if it is a new one.
     pub fn keep_flying(&mut self) {
