@@ -76,10 +76,10 @@ fn edit(
             let slider = egui::Slider::new(&mut v, range.clone()).suffix(knob.unit);
             let response = ui.add(slider).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if response.changed() {
-                answers.push(set(v.to_string(), cache.gesture));
+                answers.push(set(v.to_string(), *gesture));
             }
         }
         KnobValue::Choice(chosen, options) => {
