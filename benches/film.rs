@@ -69,7 +69,7 @@ fn main() {
         times[times.len() - 1],
         times.len()
     );
-    let decided = scene.live().iter().filter(|p: &&PrimId| stamps.decided_at(**p).is_some()).count();
+    let decided = scene.live().iter().filter(|p: &&PrimId| stamps.prim_decision(**p).is_some()).count();
     let lines = events.iter().filter(|e| matches!(e, Event::Line(_))).count();
     println!("hash {:016x}", hash ^ (decided as u64) << 20 ^ lines as u64);
 }

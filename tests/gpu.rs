@@ -217,7 +217,7 @@ fn the_step_of_a_decision_is_the_first_that_shows_it() {
         .find(|p| stamps.prims()[p.at()].verdict == Verdict::Visible)
         .copied()
         .expect("something is kept");
-    let step = stamps.decided_at(kept).expect("it was decided");
+    let step = stamps.prim_decision(kept).map(|d| d.0).expect("it was decided");
     let blue = |step| {
         count(
             &stage.picture(&observer(), &SpaceStyle { undecided: Shown::Not, ..plain(step) }),

@@ -26,7 +26,7 @@ fn window(scene: &str) -> Harness<'static, App> {
     let start = start(scene);
     let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).build_eframe(move |cc| App::new(cc, start));
     settle(&mut h);
-    assert!(h.state().state.staged().is_some_and(|s| s.has_film()), "{:?}", h.state().state.notices);
+    assert!(h.state().state.film().is_some(), "{:?}", h.state().state.notices);
     h
 }
 
@@ -117,7 +117,7 @@ fn a_click_in_the_picture_selects() {
     press(&mut h, Modifiers::NONE, Key::End);
     let rect = h.get_by_label_contains("Observer view.").rect();
     let state = &h.state().state;
-    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(cullscope::geometry::Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let prim = stage.scene.live()[200];
     let middle = stage.scene.prim_points(prim).fold(glam::Vec2::ZERO, |sum, p| sum + p * 0.5);
     let scale = rect.height() / (2.0 * state.observer.distance);
@@ -140,7 +140,7 @@ fn a_click_in_the_picture_selects() {
 fn flat_eye(h: &Harness<'_, App>) -> (View<Flat>, egui::Pos2, f32) {
     let rect = h.get_by_label_contains("Observer view.").rect();
     let state = &h.state().state;
-    let Some(cullscope::app::Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(cullscope::geometry::Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let scale = rect.height() / (2.0 * state.observer.distance);
     let eye = stage.view.eye.position;
     (
@@ -234,7 +234,7 @@ fn a_broken_file_shows_an_error_and_keeps_the_scene() {
     press(&mut h, Modifiers::NONE, Key::Enter);
     h.get_by_label_contains("Error: no/such/scene.obj");
     let state = &h.state().state;
-    assert_eq!((state.staged().map(|s| s.scene_name()), state.step), (Some("freedoom_e1m1"), 1));
+    assert_eq!((state.staged().map(|s| s.scene().name()), state.step), (Some("freedoom_e1m1"), 1));
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn the_start_screen_opens_an_example() {
         .find(|n| n.accesskit_node().label().is_some_and(|l| l.contains(".json)")));
     first.expect("an example").click();
     settle(&mut h);
-    assert!(h.state().state.staged().is_some_and(|s| s.has_film()));
+    assert!(h.state().state.film().is_some());
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn both_pictures_of_space_are_drawn() {
     let mut h =
         Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
     settle(&mut h);
-    assert!(h.state().state.staged().is_some_and(|s| s.has_film()), "{:?}", h.state().state.notices);
+    assert!(h.state().state.film().is_some(), "{:?}", h.state().state.notices);
     press(&mut h, Modifiers::NONE, Key::End);
     h.remove_cursor();
     h.run_steps(2);
@@ -321,7 +321,7 @@ fn a_table_of_the_paper_is_measured_shown_and_stopped() {
     h.state_mut().state.apply(Command::Tables(Tables::Stop));
     settle(&mut h);
     let state = &h.state().state;
-    assert!(state.busy().is_none() && state.staged().is_some_and(|s| s.has_film()));
+    assert!(state.busy().is_none() && state.film().is_some());
     assert_eq!(state.measured.as_ref().map(|m| m.report.name), Some("coorg-teller-table-1"));
     click(&mut h, "Close");
     assert_eq!(h.state().state.dialog, Dialog::None);

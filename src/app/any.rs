@@ -1,36 +1,17 @@
-//! Things of either space, for code that has not asked which.
+//! The stage, the view and the film of either space, and a view as a session file keeps it.
 
 use serde::{Deserialize, Serialize};
 
 use super::stage::{Recorded, Stage, Staged};
-use crate::geometry::{Eye, Flat, Solid, Space, Vector, View};
-
-/// A thing of flatland or a thing of space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Any<F, S> {
-    /// Of flatland.
-    Flat(F),
-    /// Of space.
-    Solid(S),
-}
+use crate::geometry::{Either, Eye, Flat, Solid, Space, Vector, View, each};
+use crate::scene::AnyScene;
 
 /// A stage of either space.
-pub type AnyStage = Any<Stage<Flat>, Stage<Solid>>;
+pub type AnyStage = Either<Stage<Flat>, Stage<Solid>>;
 /// A view of either space.
-pub type AnyView = Any<View<Flat>, View<Solid>>;
+pub type AnyView = Either<View<Flat>, View<Solid>>;
 /// A recorded film of either space.
-pub type AnyRecorded = Any<Recorded<Flat>, Recorded<Solid>>;
-
-/// Runs the same expression on a thing of either space.
-macro_rules! each {
-    ($any:expr, $it:ident => $body:expr) => {
-        match $any {
-            $crate::app::Any::Flat($it) => $body,
-            $crate::app::Any::Solid($it) => $body,
-        }
-    };
-}
-pub(crate) use each;
+pub type AnyRecorded = Either<Recorded<Flat>, Recorded<Solid>>;
 
 impl AnyStage {
     /// The stage without its space.
@@ -39,16 +20,17 @@ impl AnyStage {
     }
     /// The Eye that culling uses.
     pub fn view(&self) -> AnyView {
-        match self {
-            Any::Flat(s) => Any::Flat(s.view),
-            Any::Solid(s) => Any::Solid(s.view),
-        }
+        each!(self, s => Either(s.view))
     }
-    /// Sets the Eye, if it is of this space and can see. Says whether it was.
+    /// The scene.
+    pub fn scene(&self) -> AnyScene {
+        each!(self, s => Either(s.scene.clone()))
+    }
+    /// Sets the Eye if it is of this space and can see; returns whether it did.
     pub fn set_view(&mut self, view: &AnyView) -> bool {
         match (self, view) {
-            (Any::Flat(s), Any::Flat(v)) if v.eye.fault().is_none() => s.view = *v,
-            (Any::Solid(s), Any::Solid(v)) if v.eye.fault().is_none() => s.view = *v,
+            (Either::Flat(s), Either::Flat(v)) if v.eye.fault().is_none() => s.view = *v,
+            (Either::Solid(s), Either::Solid(v)) if v.eye.fault().is_none() => s.view = *v,
             _ => return false,
         }
         true
@@ -102,8 +84,8 @@ impl ViewRecord {
     /// The view again; `None` if it could not see.
     pub fn any(&self) -> Option<AnyView> {
         match self.eye.len() {
-            2 => self.view().map(Any::Flat),
-            _ => self.view().map(Any::Solid),
+            2 => self.view().map(Either::Flat),
+            _ => self.view().map(Either::Solid),
         }
     }
 }

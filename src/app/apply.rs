@@ -1,24 +1,24 @@
 //! The only way that anything changes.
 
-use std::sync::Arc;
-
-use super::any::{Any, AnyStage, each};
+use super::any::AnyStage;
 use super::command::{Action, Command};
-use super::session::Session;
-use super::stage::Stage;
-use super::state::{Breakpoint, Dialog, Effect, Layout, State, Surface, Theme};
+use super::open::AnyOpened;
+use super::session::{Session, write_file};
+use super::shown::{Breakpoint, Dialog, Layout, Surface, Theme};
+use super::stage::{Flight, Stage};
+use super::state::{Effect, State};
 use super::undo::Wanted;
 use super::worker::{Done, Job, Request};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
+use crate::geometry::{Either, each};
 use crate::render::Format;
-use crate::scene::{AnyPath, AnyScene};
 
 /// Selections that are remembered.
 const SELECTIONS: usize = 200;
 
 impl State {
-    /// Does what is asked.
+    /// Carries out a command.
     pub fn apply(&mut self, command: impl Into<Command>) {
         match command.into() {
             Command::Do(action) => self.act(action),
@@ -76,7 +76,7 @@ impl State {
         self.refresh();
     }
 
-    /// Brings what is derived up to date.
+    /// Updates what is derived from the rest: the rows of the event tree.
     pub(super) fn refresh(&mut self) {
         if let Some(stage) = &self.stage {
             self.outline.refresh(stage.get(), self.detail, &self.filter);
@@ -101,7 +101,7 @@ impl State {
             Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
             Action::SelectCurrent => self.current_subject() != Subject::None,
             Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
-            Action::EyeHere => matches!(self.stage, Some(Any::Solid(_))) && !self.is_eye_locked,
+            Action::EyeHere => matches!(self.stage, Some(Either::Solid(_))) && !self.is_eye_locked,
             Action::Cancel => {
                 self.busy().is_some() || self.dialog != Dialog::None || !self.notices.is_empty()
             }
@@ -139,7 +139,7 @@ impl State {
                 self.selection = Subject::None;
             }
             Action::Reload => {
-                if let Some(source) = self.staged().map(|s| s.source().to_owned()) {
+                if let Some(source) = self.staged().map(|s| s.scene().source().to_owned()) {
                     self.recall = Some(self.session());
                     self.load(&source, None);
                 }
@@ -166,7 +166,7 @@ impl State {
         }
     }
 
-    /// Actions of the menu Edit.
+    /// Carries out an action of the menu Edit; returns whether it was one.
     fn edit(&mut self, action: Action) -> bool {
         match action {
             Action::Undo | Action::Redo => self.undo(action == Action::Undo),
@@ -220,7 +220,7 @@ impl State {
             Action::EyeHere => {
                 let camera = self.observer;
                 self.change(0, |s| {
-                    if let Some(Any::Solid(stage)) = &mut s.stage {
+                    if let Some(Either::Solid(stage)) = &mut s.stage {
                         let look = camera.view(1, 1).eye;
                         (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) =
                             (look.position, look.target, look.up);
@@ -235,14 +235,14 @@ impl State {
         true
     }
 
-    /// Actions of the menus View and Help.
+    /// Carries out an action of the menus View and Help; returns whether it was one.
     fn show(&mut self, action: Action) -> bool {
         let shown = &mut self.shown;
         match action {
             Action::Find => self.effects.push(Effect::FocusFilter),
             Action::FoldAll | Action::UnfoldAll => {
-                if let Some(stage) = &self.stage {
-                    self.outline.fold_all(stage.get(), action == Action::FoldAll);
+                if let Some(film) = self.stage.as_ref().and_then(|s| s.get().film()) {
+                    self.outline.fold_all(film.reel.events(), action == Action::FoldAll);
                 }
             }
             Action::FrameSelection => self.effects.push(Effect::Frame),
@@ -319,20 +319,21 @@ impl State {
         }
     }
 
-    /// Begins a flight, or ends it: a path of the stage, and a view file in the working folder.
+    /// Begins a flight, or ends it: its views become a path of the stage, and a view file.
     fn fly(&mut self) {
         let Some(stage) = &mut self.stage else { return };
-        let flown = each!(stage, s => s.fly());
-        let Some((frames, text)) = flown else {
-            return self
-                .tell("The flight is recorded: move the Eye, and choose the same command again to end it.");
+        let (frames, text) = match each!(stage, s => s.fly()) {
+            Flight::Begun => {
+                return self.tell(
+                    "The flight is recorded: move the Eye, and choose the same command again to end it.",
+                );
+            }
+            Flight::Dropped => return self.tell("The flight is dropped: the Eye was not moved."),
+            Flight::Ended { frames, text } => (frames, text),
         };
-        let Some(text) = text else { return self.tell("The flight is dropped: the Eye was not moved.") };
-        let path = format!(
-            "{}-flight.views.json",
-            self.staged().map_or("scene", |s| s.scene_name()).replace(['/', '\\', ' '], "-")
-        );
-        match super::session::write_file(&path, text.as_bytes()) {
+        let scene = self.staged().map_or("scene", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
+        let path = self.path_of(&format!("{scene}-flight.views.json"));
+        match write_file(&path, text.as_bytes()) {
             Ok(()) => {
                 self.tell(format!("The flight of {frames} views is a path now, and was written to {path}."))
             }
@@ -388,27 +389,19 @@ impl State {
     pub(super) fn record(&mut self) {
         let Some(stage) = &self.stage else { return };
         let (method, settings, cap) = (self.method.clone(), self.settings.clone(), self.film_cap);
-        macro_rules! request {
-            ($s:expr, $any:path) => {
-                $any(Request {
-                    scene: $s.scene.clone(),
-                    scene_serial: $s.serial,
-                    method,
-                    settings,
-                    before: $s.views()[..$s.frame].to_vec(),
-                    view: $s.view,
-                    cap,
-                })
-            };
-        }
-        let request = match stage {
-            Any::Flat(s) => request!(s, Any::Flat),
-            Any::Solid(s) => request!(s, Any::Solid),
-        };
+        let request = each!(stage, s => Either(Request {
+            scene: s.scene.clone(),
+            scene_serial: s.serial,
+            method,
+            settings,
+            before: s.views()[..s.frame].to_vec(),
+            view: s.view,
+            cap,
+        }));
         self.worker.ask("Culling", Job::Record(request));
     }
 
-    /// Takes in what the worker has finished. Says whether anything changed.
+    /// Takes in what the worker has finished; returns whether anything changed.
     pub fn poll(&mut self) -> bool {
         self.take(false)
     }
@@ -424,7 +417,7 @@ impl State {
     fn take(&mut self, wait: bool) -> bool {
         let Some(done) = self.worker.answer(wait) else { return false };
         match done {
-            Done::Loaded(scene, path) => self.put_on_stage(scene, path),
+            Done::Loaded(opened) => self.put_on_stage(opened),
             Done::LoadFailed(text) => {
                 self.recall = None;
                 self.fail(text);
@@ -441,24 +434,19 @@ impl State {
         true
     }
 
-    fn put_on_stage(&mut self, scene: AnyScene, path: Option<AnyPath>) {
+    fn put_on_stage(&mut self, opened: AnyOpened) {
         self.serial += 1;
-        let stage: AnyStage = match (scene, path) {
-            (AnyScene::Flat(s), Some(AnyPath::Flat(p))) => Any::Flat(Stage::new(s, Some(p), self.serial)),
-            (AnyScene::Flat(s), _) => Any::Flat(Stage::new(s, None, self.serial)),
-            (AnyScene::Solid(s), Some(AnyPath::Solid(p))) => Any::Solid(Stage::new(s, Some(p), self.serial)),
-            (AnyScene::Solid(s), _) => Any::Solid(Stage::new(s, None, self.serial)),
-        };
-        let name = stage.get().scene_name().to_owned();
-        let dropped = stage.get().report().dropped_total();
+        let stage: AnyStage = each!(opened, (scene, path) => Either(Stage::new(scene, path, self.serial)));
+        let name = stage.get().scene().name().to_owned();
+        let dropped = stage.get().scene().report().dropped_total();
         if !stage.get().methods().iter().any(|m| m.key == self.method) {
             self.method = DEFAULT_METHOD.into();
             self.settings.0.clear();
         }
         // Framed for a window of common shape; the window itself does it again for its own.
         match &stage {
-            Any::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
-            Any::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
+            Either::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
+            Either::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
         }
         self.stage = Some(stage);
         (self.step, self.selection) = (0, Subject::None);
@@ -483,11 +471,11 @@ impl State {
         // A step at the end stays at the end; any other keeps its number.
         let was_at_end = !self.is_empty() && self.step == self.len();
         match (&mut self.stage, recorded) {
-            (Some(Any::Flat(stage)), Any::Flat(film)) => stage.recorded = Some(film),
-            (Some(Any::Solid(stage)), Any::Solid(film)) => stage.recorded = Some(film),
+            (Some(Either::Flat(stage)), Either::Flat(film)) => stage.recorded = Some(film),
+            (Some(Either::Solid(stage)), Either::Solid(film)) => stage.recorded = Some(film),
             _ => return,
         }
-        let nodes = self.staged().map_or(0, |s| s.node_count());
+        let nodes = self.film().map_or(0, |f| f.node_count());
         if matches!(self.selection, Subject::Node(n) if n.at() >= nodes) {
             self.selection = Subject::None;
         }
@@ -496,10 +484,5 @@ impl State {
         }
         self.step = if was_at_end { self.len() } else { self.step.min(self.len()) };
         self.run_commands();
-    }
-
-    /// Shared so that caches may hold on to it.
-    pub fn pseudocode(&self) -> Arc<[crate::method::CodeLine]> {
-        self.staged().and_then(|s| s.card()).map_or_else(|| Arc::from(vec![]), |c| Arc::from(c.code.to_vec()))
     }
 }

@@ -1,10 +1,13 @@
-//! Everything that can be asked of the explorer. An [`Action`] is menu item, palette entry, shortcut,
+//! Everything that the explorer can do. An [`Action`] is menu item, palette entry, shortcut,
 //! tooltip and test name at once; a [`Command`] is an action or something with operands.
 
 use super::any::AnyView;
-use super::state::{Detail, Dialog, Layout, Surface};
+use super::camera::ObserverCamera;
+use super::measured::Tables;
+use super::shown::{Detail, Dialog, Gesture, Layout, Surface};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
+use crate::method::Verdict;
 
 /// Where an action stands in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -55,7 +58,7 @@ pub struct Info {
 
 macro_rules! actions {
     ($($menu:ident $action:ident $name:literal $title:literal [$($key:literal),*] $help:literal;)*) => {
-        /// Something that can be asked for without operands.
+        /// A command without operands.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Action {
             $(#[doc = $help] $action,)*
@@ -213,10 +216,7 @@ impl Action {
     }
 }
 
-/// Joins changes that belong together, such as those of one drag, into one step of undo; 0 joins nothing.
-pub type Gesture = u64;
-
-/// Something that is asked of the explorer.
+/// A command to the explorer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Without operands.
@@ -236,7 +236,7 @@ pub enum Command {
     /// Goes to a view of a path.
     Frame(usize, usize),
     /// Moves the Observer.
-    Observe(super::camera::ObserverCamera),
+    Observe(ObserverCamera),
     /// Filters the event tree.
     Filter(String),
     /// Folds or unfolds the node entered by this event.
@@ -250,7 +250,7 @@ pub enum Command {
     /// Stops, or no longer stops, at a line of pseudocode.
     BreakLine(u8),
     /// Stops, or no longer stops, at a verdict.
-    BreakVerdict(crate::method::Verdict),
+    BreakVerdict(Verdict),
     /// Stops, or no longer stops, at a node.
     BreakNode(NodeId),
     /// Writes a note to a bookmark.
@@ -266,7 +266,7 @@ pub enum Command {
     /// Saves the session to a file.
     SaveTo(String),
     /// Measures a paper's table, or writes it to a file.
-    Tables(super::tables::Tables),
+    Tables(Tables),
     /// Removes a message.
     Dismiss(usize),
 }

@@ -3,17 +3,17 @@
 
 use glam::Vec2;
 
-use super::any::Any;
 use super::session::{Session, SessionError, write_file};
-use super::state::{State, Theme};
+use super::shown::Theme;
+use super::state::State;
 use crate::drawing::{Drawing, Pixels};
 use crate::figure::{self, Page, Panel, Paper, Picture, page, panels};
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Either};
 use crate::render::{self, Format};
 
 /// Width of the picture, points: two columns of a paper, 17.5 cm.
 const WIDTH_PT: f32 = 490.0;
-/// Scenes of space up to so many triangles become vectors; larger ones need pixels.
+/// Scenes of space with up to this many triangles become vectors; larger ones need pixels.
 pub const VECTOR_PRIMS: usize = 5000;
 /// Longest figure file that is searched for a session, bytes.
 const LIMIT_BYTES: u64 = 256 << 20;
@@ -23,10 +23,11 @@ impl State {
     /// are the Observer's picture of a scene that is too large for vectors.
     pub fn figure(&self, aspect: f32, pixels: Option<Pixels>) -> Option<Drawing> {
         let (stage, look) = (self.staged()?, self.look());
+        let scene = stage.scene();
         let aspect = aspect.clamp(0.2, 5.0);
         let picture = match (self.stage.as_ref()?, pixels) {
             (_, Some(pixels)) => Picture::Pixels(pixels),
-            (Any::Flat(s), None) => {
+            (Either::Flat(s), None) => {
                 let film = s.recorded.as_ref()?;
                 let half = Vec2::new(self.observer.distance * aspect, self.observer.distance);
                 let center = Vec2::new(self.observer.pivot[0], self.observer.pivot[1]);
@@ -35,7 +36,7 @@ impl State {
                     Aabb { min: center - half, max: center + half },
                 )
             }
-            (Any::Solid(s), None) => {
+            (Either::Solid(s), None) => {
                 let film = s.recorded.as_ref()?;
                 let view = self.observer.view(1200, (1200.0 / aspect) as u32);
                 Picture::Space(figure::world(&*film.film, &film.stamps, self.step, &look), view)
@@ -43,15 +44,16 @@ impl State {
         };
         let label = format!("step {} of {}", self.step, self.len());
         let content = panels(WIDTH_PT, 1, &[Panel { label, picture }]);
-        let card = stage.card()?;
+        let film = stage.film()?.reel;
+        let card = film.card();
         let knobs =
-            stage.film_knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
+            film.knobs().iter().map(|(k, v)| format!("{} {v}", k.name)).collect::<Vec<_>>().join(", ");
         let caption = format!(
             "{}, {}: {} {}s; {knobs}. {}",
             card.name,
-            stage.scene_name(),
-            stage.prim_count(),
-            stage.prim_name(),
+            scene.name(),
+            scene.live_count(),
+            scene.prim_name(),
             self.sentence()
         );
         let page = Page {
@@ -63,15 +65,15 @@ impl State {
         Some(page.compose(&content))
     }
 
-    /// Writes the present picture into the working folder and says where.
+    /// Writes the picture on screen into [`State::folder`], and reports where.
     pub fn export(&mut self, format: Format, aspect: f32, pixels: Option<Pixels>) {
         let Some(drawing) = self.figure(aspect, pixels) else {
             return self.fail("There is nothing to export yet.");
         };
         let recipe = self.session().text();
         let bytes = render::export(&drawing, format, Theme::Print, &recipe);
-        let scene = self.staged().map_or("figure", |s| s.scene_name()).replace(['/', '\\', ' '], "-");
-        let path = format!("{scene}-{}-step-{}.{}", self.method, self.step, format.name());
+        let scene = self.staged().map_or("figure", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
+        let path = self.path_of(&format!("{scene}-{}-step-{}.{}", self.method, self.step, format.name()));
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {
             Ok(()) => self.tell(format!("The figure was written to {path}.")),

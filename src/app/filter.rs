@@ -5,11 +5,11 @@
 
 use std::fmt;
 
-use super::stage::Staged;
+use super::stage::{Footage, SceneFacts};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
-use crate::method::{Event, Value, Verdict};
-use crate::trace::subject;
+use crate::method::{Event, Reel, Value, Verdict};
+use crate::trace::{Detail, subject};
 
 /// A parsed filter.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -63,10 +63,10 @@ impl Filter {
     pub fn is_empty(&self) -> bool {
         self.terms.is_empty()
     }
-    /// The filter with what depends on the film looked up; ask it once a film.
-    pub fn on<'a>(&'a self, stage: &'a dyn Staged) -> Applied<'a> {
-        let ranges = self.terms.iter().map(|(_, term)| term.range(stage)).collect();
-        Applied { filter: self, stage, ranges }
+    /// Binds the filter to a film, looking up once what depends on it.
+    pub fn on<'a>(&'a self, scene: &'a dyn SceneFacts, film: Footage<'a>) -> Applied<'a> {
+        let ranges = self.terms.iter().map(|(_, term)| term.range(film)).collect();
+        Applied { filter: self, scene, film, ranges }
     }
 }
 
@@ -95,26 +95,27 @@ impl Term {
             ))),
         }
     }
-    /// Events between entering and leaving a node.
-    fn range(&self, stage: &dyn Staged) -> Option<(usize, usize)> {
+    /// The events from entering the node of `under:` to leaving it.
+    fn range(&self, film: Footage<'_>) -> Option<(usize, usize)> {
         let Self::UnderNode(node) = self else { return None };
-        let entered =
-            (*node < stage.node_count() as u32).then(|| stage.node_entered(NodeId(*node))).flatten()? - 1;
-        Some((entered, stage.moves()?.over(stage.events(), entered, crate::trace::Detail::Full)))
+        let node = Some(NodeId(*node)).filter(|n| n.at() < film.node_count())?;
+        let entered = film.stamps.entered_at(node)? - 1;
+        Some((entered, film.moves.over(film.reel.events(), entered, Detail::Full)))
     }
 }
 
 /// A filter bound to a film.
 pub struct Applied<'a> {
     filter: &'a Filter,
-    stage: &'a dyn Staged,
+    scene: &'a dyn SceneFacts,
+    film: Footage<'a>,
     ranges: Vec<Option<(usize, usize)>>,
 }
 
 impl Applied<'_> {
     /// Whether event `at` passes.
     pub fn passes(&self, at: usize) -> bool {
-        let event = self.stage.events()[at];
+        let event = self.film.reel.events()[at];
         self.filter
             .terms
             .iter()
@@ -122,31 +123,31 @@ impl Applied<'_> {
             .all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
     }
     fn holds(&self, term: &Term, range: Option<(usize, usize)>, at: usize, event: Event) -> bool {
-        let depth = || self.stage.moves().map_or(0, |m| m.depth(at));
+        let (reel, depth) = (self.film.reel, || self.film.moves.depth(at));
         match term {
-            Term::Kind(kind) => kind_name(self.stage, at, event).to_lowercase().contains(kind),
+            Term::Kind(kind) => kind_name(reel, at).to_lowercase().contains(kind),
             Term::Verdict(verdict) => {
                 verdict_of(event).is_some_and(|v| v.name().starts_with(verdict.as_str()))
             }
-            Term::Node(n) => subject_at(self.stage, at) == Subject::Node(NodeId(*n)),
-            Term::Prim(p) => subject_at(self.stage, at) == Subject::Prim(PrimId(*p)),
+            Term::Node(n) => subject_at(reel, at) == Subject::Node(NodeId(*n)),
+            Term::Prim(p) => subject_at(reel, at) == Subject::Prim(PrimId(*p)),
             Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
-            Term::UnderObject(name) => match subject_at(self.stage, at) {
+            Term::UnderObject(name) => match subject_at(reel, at) {
                 Subject::Prim(p) => {
-                    self.stage.object_name(self.stage.object_of(p)).to_lowercase().contains(name)
+                    self.scene.object_name(self.scene.object_of(p)).to_lowercase().contains(name)
                 }
                 _ => false,
             },
-            Term::Line(text) => match (event, self.stage.card()) {
-                (Event::Line(i), Some(card)) => card.code[i as usize].label.to_lowercase().contains(text),
+            Term::Line(text) => match event {
+                Event::Line(i) => reel.card().code[i as usize].label.to_lowercase().contains(text),
                 _ => false,
             },
             Term::Deeper(d) => depth() > *d,
             Term::Shallower(d) => depth() < *d,
             Term::Word(word) => {
-                kind_name(self.stage, at, event).to_lowercase().contains(word)
+                kind_name(reel, at).to_lowercase().contains(word)
                     || verdict_of(event).is_some_and(|v| v.name().contains(word.as_str()))
-                    || word.parse().is_ok_and(|id: u32| match subject_at(self.stage, at) {
+                    || word.parse().is_ok_and(|id: u32| match subject_at(reel, at) {
                         Subject::Node(n) => n.0 == id,
                         Subject::Prim(p) => p.0 == id,
                         _ => false,
@@ -161,9 +162,9 @@ pub fn verdict_of(event: Event) -> Option<Verdict> {
     event.verdict()
 }
 
-/// Kind of an event, without making its operands where that can be avoided.
-pub fn kind_name(stage: &dyn Staged, at: usize, event: Event) -> &'static str {
-    match event {
+/// Kind of an event; its operands are made only where it is a note.
+pub fn kind_name(reel: &dyn Reel, at: usize) -> &'static str {
+    match reel.events()[at] {
         Event::FrameBegan => "FrameBegan",
         Event::Entered(_) => "NodeEntered",
         Event::Left(_) => "NodeLeft",
@@ -171,19 +172,19 @@ pub fn kind_name(stage: &dyn Staged, at: usize, event: Event) -> &'static str {
         Event::DecidedNode(..) => "NodeDecided",
         Event::DecidedPrim(..) => "PrimDecided",
         Event::Line(_) => "LineReached",
-        Event::Noted(_) => stage.fields(at).0,
+        Event::Noted(_) => reel.fields(at).0,
     }
 }
 
-/// What an event is about; of evidence, what it was gathered about.
-pub fn subject_at(stage: &dyn Staged, at: usize) -> Subject {
-    let Some(event) = stage.events().get(at) else { return Subject::None };
+/// The node or primitive that an event or a note is about.
+pub fn subject_at(reel: &dyn Reel, at: usize) -> Subject {
+    let Some(event) = reel.events().get(at) else { return Subject::None };
     match (event, subject(event)) {
         (_, (Some(node), _)) => Subject::Node(node),
         (_, (_, Some(prim))) => Subject::Prim(prim),
         (Event::Noted(_), _) => {
             let id = |v: &Value| if let Value::Integer(i) = v { Some(*i as u32) } else { None };
-            let found = stage.fields(at).1.iter().find_map(|f| match f.name {
+            let found = reel.fields(at).1.iter().find_map(|f| match f.name {
                 "node" => id(&f.value).map(|i| Subject::Node(NodeId(i))),
                 "prim" => id(&f.value).map(|i| Subject::Prim(PrimId(i))),
                 _ => None,

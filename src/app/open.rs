@@ -1,8 +1,11 @@
 //! Opening a scene with its views, and the examples that are one click away.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::scene::{self, AnyPath, AnyScene, LoadOptions, Progress, SceneError};
+use crate::drawing::words::capitalized;
+use crate::geometry::{Either, Flat, Solid, ViewPath, each};
+use crate::scene::{self, AnyScene, LoadOptions, Progress, Scene, SceneError};
 
 /// A scene that the start screen offers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,16 +18,18 @@ pub struct Example {
     pub source: String,
 }
 
+/// A scene, and the views that were named with it.
+pub(super) type Opened<S> = (Arc<Scene<S>>, Option<ViewPath<S>>);
+/// The same of either space.
+pub(super) type AnyOpened = Either<Opened<Flat>, Opened<Solid>>;
+
 /// Loads a scene and, if named, a view file. The error is one line.
-pub(super) fn load(
-    source: &str,
-    views: Option<&str>,
-    progress: &dyn Progress,
-) -> Result<(AnyScene, Option<AnyPath>), String> {
+pub(super) fn load(source: &str, views: Option<&str>, progress: &dyn Progress) -> Result<AnyOpened, String> {
     let found = scene::load(source, &LoadOptions::default(), progress).or_else(|error| inside(source, error));
-    let scene = found.map_err(|e| e.to_string())?;
-    let path = views.map(|v| scene::read_views_for(v, &scene)).transpose().map_err(|e| e.to_string())?;
-    Ok((scene, path))
+    Ok(each!(found.map_err(|e| e.to_string())?, scene => Either({
+        let path = views.map(|v| scene::read_views(v, scene.origin())).transpose();
+        (scene, path.map_err(|e| e.to_string())?)
+    })))
 }
 
 /// The scene that travels inside the program, where the file of its name is not there.
@@ -94,27 +99,25 @@ fn example(path: &Path) -> Example {
     let (mut name, mut summary) = (title(&stem), format!("{space}."));
     if is_flat && std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() < DESCRIPTION_BYTES) {
         let text = std::fs::read_to_string(path).unwrap_or_default();
-        let said: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        let file: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
         let word =
-            |key: &str| said.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
+            |key: &str| file.get(key).and_then(|v| v.as_str()).filter(|t| !t.is_empty()).map(str::to_owned);
         name = word("title").unwrap_or(name);
         summary = word("teaches").unwrap_or(summary);
     } else if let Some(line) = path.parent().and_then(|p| std::fs::read_to_string(p.join("SOURCE.txt")).ok())
     {
-        let told = line
+        let about = line
             .lines()
             .map(str::trim)
             .find(|l| !l.is_empty() && !l.starts_with("Name:"))
             .unwrap_or_default();
-        let told = told.split_once(": ").map_or(told, |(_, rest)| rest);
-        summary = format!("{space}. {}", told.split([',', ';', '(']).next().unwrap_or_default().trim());
+        let about = about.split_once(": ").map_or(about, |(_, rest)| rest);
+        summary = format!("{space}. {}", about.split([',', ';', '(']).next().unwrap_or_default().trim());
     }
     Example { title: name, summary, source }
 }
 
 /// `freedoom_e1m1` as `Freedoom e1m1`.
 fn title(stem: &str) -> String {
-    let words = stem.replace(['_', '-'], " ");
-    let mut chars = words.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+    capitalized(&stem.replace(['_', '-'], " "))
 }

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::filter::{Filter, FilterError};
-use super::stage::Staged;
+use super::stage::{Footage, SceneFacts, Staged};
 use crate::method::Event;
 use crate::trace::Detail;
 
@@ -38,24 +38,20 @@ impl Outline {
         }
         self.built_for = None;
     }
-    /// Folds every node at this depth or deeper, or unfolds all.
-    pub fn fold_all(&mut self, stage: &dyn Staged, fold: bool) {
+    /// Folds every node, or unfolds all.
+    pub fn fold_all(&mut self, events: &[Event], fold: bool) {
         self.folded.clear();
         if fold {
-            let entered = stage.events().iter().enumerate().filter(|(_, e)| matches!(e, Event::Entered(_)));
+            let entered = events.iter().enumerate().filter(|(_, e)| matches!(e, Event::Entered(_)));
             self.folded = entered.map(|(i, _)| i as u32).collect();
         }
         self.built_for = None;
     }
     /// Unfolds what hides event `at`.
-    pub fn reveal(&mut self, stage: &dyn Staged, at: usize) {
-        let Some(moves) = stage.moves() else { return };
-        let hiding: Vec<u32> = self
-            .folded
-            .iter()
-            .copied()
-            .filter(|&f| (f as usize) < at && at < moves.over(stage.events(), f as usize, Detail::Full))
-            .collect();
+    pub fn reveal(&mut self, film: Footage<'_>, at: usize) {
+        let end = |folded: u32| film.moves.over(film.reel.events(), folded as usize, Detail::Full);
+        let hiding: Vec<u32> =
+            self.folded.iter().copied().filter(|&f| (f as usize) < at && at < end(f)).collect();
         if !hiding.is_empty() {
             hiding.iter().for_each(|f| {
                 self.folded.remove(f);
@@ -69,7 +65,8 @@ impl Outline {
     }
     /// Rebuilds the rows if anything that they depend on has changed.
     pub fn refresh(&mut self, stage: &dyn Staged, detail: Detail, text: &str) {
-        let wanted = (stage.film_serial(), detail, text.to_owned());
+        let film = stage.film();
+        let wanted = (film.map_or(0, |f| f.serial), detail, text.to_owned());
         if self.built_for.as_ref() == Some(&wanted) {
             return;
         }
@@ -82,8 +79,14 @@ impl Outline {
         };
         self.error = error;
         self.rows.clear();
-        let (events, filtering) = (stage.events(), !filter.is_empty());
-        let applied = filter.on(stage);
+        if let Some(film) = film {
+            self.list(stage.scene(), film, detail, &filter);
+        }
+        self.built_for = Some(wanted);
+    }
+    fn list(&mut self, scene: &dyn SceneFacts, film: Footage<'_>, detail: Detail, filter: &Filter) {
+        let (events, filtering) = (film.reel.events(), !filter.is_empty());
+        let applied = filter.on(scene, film);
         let mut at = 0;
         while at < events.len() {
             if detail.shows(&events[at]) && (!filtering || applied.passes(at)) {
@@ -91,11 +94,7 @@ impl Outline {
             }
             // A filter looks into folded nodes too.
             let folded = !filtering && self.folded.contains(&(at as u32));
-            at = match stage.moves() {
-                Some(moves) if folded => moves.over(events, at, Detail::Full),
-                _ => at + 1,
-            };
+            at = if folded { film.moves.over(events, at, Detail::Full) } else { at + 1 };
         }
-        self.built_for = Some(wanted);
     }
 }

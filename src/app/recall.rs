@@ -1,11 +1,12 @@
-//! Starting with what was asked for or was open last, and saving it.
+//! Starting with what the command line names or what was open last, and saving it.
 
 use super::any::ViewRecord;
 use super::command::{Action, Command};
+use super::measured::{Tables, tables};
 use super::session::{Picked, Session, Shown as Kept, VERSION};
+use super::shown::{Detail, Dialog, Layout, Shown, Surface, Theme};
 use super::start::Start;
-use super::state::{Detail, Layout, Shown, State, Surface, Theme};
-use super::tables::{Tables, tables};
+use super::state::{Effect, Notice, State};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Settings;
@@ -18,8 +19,8 @@ impl State {
         let s = &self.shown;
         Session {
             cullscope_session: VERSION,
-            scene: stage.map_or(String::new(), |s| s.source().to_owned()),
-            scene_hash: stage.map_or(String::new(), |s| s.hash_hex()),
+            scene: stage.map_or(String::new(), |s| s.scene().source().to_owned()),
+            scene_hash: stage.map_or(String::new(), |s| s.scene().hash_hex()),
             method: self.method.clone(),
             settings: self.settings.0.clone(),
             place: stage.map_or((0, 0), |s| s.place()),
@@ -47,14 +48,14 @@ impl State {
         match self.session().write(path) {
             Ok(()) => {
                 self.session_path = Some(path.to_owned());
-                self.dialog = super::state::Dialog::None;
+                self.dialog = Dialog::None;
                 self.tell(format!("Saved as {path}."));
             }
             Err(error) => self.fail(error.to_string()),
         }
     }
 
-    /// Opens what a session says.
+    /// Opens the scene of a session; the rest follows when it is loaded.
     pub fn restore(&mut self, session: Session) {
         self.recall_look(&session);
         if session.scene.is_empty() {
@@ -83,8 +84,8 @@ impl State {
     /// What culling depends on, before the film is recorded.
     pub(super) fn recall_inputs(&mut self, session: &Session) {
         let Some(stage) = &mut self.stage else { return };
-        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().hash_hex() {
-            self.notices.push(super::state::Notice {
+        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().scene().hash_hex() {
+            self.notices.push(Notice {
                 is_error: false,
                 text: format!("{} is not the scene that was saved: its content has changed.", session.scene),
             });
@@ -103,10 +104,11 @@ impl State {
     /// What refers to the film, once it is there.
     pub(super) fn recall_rest(&mut self, session: &Session) {
         let Some(stage) = self.staged() else { return };
+        let nodes = stage.film().map_or(0, |f| f.node_count());
         self.selection = match session.selected {
-            Picked::Prim(p) if stage.has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
-            Picked::Node(n) if (n as usize) < stage.node_count() => Subject::Node(NodeId(n)),
-            Picked::Object(o) if (o as usize) < stage.object_count() => Subject::Object(ObjectId(o)),
+            Picked::Prim(p) if stage.scene().has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
+            Picked::Node(n) if (n as usize) < nodes => Subject::Node(NodeId(n)),
+            Picked::Object(o) if (o as usize) < stage.scene().object_count() => Subject::Object(ObjectId(o)),
             Picked::Eye => Subject::Eye,
             _ => Subject::None,
         };
@@ -118,12 +120,12 @@ impl State {
         self.bookmarks.sort_by_key(|b| b.step);
         if let Some(observer) = session.observer.filter(|o| o.is_sound()) {
             self.observer = observer;
-            self.effects.retain(|e| *e != super::state::Effect::Frame);
+            self.effects.retain(|e| *e != Effect::Frame);
         }
         self.step = session.step.min(end);
     }
 
-    /// Starts with what was asked for, or with what was open last, or with nothing.
+    /// Starts with what the command line names, or else with what was open last, or else with nothing.
     pub fn start(&mut self, start: &Start, last: Option<Session>) {
         let last = last.filter(|_| !start.fresh);
         if let Some(key) = &start.method {

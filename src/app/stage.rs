@@ -6,12 +6,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::culling::Methods;
+use crate::drawing::words::{Room, short};
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
-use crate::method::{Card, Event, Field, Film, Knob, KnobValue, Verdict};
-use crate::raster::DepthScale;
+use crate::index::Hierarchy;
+use crate::method::{Card, Film, Reel};
 use crate::scene::{Report, Scene, framing_view, write_views};
-use crate::trace::{Counts, Moves, Stamps, State};
+use crate::trace::{Moves, Stamps};
 
 /// Image size of the Eye when the scene brings no view of its own, pixels.
 const DEFAULT_IMAGE_PX: [u32; 2] = [1024, 768];
@@ -24,8 +25,6 @@ pub struct Recorded<S: Space> {
     pub stamps: Arc<Stamps>,
     /// Where steps lead.
     pub moves: Arc<Moves>,
-    /// Number of primitives that the frame draws.
-    pub drawn: usize,
     /// Changes whenever another film is on stage; for caches.
     pub serial: u64,
 }
@@ -50,6 +49,21 @@ pub struct Stage<S: Space> {
     flight: Option<Vec<View<S>>>,
 }
 
+/// What became of a flight.
+pub enum Flight {
+    /// It is recorded from now on.
+    Begun,
+    /// The Eye was not moved, so there is nothing to keep.
+    Dropped,
+    /// It is a path now.
+    Ended {
+        /// Number of views, at least 2.
+        frames: usize,
+        /// The view file.
+        text: String,
+    },
+}
+
 impl<S: Space> Stage<S> {
     /// Puts a scene on stage, with its own view paths or one view that frames it.
     pub fn new(scene: Arc<Scene<S>>, own: Option<ViewPath<S>>, serial: u64) -> Self {
@@ -72,22 +86,22 @@ impl<S: Space> Stage<S> {
         self.frame = frame.min(self.views().len() - 1);
         self.view = self.views()[self.frame];
     }
-    /// Begins a flight at the present view (`None`), or ends it: the number of its views, and the view file's
-    /// text if the Eye was moved at all. It is then the last path, and followed from its first view.
-    pub fn fly(&mut self) -> Option<(usize, Option<String>)> {
+    /// Begins a flight at the present view, or ends it. It is then the last path, and followed from its first
+    /// view.
+    pub fn fly(&mut self) -> Flight {
         let Some(views) = self.flight.take() else {
             self.flight = Some(vec![self.view]);
-            return None;
+            return Flight::Begun;
         };
         let frames = views.len();
         if frames < 2 {
-            return Some((frames, None));
+            return Flight::Dropped;
         }
         let path = ViewPath { name: "flight".into(), views };
         let text = write_views(&path, self.scene.origin());
         self.paths.push(path);
         self.go(self.paths.len() - 1, 0);
-        Some((frames, Some(text)))
+        Flight::Ended { frames, text }
     }
     /// Adds the present view to a flight that is being recorded, if it is a new one.
     pub fn keep_flying(&mut self) {
@@ -97,96 +111,125 @@ impl<S: Space> Stage<S> {
             flight.push(self.view);
         }
     }
-    /// Moves the Eye by a world vector, target and all.
-    pub fn shift_eye(&mut self, by: S::Vector) {
-        self.view.eye.position = self.view.eye.position + by;
-        self.view.eye.target = self.view.eye.target + by;
+    /// The box of a primitive, an object or a node; `None` of anything else.
+    pub fn bounds_of(&self, subject: Subject) -> Option<Aabb<S::Vector>> {
+        match subject {
+            Subject::Prim(prim) => Some(self.scene.prim_bounds(prim)),
+            Subject::Object(object) => {
+                let boxes = self.prims_of(object).map(|p| self.scene.prim_bounds(p));
+                Some(boxes.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b)))
+            }
+            Subject::Node(node) => self.hierarchy().map(|h| h.bounds(node)),
+            _ => None,
+        }
+    }
+    fn prims_of(&self, object: ObjectId) -> impl Iterator<Item = PrimId> + '_ {
+        self.scene.live().iter().copied().filter(move |&p| self.scene.object_of(p) == object)
+    }
+    /// The index of the film.
+    fn hierarchy(&self) -> Option<&dyn Hierarchy<S>> {
+        self.recorded.as_ref().map(|r| r.film.hierarchy())
     }
     fn vector(v: S::Vector) -> String {
-        (0..S::Vector::AXES).map(|a| short(v.get(a))).collect::<Vec<_>>().join(", ")
+        (0..S::Vector::AXES).map(|a| short(v.get(a), Room::Row)).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// A stage as panels see it that do not care about the space.
-pub trait Staged {
-    /// `flatland` or `space`.
-    fn space_name(&self) -> &'static str;
-    /// `segment` or `triangle`.
-    fn prim_name(&self) -> &'static str;
-    /// Short name of the scene.
-    fn scene_name(&self) -> &str;
-    /// Where the scene came from.
+/// A scene as panels read it that do not care about the space.
+pub trait SceneFacts {
+    /// Short name.
+    fn name(&self) -> &str;
+    /// Where it came from.
     fn source(&self) -> &str;
-    /// Hash of the scene.
+    /// Hash of its content.
     fn hash_hex(&self) -> String;
     /// What was noticed while loading.
     fn report(&self) -> &Report;
+    /// `segment` or `triangle`.
+    fn prim_name(&self) -> &'static str;
     /// Number of live primitives.
-    fn prim_count(&self) -> usize;
-    /// Whether there is such a primitive.
+    fn live_count(&self) -> usize;
+    /// Whether there is such a live primitive.
     fn has_prim(&self, prim: PrimId) -> bool;
-    /// Number of objects.
-    fn object_count(&self) -> usize;
-    /// Name of an object.
-    fn object_name(&self, object: ObjectId) -> &str;
     /// Object of a primitive.
     fn object_of(&self, prim: PrimId) -> ObjectId;
-    /// Whether a film is on stage.
-    fn has_film(&self) -> bool;
-    /// See [`Recorded::serial`]; 0 if there is no film.
-    fn film_serial(&self) -> u64;
-    /// Identity of the method that was recorded.
-    fn card(&self) -> Option<&'static Card>;
-    /// Parameters of the recorded run.
-    fn film_knobs(&self) -> Vec<(Knob, KnobValue)>;
-    /// Names of the method's pictures that are not of the world.
-    fn pictures(&self) -> &'static [&'static str];
-    /// One of them at a step; empty if there is none.
-    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing;
-    /// What is under a point of it, in words.
-    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String>;
-    /// Events of the film.
-    fn events(&self) -> &[Event];
-    /// Events that were not kept.
-    fn lost(&self) -> u64;
-    /// Bytes of the film.
-    fn film_bytes(&self) -> usize;
-    /// Number of primitives drawn at the end.
-    fn drawn(&self) -> usize;
-    /// Moves of the film.
-    fn moves(&self) -> Option<&Moves>;
-    /// Kind and operands of an event.
-    fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
-    /// What an event did.
-    fn sentence(&self, at: usize) -> String;
-    /// Counts at a step.
-    fn counts(&self, step: usize) -> Counts;
+    /// Number of objects.
+    fn object_count(&self) -> usize;
+    /// Name of an object; empty if there is none.
+    fn object_name(&self, object: ObjectId) -> &str;
+}
+
+impl<S: Space> SceneFacts for Scene<S> {
+    fn name(&self) -> &str {
+        self.name()
+    }
+    fn source(&self) -> &str {
+        self.source()
+    }
+    fn hash_hex(&self) -> String {
+        self.hash_hex()
+    }
+    fn report(&self) -> &Report {
+        self.report()
+    }
+    fn prim_name(&self) -> &'static str {
+        S::PRIM
+    }
+    fn live_count(&self) -> usize {
+        self.live().len()
+    }
+    fn has_prim(&self, prim: PrimId) -> bool {
+        prim.at() < self.prim_count() && self.corners(prim).is_some()
+    }
+    fn object_of(&self, prim: PrimId) -> ObjectId {
+        self.object_of(prim)
+    }
+    fn object_count(&self) -> usize {
+        self.objects().len()
+    }
+    fn object_name(&self, object: ObjectId) -> &str {
+        self.objects().get(object.at()).map_or("", |o| &o.name)
+    }
+}
+
+/// A recorded film as panels read it that do not care about the space.
+#[derive(Clone, Copy)]
+pub struct Footage<'a> {
+    /// The film.
+    pub reel: &'a dyn Reel,
+    /// When each node and primitive was decided.
+    pub stamps: &'a Stamps,
+    /// Where steps lead.
+    pub moves: &'a Moves,
+    /// See [`Recorded::serial`].
+    pub serial: u64,
+}
+
+impl Footage<'_> {
+    /// Number of nodes of the index.
+    pub fn node_count(&self) -> usize {
+        self.stamps.nodes().len()
+    }
+}
+
+/// A stage as panels read it that do not care about the space.
+pub trait Staged {
+    /// The scene.
+    fn scene(&self) -> &dyn SceneFacts;
+    /// The recorded film, once there is one.
+    fn film(&self) -> Option<Footage<'_>>;
     /// The roles of the marks with which the method explains a step, for the legend.
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role>;
-    /// Number of nodes of the index.
-    fn node_count(&self) -> usize;
-    /// Parent of a node.
+    /// Parent of a node of the film's index.
     fn parent(&self, node: NodeId) -> Option<NodeId>;
-    /// Level of a node.
-    fn level(&self, node: NodeId) -> u32;
-    /// Primitives at and below a node.
-    fn node_prims(&self, node: NodeId) -> &[PrimId];
+    /// Number of primitives at and below a node.
+    fn prims_below(&self, node: NodeId) -> usize;
     /// Smallest node that holds a primitive.
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId>;
-    /// State of a node at a step.
-    fn node_state(&self, node: NodeId, step: usize) -> State;
-    /// State of a primitive at a step.
-    fn prim_state(&self, prim: PrimId, step: usize) -> State;
-    /// Step from which on a node's decision holds, if it was decided itself, and the decision.
-    fn node_decision(&self, node: NodeId) -> Option<(usize, Verdict)>;
-    /// Step at which a node was entered.
-    fn node_entered(&self, node: NodeId) -> Option<usize>;
-    /// Step from which on a primitive's decision holds, and the decision.
-    fn prim_decision(&self, prim: PrimId) -> Option<(usize, Verdict)>;
     /// Facts about a thing, by name.
     fn facts(&self, subject: Subject) -> Vec<(&'static str, String)>;
     /// Names and lengths of the view paths.
-    fn path_names(&self) -> Vec<(String, usize)>;
+    fn paths(&self) -> Vec<(String, usize)>;
     /// Path and frame.
     fn place(&self) -> (usize, usize);
     /// Whether the Eye was moved away from its path.
@@ -198,89 +241,12 @@ pub trait Staged {
 }
 
 impl<S: Methods> Staged for Stage<S> {
-    fn space_name(&self) -> &'static str {
-        S::NAME
+    fn scene(&self) -> &dyn SceneFacts {
+        &*self.scene
     }
-    fn prim_name(&self) -> &'static str {
-        S::PRIM
-    }
-    fn scene_name(&self) -> &str {
-        self.scene.name()
-    }
-    fn source(&self) -> &str {
-        self.scene.source()
-    }
-    fn hash_hex(&self) -> String {
-        self.scene.hash_hex()
-    }
-    fn report(&self) -> &Report {
-        self.scene.report()
-    }
-    fn prim_count(&self) -> usize {
-        self.scene.live().len()
-    }
-    fn has_prim(&self, prim: PrimId) -> bool {
-        prim.at() < self.scene.prim_count() && self.scene.corners(prim).is_some()
-    }
-    fn object_count(&self) -> usize {
-        self.scene.objects().len()
-    }
-    fn object_name(&self, object: ObjectId) -> &str {
-        self.scene.objects().get(object.at()).map_or("", |o| &o.name)
-    }
-    fn object_of(&self, prim: PrimId) -> ObjectId {
-        self.scene.object_of(prim)
-    }
-    fn has_film(&self) -> bool {
-        self.recorded.is_some()
-    }
-    fn film_serial(&self) -> u64 {
-        self.recorded.as_ref().map_or(0, |r| r.serial)
-    }
-    fn card(&self) -> Option<&'static Card> {
-        self.recorded.as_ref().map(|r| r.film.card())
-    }
-    fn film_knobs(&self) -> Vec<(Knob, KnobValue)> {
-        self.recorded.as_ref().map_or(vec![], |r| r.film.knobs().to_vec())
-    }
-    fn pictures(&self) -> &'static [&'static str] {
-        self.recorded.as_ref().map_or(&[], |r| r.film.pictures())
-    }
-    fn picture(&self, step: usize, which: usize, scale: DepthScale) -> Drawing {
-        self.recorded
-            .as_ref()
-            .filter(|_| which < self.pictures().len())
-            .map_or(Drawing::default(), |r| r.film.picture(step, which, scale))
-    }
-    fn probe(&self, step: usize, which: usize, at: glam::Vec2) -> Option<String> {
-        self.recorded.as_ref()?.film.probe(step, which, at)
-    }
-    fn events(&self) -> &[Event] {
-        self.recorded.as_ref().map_or(&[], |r| r.film.events())
-    }
-    fn lost(&self) -> u64 {
-        self.recorded.as_ref().map_or(0, |r| r.film.lost())
-    }
-    fn film_bytes(&self) -> usize {
-        self.recorded.as_ref().map_or(0, |r| r.film.bytes())
-    }
-    fn drawn(&self) -> usize {
-        self.recorded.as_ref().map_or(0, |r| r.drawn)
-    }
-    fn moves(&self) -> Option<&Moves> {
-        self.recorded.as_ref().map(|r| &*r.moves)
-    }
-    fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
-        self.recorded
-            .as_ref()
-            .filter(|_| at < self.events().len())
-            .map_or(("", vec![]), |r| r.film.fields(at))
-    }
-    fn sentence(&self, at: usize) -> String {
-        self.recorded
-            .as_ref()
-            .filter(|_| at < self.events().len())
-            .map_or(String::new(), |r| r.film.sentence(at))
+    fn film(&self) -> Option<Footage<'_>> {
+        let r = self.recorded.as_ref()?;
+        Some(Footage { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial })
     }
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
         let mut to = Drawing::default();
@@ -289,60 +255,32 @@ impl<S: Methods> Staged for Stage<S> {
         }
         to.items.iter().map(|i| i.role).collect()
     }
-    fn counts(&self, step: usize) -> Counts {
-        self.recorded.as_ref().map_or(Counts::default(), |r| r.stamps.counts(step))
-    }
-    fn node_count(&self) -> usize {
-        self.recorded.as_ref().map_or(0, |r| r.film.hierarchy().node_count())
-    }
     fn parent(&self, node: NodeId) -> Option<NodeId> {
-        self.recorded.as_ref().and_then(|r| r.film.hierarchy().parent(node))
+        self.hierarchy()?.parent(node)
     }
-    fn level(&self, node: NodeId) -> u32 {
-        self.recorded.as_ref().map_or(0, |r| r.film.hierarchy().level(node))
-    }
-    fn node_prims(&self, node: NodeId) -> &[PrimId] {
-        self.recorded.as_ref().map_or(&[], |r| r.film.hierarchy().prims(node))
+    fn prims_below(&self, node: NodeId) -> usize {
+        self.hierarchy().map_or(0, |h| h.prims(node).len())
     }
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId> {
-        let hierarchy = self.recorded.as_ref()?.film.hierarchy();
+        let hierarchy = self.hierarchy()?;
         let mut node = NodeId(0);
-        loop {
-            match hierarchy.children(node).map(NodeId).find(|&c| hierarchy.prims(c).contains(&prim)) {
-                Some(child) => node = child,
-                None => return Some(node),
-            }
+        while let Some(child) =
+            hierarchy.children(node).map(NodeId).find(|&c| hierarchy.prims(c).contains(&prim))
+        {
+            node = child;
         }
-    }
-    fn node_state(&self, node: NodeId, step: usize) -> State {
-        self.recorded.as_ref().map_or(State::Unseen, |r| r.stamps.node(node, step))
-    }
-    fn prim_state(&self, prim: PrimId, step: usize) -> State {
-        self.recorded.as_ref().map_or(State::Unseen, |r| r.stamps.prim(prim, step))
-    }
-    fn node_decision(&self, node: NodeId) -> Option<(usize, Verdict)> {
-        let stamp = self.recorded.as_ref()?.stamps.nodes()[node.at()];
-        (stamp.step != crate::trace::Stamp::NEVER).then_some((stamp.step as usize, stamp.verdict))
-    }
-    fn node_entered(&self, node: NodeId) -> Option<usize> {
-        Some(self.recorded.as_ref()?.stamps.entered(node))
-            .filter(|&s| s != crate::trace::Stamp::NEVER)
-            .map(|s| s as usize)
-    }
-    fn prim_decision(&self, prim: PrimId) -> Option<(usize, Verdict)> {
-        let stamp = self.recorded.as_ref()?.stamps.prims()[prim.at()];
-        (stamp.step != crate::trace::Stamp::NEVER).then_some((stamp.step as usize, stamp.verdict))
+        Some(node)
     }
     fn facts(&self, subject: Subject) -> Vec<(&'static str, String)> {
         match subject {
-            Subject::Prim(prim) if self.has_prim(prim) => self.prim_facts(prim),
-            Subject::Node(node) if node.at() < self.node_count() => self.node_facts(node),
+            Subject::Prim(prim) if self.scene.has_prim(prim) => self.prim_facts(prim),
+            Subject::Node(node) => self.node_facts(node),
             Subject::Object(object) => self.object_facts(object),
             Subject::Eye => self.eye_facts(),
             _ => vec![],
         }
     }
-    fn path_names(&self) -> Vec<(String, usize)> {
+    fn paths(&self) -> Vec<(String, usize)> {
         self.paths.iter().map(|p| (p.name.clone(), p.views.len())).collect()
     }
     fn place(&self) -> (usize, usize) {
@@ -379,7 +317,7 @@ impl<S: Methods> Stage<S> {
     fn prim_facts(&self, prim: PrimId) -> Vec<(&'static str, String)> {
         let scene = &self.scene;
         let mut facts =
-            vec![("id", prim.to_string()), ("object", self.object_name(scene.object_of(prim)).to_owned())];
+            vec![("id", prim.to_string()), ("object", scene.object_name(scene.object_of(prim)).to_owned())];
         facts.push(("material", scene.materials()[scene.material_of(prim).at()].name.clone()));
         facts.extend(
             scene
@@ -393,8 +331,7 @@ impl<S: Methods> Stage<S> {
         facts
     }
     fn node_facts(&self, node: NodeId) -> Vec<(&'static str, String)> {
-        let Some(recorded) = &self.recorded else { return vec![] };
-        let hierarchy = recorded.film.hierarchy();
+        let Some(hierarchy) = self.hierarchy().filter(|h| node.at() < h.node_count()) else { return vec![] };
         let children: Vec<_> = hierarchy.children(node).map(|c| c.to_string()).collect();
         vec![
             ("id", node.to_string()),
@@ -406,15 +343,11 @@ impl<S: Methods> Stage<S> {
         ]
     }
     fn object_facts(&self, object: ObjectId) -> Vec<(&'static str, String)> {
-        let prims: Vec<_> =
-            self.scene.live().iter().filter(|&&p| self.scene.object_of(p) == object).collect();
-        let bounds =
-            prims.iter().fold(Aabb::empty(), |b: Aabb<S::Vector>, &&p| b.union(self.scene.prim_bounds(p)));
         let mut facts = vec![
-            ("name", self.object_name(object).to_owned()),
-            ("holds", format!("{} {}s", prims.len(), S::PRIM)),
+            ("name", self.scene.object_name(object).to_owned()),
+            ("holds", format!("{} {}s", self.prims_of(object).count(), S::PRIM)),
         ];
-        if !bounds.is_empty() {
+        if let Some(bounds) = self.bounds_of(Subject::Object(object)).filter(|b| !b.is_empty()) {
             facts.push(("box", Self::box_text(&bounds)));
         }
         facts
@@ -425,19 +358,8 @@ impl<S: Methods> Stage<S> {
             ("stands at", Self::vector(e.position)),
             ("looks at", Self::vector(e.target)),
             ("angle", format!("{:.1}°", e.fov.to_degrees())),
-            ("sees from", format!("{} to {} units", short(e.near), short(e.far))),
+            ("sees from", format!("{} to {} units", short(e.near, Room::Row), short(e.far, Room::Row))),
             ("image", format!("{} × {} pixels", v.width, v.height)),
         ]
-    }
-}
-
-/// A number with as many digits as a person reads.
-pub fn short(v: f32) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e6).contains(&a) => format!("{v:.2e}"),
-        a if a < 1.0 => format!("{v:.3}"),
-        a if a < 100.0 => format!("{v:.2}"),
-        _ => format!("{v:.0}"),
     }
 }

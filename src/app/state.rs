@@ -1,148 +1,24 @@
 //! Everything that the explorer knows.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
+use super::filter::subject_at;
+use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};
-use super::stage::Staged;
+use super::shown::{Breakpoint, Detail, Dialog, Shown};
+use super::stage::{Footage, Staged};
 use super::undo::History;
-use super::worker::{Busy, Worker};
+use super::worker::{Busy, FILM_CAP_EVENTS, Worker};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
-use crate::geometry::NodeId;
-use crate::method::{Settings, Verdict};
-use crate::render::{Format, theme};
-
-pub use crate::trace::Detail;
-pub use theme::Theme;
-
-/// What is asked in front of everything else.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Dialog {
-    /// Nothing.
-    #[default]
-    None,
-    /// The command palette.
-    Palette,
-    /// The key sheet.
-    Keys,
-    /// The number of a step.
-    GoTo,
-    /// A scene to open.
-    Open,
-    /// A name to save under.
-    SaveAs,
-    /// What was noticed while loading.
-    Report,
-    /// The method and its paper.
-    About,
-    /// The papers' tables.
-    Tables,
-}
-
-/// A set of panels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Layout {
-    /// All panels.
-    #[default]
-    Debug,
-    /// For a room: big type, few panels, a caption.
-    Lecture,
-    /// The picture alone.
-    Figure,
-    /// The method's own pictures beside the scene.
-    Pictures,
-}
-
-impl Layout {
-    /// Every layout, in the order of menus.
-    pub const ALL: [Layout; 4] = [Layout::Debug, Layout::Lecture, Layout::Figure, Layout::Pictures];
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Debug => "debug",
-            Self::Lecture => "lecture",
-            Self::Figure => "figure",
-            Self::Pictures => "pictures",
-        }
-    }
-}
-
-/// How surfaces in space are drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Surface {
-    /// Opaque.
-    #[default]
-    Solid,
-    /// Edges only.
-    Wire,
-    /// Seen through.
-    Translucent,
-}
-
-impl Surface {
-    /// Every style, in the order of menus.
-    pub const ALL: [Surface; 3] = [Surface::Solid, Surface::Wire, Surface::Translucent];
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Solid => "solid",
-            Self::Wire => "wireframe",
-            Self::Translucent => "translucent",
-        }
-    }
-}
-
-/// What is shown and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shown {
-    /// Primitives.
-    pub prims: bool,
-    /// Node boxes.
-    pub nodes: bool,
-    /// The Eye and its frustum.
-    pub eye: bool,
-    /// Evidence of the current event.
-    pub evidence: bool,
-    /// How surfaces are drawn.
-    pub surface: Surface,
-    /// Colors.
-    pub theme: Theme,
-    /// Panels.
-    pub layout: Layout,
-    /// Size of everything.
-    pub scale: f32,
-}
-
-impl Default for Shown {
-    fn default() -> Self {
-        Self {
-            prims: true,
-            nodes: true,
-            eye: true,
-            evidence: true,
-            surface: Surface::Solid,
-            theme: Theme::Light,
-            layout: Layout::Debug,
-            scale: 1.0,
-        }
-    }
-}
-
-/// Where a run stops.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Breakpoint {
-    /// At a line of pseudocode.
-    Line(u8),
-    /// At a verdict.
-    Verdict(Verdict),
-    /// At everything about a node.
-    Node(NodeId),
-    /// At everything about a primitive.
-    Prim(crate::geometry::PrimId),
-}
+use crate::figure::Look;
+use crate::method::{Event, Settings};
+use crate::render::Format;
 
 /// Something that the person should read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -153,13 +29,9 @@ pub struct Notice {
     pub text: String,
 }
 
-/// What the window has to do, as the state cannot.
+/// What only the window can do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Show the system's dialog to choose a scene.
-    AskOpen,
-    /// Show the system's dialog to choose a name for the session.
-    AskSave,
     /// Write the picture on screen as `svg`, `pdf` or `png`.
     Export(Format),
     /// Put text on the clipboard.
@@ -208,14 +80,14 @@ pub struct State {
     pub is_eye_locked: bool,
     /// What is shown and how.
     pub shown: Shown,
-    /// What is asked in front of everything else.
+    /// The dialog in front of everything else.
     pub dialog: Dialog,
     /// Filter of the event tree.
     pub filter: String,
     /// Rows of the event tree.
     pub outline: Outline,
     /// The table that was measured last.
-    pub measured: Option<std::sync::Arc<super::tables::Measured>>,
+    pub measured: Option<Arc<Measured>>,
     /// Messages, the newest last.
     pub notices: Vec<Notice>,
     /// What the window has to do.
@@ -224,12 +96,19 @@ pub struct State {
     pub is_dirty: bool,
     /// The session file.
     pub session_path: Option<String>,
+    /// Where files go whose names the explorer makes; empty for the working folder.
+    pub folder: PathBuf,
     pub(super) history: History,
     pub(super) worker: Worker,
+    /// The session that is being opened, until its scene and film are there.
     pub(super) recall: Option<Session>,
+    /// Events that a film keeps.
     pub(super) film_cap: usize,
-    pub(super) owed: f32,
+    /// Events that playing has yet to show, less than one after each tick.
+    pub(super) pending: f32,
+    /// Number of the scene that was put on stage last.
     pub(super) serial: u64,
+    /// Commands of the start that are still to run.
     pub(super) commands: Vec<String>,
 }
 
@@ -267,11 +146,12 @@ impl State {
             effects: vec![],
             is_dirty: false,
             session_path: None,
+            folder: PathBuf::new(),
             history: History::default(),
             worker: Worker::start(),
             recall: None,
-            film_cap: super::worker::FILM_CAP_EVENTS,
-            owed: 0.0,
+            film_cap: FILM_CAP_EVENTS,
+            pending: 0.0,
             serial: 0,
             commands: vec![],
         }
@@ -280,9 +160,17 @@ impl State {
     pub fn staged(&self) -> Option<&dyn Staged> {
         self.stage.as_ref().map(|s| s.get())
     }
+    /// The recorded film, once there is one.
+    pub fn film(&self) -> Option<Footage<'_>> {
+        self.staged()?.film()
+    }
+    /// Events of the film; none before it is recorded.
+    pub fn events(&self) -> &[Event] {
+        self.film().map_or(&[], |f| f.reel.events())
+    }
     /// Number of events of the film.
     pub fn len(&self) -> usize {
-        self.staged().map_or(0, |s| s.events().len())
+        self.events().len()
     }
     /// Whether there is nothing to step through.
     pub fn is_empty(&self) -> bool {
@@ -302,36 +190,33 @@ impl State {
     }
     /// What happened last, in one sentence: the status line, the caption, and what screen readers say.
     pub fn sentence(&self) -> String {
-        match (self.staged(), self.current()) {
-            (None, _) => "Nothing is open.".into(),
-            (Some(stage), _) if !stage.has_film() => {
-                format!("{} is open; nothing is recorded yet.", stage.scene_name())
-            }
+        let Some(stage) = self.staged() else { return "Nothing is open.".into() };
+        match (stage.film(), self.current()) {
+            (None, _) => format!("{} is open; nothing is recorded yet.", stage.scene().name()),
             (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
-            (Some(stage), Some(at)) => stage.sentence(at),
+            (Some(film), Some(at)) => film.reel.sentence(at),
         }
     }
     /// The line of pseudocode at this step.
     pub fn line(&self) -> Option<u8> {
-        let stage = self.staged()?;
-        stage.moves()?.line(stage.events(), self.step)
+        let film = self.film()?;
+        film.moves.line(film.reel.events(), self.step)
     }
     /// What the current event, or the evidence around it, is about.
     pub fn current_subject(&self) -> Subject {
-        let Some(stage) = self.staged() else { return Subject::None };
-        let Some(at) = self.current() else { return Subject::None };
-        match super::filter::subject_at(stage, at) {
-            Subject::None => stage
-                .moves()
-                .and_then(|m| m.stack(stage.events(), self.step).last().copied())
-                .map_or(Subject::None, Subject::Node),
+        let (Some(film), Some(at)) = (self.film(), self.current()) else { return Subject::None };
+        match subject_at(film.reel, at) {
+            Subject::None => {
+                let open = film.moves.stack(film.reel.events(), self.step);
+                open.last().map_or(Subject::None, |&node| Subject::Node(node))
+            }
             subject => subject,
         }
     }
     /// What is on screen in a picture of this state.
-    pub fn look(&self) -> crate::figure::Look {
+    pub fn look(&self) -> Look {
         let s = &self.shown;
-        crate::figure::Look {
+        Look {
             prims: s.prims,
             nodes: s.nodes,
             eye: s.eye,
@@ -340,11 +225,11 @@ impl State {
             current: self.current_subject(),
         }
     }
-    /// Tells the person something.
+    /// Shows the person a message.
     pub fn tell(&mut self, text: impl Into<String>) {
         self.notice(false, text.into());
     }
-    /// Tells the person that something failed.
+    /// Shows the person what failed.
     pub fn fail(&mut self, text: impl Into<String>) {
         self.notice(true, text.into());
     }
@@ -355,6 +240,10 @@ impl State {
         // Only the newest are worth the room.
         let extra = self.notices.len().saturating_sub(4);
         self.notices.drain(..extra);
+    }
+    /// The path of a file whose name the explorer makes.
+    pub(super) fn path_of(&self, name: &str) -> String {
+        self.folder.join(name).to_string_lossy().into_owned()
     }
     /// Whether there is anything to undo, and to redo.
     pub fn can_undo(&self) -> (bool, bool) {

@@ -3,7 +3,9 @@
 use super::command::Action;
 use super::filter::{kind_name, subject_at, verdict_of};
 use super::session::Bookmark;
-use super::state::{Breakpoint, Dialog, State};
+use super::shown::{Breakpoint, Dialog};
+use super::stage::Footage;
+use super::state::State;
 use crate::drawing::Subject;
 use crate::method::Event;
 use crate::trace::{Detail, Moves};
@@ -12,15 +14,16 @@ impl State {
     /// Goes to a step; beyond the end is the end.
     pub(super) fn go_to(&mut self, step: usize) {
         self.step = step.min(self.len());
-        if let (Some(stage), Some(at)) = (self.stage.as_ref(), self.step.checked_sub(1)) {
-            self.outline.reveal(stage.get(), at);
+        let film = self.stage.as_ref().and_then(|s| s.get().film());
+        if let (Some(film), Some(at)) = (film, self.step.checked_sub(1)) {
+            self.outline.reveal(film, at);
         }
     }
 
     /// The step that an action leads to; `None` if the action is no move or leads nowhere.
-    fn led_by(&self, action: Action) -> Option<usize> {
-        let stage = self.staged()?;
-        let (moves, events, step, detail) = (stage.moves()?, stage.events(), self.step, self.detail);
+    fn target_of(&self, action: Action) -> Option<usize> {
+        let Footage { reel, moves, .. } = self.film()?;
+        let (events, step, detail) = (reel.events(), self.step, self.detail);
         let at = self.current();
         match action {
             Action::Forward => Some(moves.forward(events, step, detail)),
@@ -34,8 +37,8 @@ impl State {
             Action::NextVerdict => moves.next(events, step, Moves::is_verdict),
             Action::PreviousVerdict => moves.previous(events, step, Moves::is_verdict),
             Action::NextSame | Action::PreviousSame => {
-                let kind = kind_name(stage, at?, events[at?]);
-                self.seek(action == Action::NextSame, |i| kind_name(stage, i, events[i]) == kind)
+                let kind = kind_name(reel, at?);
+                self.seek(action == Action::NextSame, |i| kind_name(reel, i) == kind)
             }
             Action::NextOnSelected
             | Action::PreviousOnSelected
@@ -43,7 +46,7 @@ impl State {
             | Action::BackToCursor => {
                 let wanted = Some(self.selection).filter(|s| *s != Subject::None)?;
                 let forward = matches!(action, Action::NextOnSelected | Action::RunToCursor);
-                self.seek(forward, |i| subject_at(stage, i) == wanted)
+                self.seek(forward, |i| subject_at(reel, i) == wanted)
             }
             Action::Run => Some(self.seek(true, |i| self.stops_at(i)).unwrap_or(events.len())),
             Action::RunBack => Some(self.seek(false, |i| self.stops_at(i)).unwrap_or(0)),
@@ -61,7 +64,7 @@ impl State {
         }
     }
 
-    /// Nearest step on or back whose event `wanted` accepts.
+    /// The nearest step, forward or back, whose event `wanted` accepts.
     fn seek(&self, forward: bool, wanted: impl Fn(usize) -> bool) -> Option<usize> {
         if forward {
             (self.step..self.len()).find(|&i| wanted(i)).map(|i| i + 1)
@@ -72,22 +75,22 @@ impl State {
 
     /// Whether a breakpoint stops at event `at`.
     pub fn stops_at(&self, at: usize) -> bool {
-        let Some(stage) = self.staged() else { return false };
-        let event = stage.events()[at];
+        let Some(Footage { reel, .. }) = self.film() else { return false };
+        let event = reel.events()[at];
         self.breakpoints.iter().any(|b| match b {
             Breakpoint::Line(line) => event == Event::Line(*line),
             Breakpoint::Verdict(verdict) => verdict_of(event) == Some(*verdict),
-            Breakpoint::Node(node) => subject_at(stage, at) == Subject::Node(*node),
-            Breakpoint::Prim(prim) => subject_at(stage, at) == Subject::Prim(*prim),
+            Breakpoint::Node(node) => subject_at(reel, at) == Subject::Node(*node),
+            Breakpoint::Prim(prim) => subject_at(reel, at) == Subject::Prim(*prim),
         })
     }
 
-    /// Does what an action of the menu Step asks. Says whether the action was one.
+    /// Carries out an action of the menu Step; returns whether it was one.
     pub(super) fn do_step(&mut self, action: Action) -> bool {
         match action {
             Action::PlayPause => {
                 self.is_playing = !self.is_playing && !self.is_empty();
-                self.owed = 0.0;
+                self.pending = 0.0;
                 if self.is_playing && self.step == self.len() {
                     self.go_to(0);
                 }
@@ -117,7 +120,7 @@ impl State {
             }
             _ if action.info().menu == super::command::Menu::Step => {
                 self.is_playing = false;
-                match self.led_by(action) {
+                match self.target_of(action) {
                     Some(step) => self.go_to(step),
                     None => self.tell(format!("{}: there is none.", action.info().title)),
                 }
@@ -156,22 +159,21 @@ impl State {
         }
     }
 
-    /// Time passes: a playing film moves on. Says whether it plays still.
+    /// Moves a playing film on by some seconds; returns whether it still plays.
     pub fn tick(&mut self, seconds: f32) -> bool {
         if !self.is_playing || self.is_empty() {
             return false;
         }
-        self.owed += seconds.clamp(0.0, 1.0) * self.speed;
-        let whole = self.owed as usize;
-        self.owed -= whole as f32;
-        let Some(stage) = self.staged() else { return false };
-        let Some(moves) = stage.moves() else { return false };
+        self.pending += seconds.clamp(0.0, 1.0) * self.speed;
+        let whole = self.pending as usize;
+        self.pending -= whole as f32;
+        let Some(Footage { reel, moves, .. }) = self.film() else { return false };
         let mut step = self.step;
         for _ in 0..whole {
-            let next = moves.forward(stage.events(), step, self.detail);
+            let next = moves.forward(reel.events(), step, self.detail);
             let stop = (step..next).find(|&i| self.stops_at(i));
             step = stop.map_or(next, |i| i + 1);
-            if stop.is_some() || step == stage.events().len() {
+            if stop.is_some() || step == reel.events().len() {
                 self.is_playing = false;
                 break;
             }

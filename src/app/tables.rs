@@ -1,80 +1,22 @@
-//! The papers' tables in the explorer: an experiment runs on the worker, on the open scene or on the default
-//! ones, and its table and chart stay until the next one.
+//! The papers' tables in the explorer: an experiment runs on the worker, and its table and chart stay until
+//! the next one.
 
 use std::sync::Arc;
 
-use super::any::Any;
+use super::measured::{Measured, Tables};
 use super::session::write_file;
-use super::state::{State, Theme};
+use super::shown::Theme;
+use super::state::State;
 use super::worker::Job;
-use crate::drawing::Drawing;
-use crate::figure::chart;
-use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::measure::paper::Experiment;
 use crate::method::Settings;
 use crate::render;
-use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
-
-/// Frames a scene: few enough to wait for.
-const FRAMES: usize = 96;
-
-/// What is asked about tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tables {
-    /// Measures the table with this name.
-    Measure(&'static str),
-    /// Stops measuring.
-    Stop,
-    /// Writes the table as `csv`, or its chart as `svg`, `pdf` or `png`, into the working folder.
-    Export(&'static str),
-}
-
-/// A table that was measured, with its chart on paper.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
-    /// The table.
-    pub report: Report,
-    /// The chart.
-    pub chart: Drawing,
-}
-
-/// Names and titles of all tables, for lists.
-pub fn tables() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    EXPERIMENTS.iter().map(|e| (e.name, e.title, e.summary))
-}
-
-/// Runs on the worker.
-pub(super) fn measure(
-    name: &str,
-    scene: Option<AnyScene>,
-    settings: Settings,
-    progress: &dyn Progress,
-) -> Result<Measured, String> {
-    let experiment = Experiment::named(name).ok_or_else(|| format!("there is no table `{name}`"))?;
-    let mut start = 0.0;
-    let mut scenes: Vec<AnyScene> = scene.into_iter().collect();
-    if scenes.is_empty() {
-        let share = 0.2 / experiment.scenes.len() as f32;
-        for (i, source) in experiment.scenes.iter().enumerate() {
-            let part = Part { whole: progress, start: share * i as f32, length: share };
-            scenes.push(load(source, &LoadOptions::default(), &part).map_err(|e| e.to_string())?);
-        }
-        start = 0.2;
-    }
-    let setup = Setup { frames: FRAMES, settings, ..Setup::default() };
-    let rest = Part { whole: progress, start, length: 1.0 - start };
-    let report = experiment.run(&scenes, &setup, &rest).map_err(|e: PaperError| e.to_string())?;
-    let chart = chart(report.title, &report.plots, &report.caption());
-    Ok(Measured { report, chart })
-}
 
 impl State {
     pub(super) fn tables(&mut self, asked: Tables) {
         match asked {
             Tables::Measure(name) => {
-                let scene = self.stage.as_ref().map(|stage| match stage {
-                    Any::Flat(s) => AnyScene::Flat(s.scene.clone()),
-                    Any::Solid(s) => AnyScene::Solid(s.scene.clone()),
-                });
+                let scene = self.stage.as_ref().map(|stage| stage.scene());
                 // The parameters that are set are taken over if they are those of its method.
                 let is_its = Experiment::named(name).is_some_and(|e| e.method == self.method);
                 let settings = if is_its { self.settings.clone() } else { Settings::default() };
@@ -95,7 +37,7 @@ impl State {
 
     /// Measuring takes the place of a film that was being recorded.
     fn record_if_missing(&mut self) {
-        if self.staged().is_some_and(|s| !s.has_film()) {
+        if self.stage.is_some() && self.film().is_none() {
             self.record();
         }
     }
@@ -112,7 +54,7 @@ impl State {
                 painted.parse().and_then(|format| render::export(chart, format, Theme::Print, &recipe))
             }
         };
-        let path = format!("{}.{format}", report.name);
+        let path = self.path_of(&format!("{}.{format}", report.name));
         match bytes.map_err(|e| e.to_string()).and_then(|b| write_file(&path, &b).map_err(|e| e.to_string()))
         {
             Ok(()) => self.tell(format!("The table was written to {path}.")),

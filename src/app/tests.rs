@@ -1,10 +1,10 @@
 //! The explorer without its window, driven by commands.
 
 use super::recall::spoken_command;
-use super::state::{Breakpoint, Detail, Dialog};
+use super::shown::Detail;
 use super::*;
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, PrimId};
+use crate::geometry::{Either, NodeId, PrimId};
 use crate::method::Verdict;
 
 /// A flatland scene that travels inside the program.
@@ -14,22 +14,22 @@ fn opened(source: &str) -> State {
     let mut state = State::new();
     state.apply(Command::Open(source.into()));
     state.block_until_idle();
-    assert!(state.staged().is_some_and(|s| s.has_film()), "{:?}", state.notices);
+    assert!(state.film().is_some(), "{:?}", state.notices);
     state
 }
 
 /// What a person sees that a step decides.
 fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
-    let stage = state.staged().expect("a stage");
-    (state.step, state.sentence(), state.line(), stage.counts(state.step))
+    let film = state.film().expect("a film");
+    (state.step, state.sentence(), state.line(), film.stamps.counts(state.step))
 }
 
 #[test]
 fn a_flight_becomes_a_path_that_can_be_followed() {
     let mut state = opened(FLAT);
     let place = |state: &State| state.staged().map(|s| s.place());
-    let Some(Any::Flat(start)) = state.stage.as_ref().map(|s| s.view()) else { panic!("a flat stage") };
-    let paths = |state: &State| if let Some(Any::Flat(s)) = &state.stage { s.paths.len() } else { 0 };
+    let Some(Either::Flat(start)) = state.stage.as_ref().map(|s| s.view()) else { panic!("a flat stage") };
+    let paths = |state: &State| if let Some(Either::Flat(s)) = &state.stage { s.paths.len() } else { 0 };
     let before = paths(&state);
     state.apply(Action::Flight);
     state.apply(Action::Flight);
@@ -40,14 +40,16 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
         let mut view = start;
         view.eye.position.x += k as f32;
         view.eye.target.x += k as f32;
-        state.apply(Command::Eye(Any::Flat(view), 7));
+        state.apply(Command::Eye(Either::Flat(view), 7));
         flown.push(view);
     }
+    state.folder = std::env::temp_dir().join(format!("cullscope-flight-{}", std::process::id()));
+    std::fs::create_dir_all(&state.folder).expect("a folder of our own");
     state.apply(Action::Flight);
-    let name = format!("{FLAT}-flight.views.json");
-    let text = std::fs::read_to_string(&name).expect("a view file");
-    std::fs::remove_file(&name).expect("a file of our own");
-    let Some(Any::Flat(stage)) = &state.stage else { panic!("a flat stage") };
+    let text = std::fs::read_to_string(state.folder.join(format!("{FLAT}-flight.views.json")));
+    std::fs::remove_dir_all(&state.folder).expect("a folder of our own");
+    let text = text.expect("a view file");
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("a flat stage") };
     assert_eq!(
         stage.paths.last().map(|p| (p.name.as_str(), p.views.as_slice())),
         Some(("flight", flown.as_slice()))
@@ -56,7 +58,7 @@ fn a_flight_becomes_a_path_that_can_be_followed() {
     assert!(text.contains("\"views\"") && text.matches("\"eye\"").count() == 5, "{text}");
     state.block_until_idle();
     state.apply(Command::Frame(before, 4));
-    assert!(matches!(state.stage.as_ref().map(|s| s.view()), Some(Any::Flat(v)) if v == flown[4]));
+    assert!(matches!(state.stage.as_ref().map(|s| s.view()), Some(Either::Flat(v)) if v == flown[4]));
 }
 
 #[test]
@@ -127,13 +129,13 @@ fn a_run_stops_at_breakpoints_forwards_and_backwards() {
 #[test]
 fn a_parameter_and_the_eye_are_culled_again_and_undone() {
     let mut state = opened(FLAT);
-    let first = state.staged().expect("a stage").film_serial();
+    let first = state.film().map(|f| f.serial);
     let events = state.len();
     state.apply(Command::Set("tree-height".into(), "3".into(), 1));
     state.apply(Command::Set("tree-height".into(), "2".into(), 1));
     state.block_until_idle();
     assert!(state.len() < events);
-    assert_ne!(state.staged().expect("a stage").film_serial(), first);
+    assert_ne!(state.film().map(|f| f.serial), first);
     // Both changes were one gesture.
     state.apply(Action::Undo);
     state.block_until_idle();
@@ -144,19 +146,19 @@ fn a_parameter_and_the_eye_are_culled_again_and_undone() {
     state.apply(Action::Undo);
 
     let before = state.stage.as_ref().expect("a stage").view();
-    let Any::Flat(mut view) = before else { panic!("flatland") };
+    let Either::Flat(mut view) = before else { panic!("flatland") };
     view.eye.position.y += 1.0;
-    state.apply(Command::Eye(Any::Flat(view), 2));
+    state.apply(Command::Eye(Either::Flat(view), 2));
     assert!(state.staged().expect("a stage").is_eye_moved());
     state.apply(Action::LockEye);
     view.eye.position.y += 1.0;
-    state.apply(Command::Eye(Any::Flat(view), 3));
-    assert_ne!(state.stage.as_ref().expect("a stage").view(), Any::Flat(view), "a locked Eye stays");
+    state.apply(Command::Eye(Either::Flat(view), 3));
+    assert_ne!(state.stage.as_ref().expect("a stage").view(), Either::Flat(view), "a locked Eye stays");
     state.apply(Action::Undo);
     assert_eq!(state.stage.as_ref().expect("a stage").view(), before);
     view.eye.target = view.eye.position;
     state.apply(Action::LockEye);
-    state.apply(Command::Eye(Any::Flat(view), 4));
+    state.apply(Command::Eye(Either::Flat(view), 4));
     assert_eq!(state.stage.as_ref().expect("a stage").view(), before, "an Eye that cannot see is refused");
     state.block_until_idle();
 }
@@ -196,14 +198,14 @@ fn stale_answers_are_dropped() {
         state.apply(Command::Set("tree-height".into(), height.to_string(), 0));
     }
     state.block_until_idle();
-    let knobs = state.staged().expect("a stage").film_knobs();
+    let knobs = state.film().expect("a film").reel.knobs();
     assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
     // What was cancelled never arrives.
     state.apply(Command::Set("tree-height".into(), "2".into(), 0));
     state.apply(Action::Cancel);
     std::thread::sleep(std::time::Duration::from_millis(100));
     state.poll();
-    let knobs = state.staged().expect("a stage").film_knobs();
+    let knobs = state.film().expect("a film").reel.knobs();
     assert!(knobs.iter().any(|(k, v)| k.name == "tree-height" && v.to_string() == "11"), "{knobs:?}");
 }
 
@@ -211,10 +213,10 @@ fn stale_answers_are_dropped() {
 fn why_names_the_decision_and_its_evidence() {
     let mut state = opened(FLAT);
     state.apply(Action::Last);
-    let stage = state.staged().expect("a stage");
+    let (stage, film) = (state.staged().expect("a stage"), state.film().expect("a film"));
     let mut kinds = std::collections::BTreeSet::new();
-    for p in (0..400).map(PrimId).filter(|&p| stage.has_prim(p)) {
-        let (at, verdict) = stage.prim_decision(p).expect("decided");
+    for p in (0..400).map(PrimId).filter(|&p| stage.scene().has_prim(p)) {
+        let (at, verdict) = film.stamps.prim_decision(p).expect("decided");
         kinds.insert(verdict);
         let lines = why(stage, Subject::Prim(p), state.step);
         assert!(lines.len() >= 3, "{lines:?}");
@@ -225,12 +227,13 @@ fn why_names_the_decision_and_its_evidence() {
         assert!(early[0].text.contains("yet"), "{early:?}");
     }
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [Verdict::Outside, Verdict::Visible]);
-    for n in (0..stage.node_count() as u32).map(NodeId) {
+    for n in (0..film.node_count() as u32).map(NodeId) {
         assert!(!why(stage, Subject::Node(n), state.step).is_empty(), "{n}");
     }
     state.apply(Command::Select(Subject::Prim(PrimId(0))));
     state.apply(Action::Why);
-    assert_eq!(Some(state.step), state.staged().expect("a stage").prim_decision(PrimId(0)).map(|d| d.0));
+    let decided = state.film().and_then(|f| f.stamps.prim_decision(PrimId(0)));
+    assert_eq!(Some(state.step), decided.map(|d| d.0));
 }
 
 #[test]
@@ -244,8 +247,8 @@ fn the_event_tree_folds_filters_and_reveals() {
     state.apply(Command::GoTo(100));
     assert!(state.outline.rows().contains(&99), "the current event is shown");
     state.apply(Command::Filter("verdict:outside kind:node".into()));
-    let (rows, stage) = (state.outline.rows(), state.staged().expect("a stage"));
-    let outside = stage.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
+    let rows = state.outline.rows();
+    let outside = state.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
     assert_eq!(rows.len(), outside);
     state.apply(Command::Filter("under:3 -line".into()));
     let within = state.outline.rows().len();
@@ -261,14 +264,14 @@ fn the_event_tree_folds_filters_and_reveals() {
 #[test]
 fn a_session_brings_everything_back() {
     let mut state = opened(FLAT);
-    let (_, frames) = state.staged().expect("a stage").path_names()[0];
+    let (_, frames) = state.staged().expect("a stage").paths()[0];
     state.apply(Command::Method("centroid".into()));
     state.apply(Command::Set("budget".into(), "50%".into(), 0));
     state.apply(Command::Frame(0, frames.min(3) - 1));
     state.block_until_idle();
-    let Any::Flat(mut view) = state.stage.as_ref().expect("a stage").view() else { panic!("flatland") };
+    let Either::Flat(mut view) = state.stage.as_ref().expect("a stage").view() else { panic!("flatland") };
     view.eye.position.x += 0.123_456_7;
-    state.apply(Command::Eye(Any::Flat(view), 0));
+    state.apply(Command::Eye(Either::Flat(view), 0));
     state.block_until_idle();
     state.apply(Command::GoTo(40));
     state.apply(Action::Bookmark);
@@ -361,7 +364,7 @@ fn selections_are_remembered() {
 #[test]
 fn the_image_of_flatland_shows_the_nearest_segments() {
     let state = opened(FLAT);
-    let Some(Any::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
     let image = stage.image();
     let projection = stage.view.projection();
     let mut seen = 0;

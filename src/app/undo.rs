@@ -1,7 +1,7 @@
 //! Undo: what culling depended on before each change.
 
 use super::any::AnyView;
-use super::command::Gesture;
+use super::shown::Gesture;
 use crate::method::Settings;
 
 /// All that culling depends on, beside the scene.

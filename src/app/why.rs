@@ -1,7 +1,7 @@
 //! Why a thing has the state it has, read from the film alone.
 
 use super::filter::verdict_of;
-use super::stage::Staged;
+use super::stage::{Footage, SceneFacts, Staged};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
 use crate::method::{Event, Verdict};
@@ -21,14 +21,15 @@ fn because(text: impl Into<String>, step: Option<usize>) -> Because {
 
 /// Why `subject` has the state it has at `step`: the conclusion first, then the evidence.
 pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
-    if !stage.has_film() {
-        return vec![];
-    }
+    let Some(film) = stage.film() else { return vec![] };
     match subject {
-        Subject::Node(node) if node.at() < stage.node_count() => why_node(stage, node, step),
-        Subject::Prim(prim) if stage.has_prim(prim) => why_prim(stage, prim, step),
+        Subject::Node(node) if node.at() < film.node_count() => why_node(stage, film, node, step),
+        Subject::Prim(prim) if stage.scene().has_prim(prim) => why_prim(stage, film, prim, step),
         Subject::Object(object) => vec![because(
-            format!("“{}” is an object; select one of its parts to see why.", stage.object_name(object)),
+            format!(
+                "“{}” is an object; select one of its parts to see why.",
+                stage.scene().object_name(object)
+            ),
             None,
         )],
         Subject::Eye => vec![because(
@@ -43,16 +44,16 @@ pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
     }
 }
 
-fn name(stage: &dyn Staged, prim: PrimId) -> String {
-    let object = stage.object_name(stage.object_of(prim));
+fn name(scene: &dyn SceneFacts, prim: PrimId) -> String {
+    let object = scene.object_name(scene.object_of(prim));
     let of = if object.is_empty() { String::new() } else { format!(" of {object}") };
-    format!("{} {prim}{of}", stage.prim_name())
+    format!("{} {prim}{of}", scene.prim_name())
 }
 
-fn why_prim(stage: &dyn Staged, prim: PrimId, step: usize) -> Vec<Because> {
-    let name = name(stage, prim);
-    match stage.prim_decision(prim) {
-        None if stage.lost() > 0 => vec![because(
+fn why_prim(stage: &dyn Staged, film: Footage<'_>, prim: PrimId, step: usize) -> Vec<Because> {
+    let name = name(stage.scene(), prim);
+    match film.stamps.prim_decision(prim) {
+        None if film.reel.lost() > 0 => vec![because(
             format!("Nothing is known of {name}: the film is capped and ends before it was decided."),
             None,
         )],
@@ -69,28 +70,28 @@ fn why_prim(stage: &dyn Staged, prim: PrimId, step: usize) -> Vec<Because> {
         Some((at, verdict)) => {
             let mut lines =
                 vec![because(format!("The {name} is {} since step {at}.", spoken(verdict)), Some(at))];
-            match stage.events()[at - 1] {
+            match film.reel.events()[at - 1] {
                 Event::DecidedNode(node, _) => {
                     lines.push(because(
                         format!(
                             "It lies in node {node}, which was decided as a whole, with {} others.",
-                            stage.node_prims(node).len().saturating_sub(1)
+                            stage.prims_below(node).saturating_sub(1)
                         ),
                         Some(at),
                     ));
-                    lines.extend(evidence(stage, at));
+                    lines.extend(evidence(film, at));
                 }
-                _ => lines.extend(evidence(stage, at)),
+                _ => lines.extend(evidence(film, at)),
             }
             lines
         }
     }
 }
 
-fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
-    if let Some((at, verdict)) = stage.node_decision(node) {
+fn why_node(stage: &dyn Staged, film: Footage<'_>, node: NodeId, step: usize) -> Vec<Because> {
+    if let Some((at, verdict)) = film.stamps.node_decision(node) {
         if at > step {
-            let text = match stage.node_entered(node) {
+            let text = match film.stamps.entered_at(node) {
                 Some(entered) if entered <= step => {
                     format!(
                         "Node {node} was entered at step {entered} and is not decided yet. It will be {}.",
@@ -106,12 +107,12 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
         }
         let mut lines =
             vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
-        lines.extend(evidence(stage, at));
+        lines.extend(evidence(film, at));
         return lines;
     }
     // Not decided itself: some node above it was.
     let above = std::iter::successors(stage.parent(node), |&n| stage.parent(n)).find_map(|n| {
-        let (at, verdict) = stage.node_decision(n)?;
+        let (at, verdict) = film.stamps.node_decision(n)?;
         (verdict != Verdict::Partial).then_some((n, at, verdict))
     });
     match above {
@@ -123,17 +124,17 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
                 ),
                 Some(at),
             )];
-            lines.extend(evidence(stage, at));
+            lines.extend(evidence(film, at));
             lines
         }
         Some((n, at, verdict)) => vec![because(
             format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict)),
             Some(at),
         )],
-        None if stage.node_entered(node).is_some_and(|e| e <= step) => {
+        None if film.stamps.entered_at(node).is_some_and(|e| e <= step) => {
             vec![because(
                 format!("Node {node} was entered; nothing was decided about it as a whole."),
-                stage.node_entered(node),
+                film.stamps.entered_at(node),
             )]
         }
         None => vec![because(format!("This method says nothing about node {node}."), None)],
@@ -141,14 +142,14 @@ fn why_node(stage: &dyn Staged, node: NodeId, step: usize) -> Vec<Because> {
 }
 
 /// The evidence right before the decision that is event `at − 1`, and the decision itself.
-fn evidence(stage: &dyn Staged, at: usize) -> Vec<Because> {
+fn evidence(film: Footage<'_>, at: usize) -> Vec<Because> {
     let decision = at - 1;
     let first = decision.saturating_sub(EVIDENCE_REACH);
     let noted = (first..decision)
         .rev()
-        .take_while(|&i| verdict_of(stage.events()[i]).is_none())
-        .find(|&i| matches!(stage.events()[i], Event::Noted(_)));
-    noted.into_iter().chain([decision]).map(|i| because(stage.sentence(i), Some(i + 1))).collect()
+        .take_while(|&i| verdict_of(film.reel.events()[i]).is_none())
+        .find(|&i| matches!(film.reel.events()[i], Event::Noted(_)));
+    noted.into_iter().chain([decision]).map(|i| because(film.reel.sentence(i), Some(i + 1))).collect()
 }
 
 /// How far before a decision its evidence may lie: a line of pseudocode may come between.

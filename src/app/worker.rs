@@ -9,19 +9,19 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
 
-use super::any::{Any, AnyRecorded};
+use super::any::AnyRecorded;
+use super::measured::{self, Measured};
 use super::open;
 use super::stage::Recorded;
-use super::tables;
 use crate::culling::Methods;
-use crate::geometry::{Flat, Solid, View};
+use crate::geometry::{Either, Flat, Solid, View};
 use crate::measure::deadline::Paced;
 use crate::method::Settings;
 use crate::raster::Drawable;
-use crate::scene::{AnyPath, AnyScene, Progress, Scene};
+use crate::scene::{AnyScene, Progress, Scene};
 use crate::trace::{Moves, Stamps};
 
-/// Events that a film keeps: 10 million, about 160 MB, before it says that it is capped.
+/// Events that a film keeps: 10 million, about 160 MB, before it is capped.
 pub const FILM_CAP_EVENTS: usize = 10_000_000;
 
 /// A film to record.
@@ -44,16 +44,16 @@ pub struct Request<S: Methods> {
 
 pub(super) enum Job {
     Load { source: String, views: Option<String> },
-    Record(Any<Request<Flat>, Request<Solid>>),
+    Record(Either<Request<Flat>, Request<Solid>>),
     Measure { name: &'static str, scene: Option<AnyScene>, settings: Settings },
 }
 
 pub(super) enum Done {
-    Loaded(AnyScene, Option<AnyPath>),
+    Loaded(open::AnyOpened),
     LoadFailed(String),
     Recorded(AnyRecorded),
     RecordFailed(String),
-    Measured(Box<tables::Measured>),
+    Measured(Box<Measured>),
     Cancelled,
 }
 
@@ -175,6 +175,7 @@ impl Worker {
             } else {
                 self.done.try_recv().ok()?
             };
+            // Answers to earlier requests are dropped.
             if got.0 == self.asked && self.open.is_some() {
                 self.open = None;
                 return Some(got.1);
@@ -210,29 +211,32 @@ impl Bench {
     fn work(&mut self, job: Job, ticket: &Ticket) -> Done {
         match job {
             Job::Load { source, views } => match open::load(&source, views.as_deref(), ticket) {
-                Ok((scene, path)) => Done::Loaded(scene, path),
+                Ok(opened) => Done::Loaded(opened),
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::LoadFailed(error),
             },
-            Job::Measure { name, scene, settings } => match tables::measure(name, scene, settings, ticket) {
-                Ok(measured) => Done::Measured(Box::new(measured)),
-                Err(_) if ticket.cancelled() => Done::Cancelled,
-                Err(error) => Done::RecordFailed(error),
-            },
-            Job::Record(Any::Flat(request)) => {
+            Job::Measure { name, scene, settings } => {
+                match measured::measure(name, scene, settings, ticket) {
+                    Ok(measured) => Done::Measured(Box::new(measured)),
+                    Err(_) if ticket.cancelled() => Done::Cancelled,
+                    Err(error) => Done::RecordFailed(error),
+                }
+            }
+            Job::Record(Either::Flat(request)) => {
                 self.serial += 1;
                 self.solid = None;
-                record(&mut self.flat, request, self.serial, ticket, Any::Flat)
+                record(&mut self.flat, request, self.serial, ticket, Either::Flat)
             }
-            Job::Record(Any::Solid(request)) => {
+            Job::Record(Either::Solid(request)) => {
                 self.serial += 1;
                 self.flat = None;
-                record(&mut self.solid, request, self.serial, ticket, Any::Solid)
+                record(&mut self.solid, request, self.serial, ticket, Either::Solid)
             }
         }
     }
 }
 
+/// Records a film, on the index that is ready if it still fits.
 fn record<S: Methods + Drawable>(
     ready: &mut Option<Ready<S>>,
     request: Request<S>,
@@ -263,6 +267,7 @@ fn record<S: Methods + Drawable>(
         }
     }
     let Some(Ready { run, .. }) = ready else { return Done::Cancelled };
+    // A film does not depend on what was looked at before: the path's earlier views make the memory anew.
     ticket.report(0.5, "recording");
     run.forget();
     if run.remembers() {
@@ -280,11 +285,5 @@ fn record<S: Methods + Drawable>(
     ticket.report(0.8, "reading the film");
     let stamps = Arc::new(Stamps::new(&*recording.film));
     let moves = Arc::new(Moves::new(recording.film.events()));
-    Done::Recorded(wrap(Recorded {
-        film: recording.film,
-        stamps,
-        moves,
-        drawn: recording.list.prims.len(),
-        serial,
-    }))
+    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial }))
 }

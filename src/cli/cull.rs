@@ -13,12 +13,12 @@ use super::progress::Bar;
 use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
-use crate::geometry::{PrimId, View};
+use crate::geometry::{PrimId, View, each};
 use crate::measure::deadline::Paced;
 use crate::measure::timed;
 use crate::raster::{Options, Target, shade};
 use crate::render::{Theme, png_pixels};
-use crate::scene::{AnyScene, Progress, Scene};
+use crate::scene::{Progress, Scene};
 use crate::truth::Truth;
 
 #[derive(clap::Args)]
@@ -89,10 +89,7 @@ struct TruthReport {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    match args.task.load()? {
-        AnyScene::Flat(scene) => of(args, &scene),
-        AnyScene::Solid(scene) => of(args, &scene),
-    }
+    each!(args.task.load()?, scene => of(args, &scene))
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {

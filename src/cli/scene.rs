@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::methods::json_text;
 use super::progress::Bar;
 use super::{CliError, World, convert, output, suggest};
-use crate::geometry::Vector;
+use crate::geometry::{Vector, each};
 use crate::scene::{AnyScene, LoadOptions, Recenter, Scene, SceneError, generators, load};
 
 /// What `cull` and `step` look at, and with what.
@@ -78,10 +78,9 @@ pub(super) enum Move {
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
     match command {
-        Command::Info { scene, json } => match open(scene, &LoadOptions::default())? {
-            AnyScene::Flat(scene) => info(&scene, *json),
-            AnyScene::Solid(scene) => info(&scene, *json),
-        },
+        Command::Info { scene, json } => {
+            each!(open(scene, &LoadOptions::default())?, scene => info(&scene, *json))
+        }
         Command::Generators => list_generators(),
         Command::Convert { scene, out, recenter } => {
             let recentered = *recenter == Move::Always;

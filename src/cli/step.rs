@@ -8,9 +8,9 @@ use serde_json::{Map, Value as Json};
 use super::methods::params_json;
 use super::task::{Ready, Task};
 use super::{CliError, World, output};
-use crate::geometry::ViewPath;
+use crate::geometry::{ViewPath, each};
 use crate::method::{Budget, KnobValue};
-use crate::scene::{AnyScene, Progress, Scene, write_views};
+use crate::scene::{Progress, Scene, write_views};
 use crate::trace::Detail;
 use crate::trace::format::{Header, write_film, write_header};
 
@@ -40,10 +40,7 @@ enum Fineness {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    match args.task.load()? {
-        AnyScene::Flat(scene) => of(args, &scene),
-        AnyScene::Solid(scene) => of(args, &scene),
-    }
+    each!(args.task.load()?, scene => of(args, &scene))
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {

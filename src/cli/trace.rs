@@ -11,9 +11,9 @@ use super::methods::find;
 use super::progress::Bar;
 use super::step::FILM_CAP;
 use super::{CliError, World, error::reason, output, scene};
-use crate::geometry::ViewPath;
+use crate::geometry::{ViewPath, each};
 use crate::method::Settings;
-use crate::scene::{AnyScene, LoadOptions, Progress, Scene, parse_views};
+use crate::scene::{LoadOptions, Progress, Scene, parse_views};
 use crate::trace::Detail;
 use crate::trace::format::{self, Header, write_film, write_header};
 use crate::truth::certificate::check_film;
@@ -47,10 +47,8 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     if !prove {
         return output::print(text.as_bytes());
     }
-    let proven = match scene::open(scene, &LoadOptions::default())? {
-        AnyScene::Flat(scene) => proven(file, &summary.header, &scene),
-        AnyScene::Solid(scene) => proven(file, &summary.header, &scene),
-    };
+    let scene = scene::open(scene, &LoadOptions::default())?;
+    let proven = each!(scene, scene => proven(file, &summary.header, &scene));
     output::print((text + &proven?).as_bytes())
 }
 

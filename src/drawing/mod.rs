@@ -7,6 +7,7 @@
 
 pub mod metrics;
 mod plot;
+pub mod words;
 
 pub use plot::{Plot, Series, Shape};
 

@@ -7,6 +7,7 @@
 mod bounds;
 #[cfg(test)]
 pub(crate) mod dice;
+mod either;
 mod eye;
 mod frustum;
 mod id;
@@ -19,6 +20,8 @@ mod tests;
 mod walk;
 
 pub use bounds::Aabb;
+pub use either::Either;
+pub(crate) use either::each;
 pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};

@@ -7,6 +7,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
+use crate::drawing::words::grouped;
+
 /// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
@@ -159,21 +161,6 @@ impl Table {
     }
 }
 
-/// A number with its thousands apart.
-pub(super) fn grouped(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    let (sign, text) = text.strip_prefix('-').map_or(("", text.as_str()), |t| ("−", t));
-    let (whole, rest) = text.split_once('.').map_or((text, String::new()), |(w, r)| (w, format!(".{r}")));
-    let mut out = String::from(sign);
-    for (i, digit) in whole.chars().enumerate() {
-        if i > 0 && (whole.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out + &rest
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,7 +190,6 @@ mod tests {
         let want = "scene     polygons  drawn\n                        %\n-------------------------\na \
                     \"b\", c   134,832    0.3\ncity             7      –\n";
         assert_eq!(sample().text(), want);
-        assert_eq!((grouped(-1234567.891, 2), grouped(999.0, 0)), ("−1,234,567.89".into(), "999".into()));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! evidence in general is worded and drawn.
 
 use super::{Claim, Field, Tally, Value};
+use crate::drawing::words::{self, Room};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View, faces_away};
 use crate::scene::Scene;
@@ -272,15 +273,9 @@ pub(crate) fn label<V>(to: &mut Drawing<V>, at: V, text: String) {
     to.push(Layer::Labels, Role::Evidence, Subject::None, mark);
 }
 
-/// A length with as many digits as a person reads.
+/// A length as sentences and labels of evidence give it.
 pub(crate) fn short(v: f32) -> String {
-    match v.abs() {
-        0.0 => "0".into(),
-        a if !(1e-3..1e5).contains(&a) => format!("{v:.1e}"),
-        a if a < 1.0 => format!("{v:.3}"),
-        a if a < 100.0 => format!("{v:.2}"),
-        _ => format!("{v:.0}"),
-    }
+    words::short(v, Room::Sentence)
 }
 
 /// A number as a field.

@@ -34,14 +34,14 @@ pub use paths::{figure_eight_path, random_views};
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
 pub use source::{LoadOptions, Recenter};
-pub use views::{parse_views, read_views, read_views_for, write_views};
+pub use views::{parse_views, read_views, write_views};
 
 use std::sync::Arc;
 
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
-use crate::geometry::{Aabb, Flat, MaterialId, ObjectId, PrimId, Solid, Space, View, ViewPath};
+use crate::geometry::{Aabb, Either, Flat, MaterialId, ObjectId, PrimId, Solid, Space, View, ViewPath};
 
 /// A named part of a scene: an `o` or `g` of an OBJ file, a node of a glTF file, a flatland object.
 #[derive(Clone, Debug, PartialEq)]
@@ -299,14 +299,8 @@ impl<S: Space> Scene<S> {
     }
 }
 
-/// A scene of either space, for code that does not know yet which.
-#[derive(Clone, Debug)]
-pub enum AnyScene {
-    /// Flatland.
-    Flat(Arc<Scene<Flat>>),
-    /// Space.
-    Solid(Arc<Scene<Solid>>),
-}
+/// A scene of either space.
+pub type AnyScene = Either<Arc<Scene<Flat>>, Arc<Scene<Solid>>>;
 
 impl From<Scene<Flat>> for AnyScene {
     fn from(scene: Scene<Flat>) -> Self {
@@ -318,15 +312,6 @@ impl From<Scene<Solid>> for AnyScene {
     fn from(scene: Scene<Solid>) -> Self {
         Self::Solid(Arc::new(scene))
     }
-}
-
-/// A view path of either space.
-#[derive(Clone, Debug, PartialEq)]
-pub enum AnyPath {
-    /// Flatland.
-    Flat(ViewPath<Flat>),
-    /// Space.
-    Solid(ViewPath<Solid>),
 }
 
 fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {

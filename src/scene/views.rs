@@ -16,10 +16,10 @@ use std::path::Path;
 use glam::DVec3;
 use serde::Deserialize;
 
+use super::SceneError;
 use super::json::{Step, from_slice, line_of};
 use super::source::{JSON_LIMIT_BYTES, stem};
 use super::text::read_file;
-use super::{AnyPath, AnyScene, SceneError};
 use crate::geometry::{Eye, Flat, Solid, Space, Vector, View, ViewPath};
 
 /// Greatest width and height of an image, pixels.
@@ -52,17 +52,6 @@ struct Entry {
 /// What is wrong, with the file and the line.
 pub fn read_views<S: Space>(path: &str, origin: DVec3) -> Result<ViewPath<S>, SceneError> {
     parse_views(&read_file(Path::new(path), path, JSON_LIMIT_BYTES)?, path, origin)
-}
-
-/// Reads a view file for this scene.
-///
-/// # Errors
-/// What is wrong, with the file and the line.
-pub fn read_views_for(path: &str, scene: &AnyScene) -> Result<AnyPath, SceneError> {
-    match scene {
-        AnyScene::Flat(s) => read_views(path, s.origin()).map(AnyPath::Flat),
-        AnyScene::Solid(s) => read_views(path, s.origin()).map(AnyPath::Solid),
-    }
 }
 
 /// Reads views out of JSON text; `source` is named in errors.

@@ -20,6 +20,10 @@ impl Stamp {
     /// The step of what never happens.
     pub const NEVER: u32 = u32::MAX;
     const NONE: Stamp = Stamp { step: Self::NEVER, verdict: Verdict::Partial };
+
+    fn decision(self) -> Option<(usize, Verdict)> {
+        (self.step != Self::NEVER).then_some((self.step as usize, self.verdict))
+    }
 }
 
 /// What is known of a node or primitive at a step.
@@ -145,9 +149,17 @@ impl Stamps {
         let stamp = self.prims[prim.at()];
         if stamp.step as usize <= step { State::Decided(stamp.verdict) } else { State::Unseen }
     }
-    /// The step that sealed a primitive's fate: what "jump to why" jumps to.
-    pub fn decided_at(&self, prim: PrimId) -> Option<usize> {
-        Some(self.prims[prim.at()].step).filter(|&s| s != Stamp::NEVER).map(|s| s as usize)
+    /// The step from which on a primitive's decision holds (what "jump to why" jumps to), and the decision.
+    pub fn prim_decision(&self, prim: PrimId) -> Option<(usize, Verdict)> {
+        self.prims[prim.at()].decision()
+    }
+    /// The step from which on a node's decision holds, if it was decided itself, and the decision.
+    pub fn node_decision(&self, node: NodeId) -> Option<(usize, Verdict)> {
+        self.nodes[node.at()].decision()
+    }
+    /// The step at which a node was first entered, if it was.
+    pub fn entered_at(&self, node: NodeId) -> Option<usize> {
+        Some(self.entered[node.at()]).filter(|&s| s != Stamp::NEVER).map(|s| s as usize)
     }
     /// Counts at a step.
     pub fn counts(&self, step: usize) -> Counts {

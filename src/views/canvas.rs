@@ -4,26 +4,35 @@
 use eframe::egui::{self, Pos2, Sense, pos2};
 use glam::Vec2;
 
-use super::handles::{self, Handle};
-use super::window::Cache;
+use super::handles::{self, Hand, Handle};
 use super::{Answers, palette};
-use crate::app::{Any, Command, Stage, State};
+use crate::app::{Command, Stage, State};
 use crate::drawing::{Drawing, Subject};
-use crate::figure::{self, Sheet};
-use crate::geometry::{Aabb, Flat};
+use crate::figure::{self, Look, Sheet};
+use crate::geometry::{Aabb, Either, Flat};
 use crate::render::screen;
 
 /// Distance of the turning handle from the Eye, points.
 const AIM_PT: f32 = 54.0;
 
+/// The step's marks in the plane, and the film, step and look that they were drawn for.
+pub type World = ((u64, usize, Look), Drawing<Vec2>);
+
 /// Shows flatland.
-pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+pub fn show(
+    state: &State,
+    stage: &Stage<Flat>,
+    drawn: &mut Option<World>,
+    hand: &mut Hand,
+    ui: &mut egui::Ui,
+    answers: &mut Answers,
+) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Observer view. {}", state.sentence()))
     });
-    cache.picture_focused |= response.has_focus();
-    if std::mem::take(&mut cache.frame) {
+    hand.is_picture_focused |= response.has_focus();
+    if std::mem::take(&mut hand.frame) {
         let mut camera = state.observer;
         camera.frame_flat(
             &target_box(state, stage),
@@ -32,7 +41,7 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
         );
         answers.push(Command::Observe(camera));
     }
-    cache.aspect = rect.aspect_ratio();
+    hand.aspect = rect.aspect_ratio();
     let sheet = sheet(state, rect);
     let to_screen = |p: Vec2| {
         let p = sheet.to_paper(p);
@@ -43,10 +52,10 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
     if let Some(recorded) = &stage.recorded {
         let look = state.look();
         let key = (recorded.serial, state.step, look);
-        if cache.flat.as_ref().is_none_or(|(k, _)| *k != key) {
-            cache.flat = Some((key, figure::world(&*recorded.film, &recorded.stamps, state.step, &look)));
+        if drawn.as_ref().is_none_or(|(k, _)| *k != key) {
+            *drawn = Some((key, figure::world(&*recorded.film, &recorded.stamps, state.step, &look)));
         }
-        if let Some((_, world)) = &cache.flat {
+        if let Some((_, world)) = drawn {
             let mut paper = Drawing { size_pt: Vec2::new(rect.width(), rect.height()), ..Drawing::default() };
             sheet.place(world, &mut paper);
             super::readable_labels(&mut paper);
@@ -57,7 +66,7 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
     let (position, ahead) = (to_screen(eye.position), Vec2::new(eye.forward().x, -eye.forward().y) * AIM_PT);
     let target = position + egui::vec2(ahead.x, ahead.y);
     handles::paint(state, &painter, &response, Some(position), Some(target));
-    interact(state, stage, cache, ui, &response, &sheet, (position, target), answers);
+    interact(state, stage, hand, ui, &response, &sheet, (position, target), answers);
     focus_ring(state, ui, &response);
 }
 
@@ -77,17 +86,10 @@ fn sheet(state: &State, rect: egui::Rect) -> Sheet {
 
 /// What `F` brings into the picture.
 fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
-    let scene = &stage.scene;
-    match (state.selection, &stage.recorded) {
-        (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => scene
-            .live()
-            .iter()
-            .filter(|&&p| scene.object_of(p) == o)
-            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
-        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
-        (Subject::Eye, _) => Aabb::of([stage.view.eye.position, stage.view.eye.target]),
-        _ => scene.bounds().with(stage.view.eye.position),
+    let eye = &stage.view.eye;
+    match state.selection {
+        Subject::Eye => Aabb::of([eye.position, eye.target]),
+        selected => stage.bounds_of(selected).unwrap_or_else(|| stage.scene.bounds().with(eye.position)),
     }
 }
 
@@ -95,7 +97,7 @@ fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
 fn interact(
     state: &State,
     stage: &Stage<Flat>,
-    cache: &mut Cache,
+    hand: &mut Hand,
     ui: &egui::Ui,
     response: &egui::Response,
     sheet: &Sheet,
@@ -112,17 +114,18 @@ fn interact(
             camera.zoom_flat(factor, world(at));
         }
     }
+    // A drag holds what lies under the point where the button went down, not where the drag was noticed.
     if response.drag_started() {
         let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
         let primary = response.dragged_by(egui::PointerButton::Primary) && !ui.input(|i| i.modifiers.shift);
-        cache.held = handles::under(at, Some(position), Some(target)).filter(|_| primary);
-        cache.gesture += 1;
+        hand.held = handles::under(at, Some(position), Some(target)).filter(|_| primary);
+        hand.gesture += 1;
     }
     if response.dragged() {
         let delta = response.drag_delta();
         let by = Vec2::new(delta.x, -delta.y) / sheet.scale;
         let mut view = stage.view;
-        match (cache.held, response.interact_pointer_pos()) {
+        match (hand.held, response.interact_pointer_pos()) {
             (Some(Handle::Position), _) => {
                 view.eye.position += by;
                 view.eye.target += by;
@@ -132,14 +135,15 @@ fn interact(
                 let toward = (world(at) - view.eye.position).normalize_or(view.eye.forward());
                 view.eye.target = view.eye.position + toward * length;
             }
+            // Nothing is held: the picture itself is.
             _ => camera.slide(-by),
         }
-        if cache.held.is_some() && delta != egui::Vec2::ZERO {
-            answers.push(Command::Eye(Any::Flat(view), cache.gesture));
+        if hand.held.is_some() && delta != egui::Vec2::ZERO {
+            answers.push(Command::Eye(Either::Flat(view), hand.gesture));
         }
     }
     if response.drag_stopped() {
-        cache.held = None;
+        hand.held = None;
     }
     if response.clicked() {
         response.request_focus();

@@ -11,13 +11,13 @@ use crate::trace::Counts;
 
 /// Shows the pseudocode.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
-    let Some(stage) = state.staged() else { return };
-    let Some(card) = stage.card() else { return };
+    let Some(film) = state.film() else { return };
+    let card = film.reel.card();
     let lit = state.line();
     let values = values(state);
     ui.horizontal_wrapped(|ui| {
         ui.weak("Stop at");
-        let end = stage.counts(stage.events().len());
+        let end = film.stamps.counts(state.len());
         for verdict in Counts::VERDICTS.into_iter().filter(|&v| end.of(v) > 0 || v == Verdict::Outside) {
             let mut stops = state.breakpoints.contains(&Breakpoint::Verdict(verdict));
             if ui
@@ -140,21 +140,21 @@ fn values_beside(state: &State, ui: &mut egui::Ui, row: egui::Rect, right: f32, 
 
 /// The next time that a line runs; from the beginning if it does not run again.
 fn next_time(state: &State, line: u8) -> Option<usize> {
-    let events = state.staged()?.events();
+    let events = state.events();
     let at = |i: &usize| events[*i] == Event::Line(line);
     (state.step..events.len()).find(at).or_else(|| (0..events.len()).find(at)).map(|i| i + 1)
 }
 
 /// The values that matter at this step: of the newest evidence or decision since the line was reached.
 fn values(state: &State) -> String {
-    let (Some(stage), Some(at)) = (state.staged(), state.current()) else { return String::new() };
-    let events = stage.events();
+    let (Some(film), Some(at)) = (state.film(), state.current()) else { return String::new() };
+    let events = film.reel.events();
     let first = at.saturating_sub(2);
     let Some(i) = (first..=at).rev().find(|&i| !matches!(events[i], Event::Line(_) | Event::FrameBegan))
     else {
         return String::new();
     };
-    let fields = stage.fields(i).1;
+    let fields = film.reel.fields(i).1;
     fields
         .iter()
         .take(4)

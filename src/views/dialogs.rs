@@ -1,23 +1,67 @@
 //! What stands in front of everything else: palette, keys, go to step, open, save, report, about.
 
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
 use eframe::egui::{self, Grid, Key, Modal, RichText, ScrollArea, TextEdit};
 
 use super::Answers;
-use super::events::grouped;
-use super::window::Cache;
 use crate::app::{Action, Command, Dialog, Menu, State, fuzzy};
+use crate::drawing::words::count;
+
+/// What is typed and chosen in the open dialog.
+#[derive(Default)]
+pub struct Typing {
+    /// Which dialog it is for.
+    dialog: Dialog,
+    text: String,
+    /// Chosen row of the palette.
+    row: usize,
+    /// The system's dialog.
+    pub chooser: Chooser,
+}
+
+/// The system's dialog to choose a scene, on a thread of its own, so that the window goes on.
+#[derive(Default)]
+pub struct Chooser(Option<Receiver<Option<String>>>);
+
+impl Chooser {
+    fn is_open(&self) -> bool {
+        self.0.is_some()
+    }
+    fn open(&mut self) {
+        let (send, receive) = channel();
+        self.0 = Some(receive);
+        std::thread::spawn(move || {
+            let dialog = rfd::FileDialog::new()
+                .set_title("Open a scene")
+                .add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
+            let _ = send.send(dialog.pick_file().map(|p| p.to_string_lossy().into_owned()));
+        });
+    }
+    /// The path that was chosen (`Some(None)` if none was), once; `None` while nothing is answered.
+    pub fn answer(&mut self) -> Option<Option<String>> {
+        let answer = match self.0.as_ref()?.try_recv() {
+            Ok(path) => path,
+            Err(TryRecvError::Empty) => return None,
+            // The thread is gone without an answer.
+            Err(TryRecvError::Disconnected) => None,
+        };
+        self.0 = None;
+        Some(answer)
+    }
+}
 
 /// Shows the open dialog, if there is one.
-pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut Answers) {
+pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &mut Answers) {
     if state.dialog == Dialog::None {
-        cache.typed_for = Dialog::None;
+        typing.dialog = Dialog::None;
         return;
     }
-    let is_new = cache.typed_for != state.dialog;
+    let is_new = typing.dialog != state.dialog;
     if is_new {
-        cache.typed_for = state.dialog;
-        cache.choice = 0;
-        cache.typed = match state.dialog {
+        typing.dialog = state.dialog;
+        typing.row = 0;
+        typing.text = match state.dialog {
             Dialog::GoTo => state.step.to_string(),
             Dialog::SaveAs => state.session_path.clone().unwrap_or_else(|| default_name(state)),
             _ => String::new(),
@@ -26,11 +70,11 @@ pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut
     let response = Modal::new(egui::Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_height(ctx.content_rect().height() * 0.8);
         match state.dialog {
-            Dialog::Palette => palette(state, cache, ui, is_new, answers),
+            Dialog::Palette => palette(state, typing, ui, is_new, answers),
             Dialog::Keys => keys(ui),
-            Dialog::GoTo => go_to(state, cache, ui, is_new, answers),
-            Dialog::Open => open(cache, ui, is_new, answers),
-            Dialog::SaveAs => save(cache, ui, is_new, answers),
+            Dialog::GoTo => go_to(state, typing, ui, is_new, answers),
+            Dialog::Open => open(typing, ui, is_new, answers),
+            Dialog::SaveAs => save(typing, ui, is_new, answers),
             Dialog::Report => report(state, ui),
             Dialog::About => about(state, ui),
             Dialog::Tables => super::tables::show(state, ui, answers),
@@ -48,7 +92,7 @@ pub fn show(state: &State, cache: &mut Cache, ctx: &egui::Context, answers: &mut
 }
 
 fn default_name(state: &State) -> String {
-    format!("{}.session.json", state.staged().map_or("untitled", |s| s.scene_name()))
+    format!("{}.session.json", state.staged().map_or("untitled", |s| s.scene().name()))
 }
 
 fn field(ui: &mut egui::Ui, text: &mut String, label: &str, hint: &str, focus: bool) -> egui::Response {
@@ -64,34 +108,34 @@ fn entered(ui: &egui::Ui, response: &egui::Response) -> bool {
     response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))
 }
 
-fn palette(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+fn palette(state: &State, typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     let (up, down) = ui.input_mut(|i| {
         (
             i.consume_key(egui::Modifiers::NONE, Key::ArrowUp),
             i.consume_key(egui::Modifiers::NONE, Key::ArrowDown),
         )
     });
-    let response = field(ui, &mut cache.typed, "Command", "Type a command", is_new);
+    let response = field(ui, &mut typing.text, "Command", "Type a command", is_new);
     let mut found: Vec<_> =
-        Action::ALL.iter().filter_map(|i| Some((fuzzy(&cache.typed, i.title)?, i))).collect();
-    if !cache.typed.is_empty() {
+        Action::ALL.iter().filter_map(|i| Some((fuzzy(&typing.text, i.title)?, i))).collect();
+    if !typing.text.is_empty() {
         found.sort_by_key(|(score, i)| (std::cmp::Reverse(*score), i.action));
     }
     if response.changed() {
-        cache.choice = 0;
+        typing.row = 0;
     }
-    cache.choice =
-        (cache.choice + usize::from(down)).saturating_sub(usize::from(up)).min(found.len().saturating_sub(1));
+    typing.row =
+        (typing.row + usize::from(down)).saturating_sub(usize::from(up)).min(found.len().saturating_sub(1));
     let mut chosen = None;
     ScrollArea::vertical().max_height(360.0).auto_shrink(false).show(ui, |ui| {
         ui.set_width(420.0);
         for (row, (_, info)) in found.iter().enumerate() {
             let keys = info.keys.first().copied().unwrap_or_default();
-            let button = egui::Button::selectable(row == cache.choice, info.title)
+            let button = egui::Button::selectable(row == typing.row, info.title)
                 .shortcut_text(keys)
                 .min_size(egui::vec2(410.0, 0.0));
             let response = ui.add_enabled(state.can(info.action), button).on_hover_text(info.help);
-            if row == cache.choice && (up || down) {
+            if row == typing.row && (up || down) {
                 response.scroll_to_me(None);
             }
             if response.clicked() {
@@ -100,7 +144,7 @@ fn palette(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, an
         }
     });
     if entered(ui, &response) {
-        chosen = found.get(cache.choice).map(|(_, i)| i.action);
+        chosen = found.get(typing.row).map(|(_, i)| i.action);
     }
     if let Some(action) = chosen {
         answers.push(Command::Dialog(Dialog::None));
@@ -144,11 +188,11 @@ fn keys(ui: &mut egui::Ui) {
     });
 }
 
-fn go_to(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+fn go_to(state: &State, typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     ui.heading("Go to step");
-    ui.label(format!("0 to {}; a share such as 50% works too.", grouped(state.len())));
-    let response = field(ui, &mut cache.typed, "Step number", "", is_new);
-    let typed = cache.typed.trim();
+    ui.label(format!("0 to {}; a share such as 50% works too.", count(state.len())));
+    let response = field(ui, &mut typing.text, "Step number", "", is_new);
+    let typed = typing.text.trim();
     let step = match typed.strip_suffix('%') {
         Some(share) => share
             .trim()
@@ -166,24 +210,24 @@ fn go_to(state: &State, cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answ
     }
 }
 
-fn open(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+fn open(typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     ui.heading("Open a scene");
     ui.label("A path to .obj, .gltf, .glb, a flatland .json or a session file, or generate:NAME.");
-    let response = field(ui, &mut cache.typed, "Path of the scene", "scenes2d/street.json", is_new);
+    let response = field(ui, &mut typing.text, "Path of the scene", "scenes2d/street.json", is_new);
     let enter = entered(ui, &response);
     ui.horizontal(|ui| {
-        let typed = cache.typed.trim().to_owned();
+        let typed = typing.text.trim().to_owned();
         if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Open")).clicked() || enter)
             && !typed.is_empty()
         {
             answers.push(Command::Open(typed));
         }
         if ui
-            .add_enabled(!cache.is_asking(), egui::Button::new("Browse…"))
+            .add_enabled(!typing.chooser.is_open(), egui::Button::new("Browse…"))
             .on_hover_text("The system's dialog, where there is one")
             .clicked()
         {
-            cache.ask_open();
+            typing.chooser.open();
         }
         if ui.button("Close").clicked() {
             answers.push(Command::Dialog(Dialog::None));
@@ -191,12 +235,12 @@ fn open(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answer
     });
 }
 
-fn save(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
+fn save(typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     ui.heading("Save the session");
-    let response = field(ui, &mut cache.typed, "Path of the session", "NAME.session.json", is_new);
+    let response = field(ui, &mut typing.text, "Path of the session", "NAME.session.json", is_new);
     let enter = entered(ui, &response);
     ui.horizontal(|ui| {
-        let typed = cache.typed.trim().to_owned();
+        let typed = typing.text.trim().to_owned();
         if (ui.add_enabled(!typed.is_empty(), egui::Button::new("Save")).clicked() || enter)
             && !typed.is_empty()
         {
@@ -209,34 +253,34 @@ fn save(cache: &mut Cache, ui: &mut egui::Ui, is_new: bool, answers: &mut Answer
 }
 
 fn report(state: &State, ui: &mut egui::Ui) {
-    let Some(stage) = state.staged() else { return };
-    let report = stage.report();
+    let Some(scene) = state.staged().map(|s| s.scene()) else { return };
+    let report = scene.report();
     ui.heading("Loading report");
-    ui.label(format!("{} from {}", stage.scene_name(), stage.source()));
+    ui.label(format!("{} from {}", scene.name(), scene.source()));
     ui.label(format!(
         "{} {}s in {} objects",
-        grouped(stage.prim_count()),
-        stage.prim_name(),
-        grouped(stage.object_count())
+        count(scene.live_count()),
+        scene.prim_name(),
+        count(scene.object_count())
     ));
     if report.dropped.is_empty() {
         ui.label("Nothing was dropped.");
     }
-    for (why, count) in &report.dropped {
-        ui.label(format!("{} dropped: {}", grouped(*count), why.label()));
+    for (why, dropped) in &report.dropped {
+        ui.label(format!("{} dropped: {}", count(*dropped), why.label()));
     }
     ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
         for note in &report.notes {
             ui.add(egui::Label::new(note).wrap());
         }
         if report.unsaid > 0 {
-            ui.weak(format!("… and {} more", grouped(report.unsaid)));
+            ui.weak(format!("… and {} more", count(report.unsaid)));
         }
     });
 }
 
 fn about(state: &State, ui: &mut egui::Ui) {
-    let Some(card) = state.staged().and_then(|s| s.card()) else { return };
+    let Some(card) = state.film().map(|f| f.reel.card()) else { return };
     ui.set_max_width(460.0);
     ui.heading(card.name);
     ui.label(card.summary);

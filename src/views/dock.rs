@@ -4,9 +4,11 @@ use eframe::egui;
 use egui_tiles::{Container, Linear, LinearDir, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
-use super::window::Cache;
+use super::cache::Cache;
+use super::space::Tools;
 use super::{Answers, canvas, code, events, inspector, parameters, pictures, space, strip, timeline, why};
-use crate::app::{Any, Layout, State};
+use crate::app::{Layout, State};
+use crate::geometry::Either;
 
 /// A panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -140,26 +142,29 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
     }
     fn pane_ui(&mut self, ui: &mut egui::Ui, _: TileId, pane: &mut Pane) -> UiResponse {
         let pane = seen(self.state, *pane);
-        let (state, answers) = (self.state, &mut *self.answers);
+        let (state, cache, answers) = (self.state, &mut *self.cache, &mut *self.answers);
         ui.push_id(pane as u8, |ui| match pane {
             Pane::Eye | Pane::Observer => match &state.stage {
-                Some(Any::Flat(stage)) if pane == Pane::Observer => {
-                    canvas::show(state, stage, self.cache, ui, answers)
+                Some(Either::Flat(stage)) if pane == Pane::Observer => {
+                    canvas::show(state, stage, &mut cache.world, &mut cache.hand, ui, answers)
                 }
-                Some(Any::Flat(stage)) => strip::show(state, stage, self.cache, ui, answers),
-                Some(Any::Solid(stage)) => {
-                    space::show(state, stage, pane == Pane::Eye, self.cache, self.gpu, ui, answers)
+                Some(Either::Flat(stage)) => {
+                    strip::show(state, stage, &mut cache.image, &mut cache.hand, ui, answers)
+                }
+                Some(Either::Solid(stage)) => {
+                    let tools = Tools { gpu: self.gpu, uploaded: &mut cache.uploaded, hand: &mut cache.hand };
+                    space::show(state, stage, pane == Pane::Eye, tools, ui, answers)
                 }
                 None => {}
             },
             _ => {
                 egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| match pane {
-                    Pane::Events => events::show(state, self.cache, ui, answers),
+                    Pane::Events => events::show(state, &mut cache.scroll, ui, answers),
                     Pane::Why => why::show(state, ui, answers),
                     Pane::Inspector => inspector::show(state, ui, answers),
-                    Pane::Parameters => parameters::show(state, self.cache, ui, answers),
-                    Pane::Timeline => timeline::show(state, self.cache, ui, answers),
-                    Pane::Pictures => pictures::show(state, self.cache, ui),
+                    Pane::Parameters => parameters::show(state, &mut cache.hand.gesture, ui, answers),
+                    Pane::Timeline => timeline::show(state, &mut cache.lanes, ui, answers),
+                    Pane::Pictures => pictures::show(state, &mut cache.picture, ui),
                     _ => code::show(state, ui, answers),
                 });
             }

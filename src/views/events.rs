@@ -6,46 +6,54 @@ use eframe::egui::{self, Align, RichText, ScrollArea, Sense, TextEdit};
 use super::Answers;
 use super::icons::{self, Icon};
 use super::legend::verdict_mark;
-use super::window::Cache;
-use crate::app::{Command, Staged, State, kind_name, subject_at, verdict_of};
+use crate::app::{Command, Footage, SceneFacts, State, kind_name, subject_at, verdict_of};
 use crate::drawing::Subject;
-use crate::method::Event;
+use crate::drawing::words::{count, spaced};
+use crate::method::{Event, Reel};
 
 /// Indent of a level.
 const INDENT: f32 = 9.0;
 /// Deepest indent: deeper levels stay readable.
 const MAX_LEVELS: usize = 14;
 
+/// How far the tree is scrolled, and what it is to do in the next frame.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scroll {
+    /// Step, film and number of rows that it was last scrolled for.
+    shown: Option<(usize, u64, usize)>,
+    /// Points above what is in sight.
+    offset: f32,
+    /// Put the cursor into the filter.
+    pub focus_filter: bool,
+}
+
 /// Shows the event tree.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
-    let Some(stage) = state.staged() else { return };
-    search(state, cache, ui, answers);
+pub fn show(state: &State, scroll: &mut Scroll, ui: &mut egui::Ui, answers: &mut Answers) {
+    search(state, scroll, ui, answers);
     let rows = state.outline.rows();
     if let Some(error) = state.outline.error() {
         ui.colored_label(ui.visuals().error_fg_color, error.to_string());
     }
-    let shown = if rows.len() == stage.events().len() {
-        String::new()
-    } else {
-        format!("{} of ", grouped(rows.len()))
-    };
-    ui.weak(format!("{shown}{} events", grouped(stage.events().len())));
-    if stage.lost() > 0 {
+    let shown = if rows.len() == state.len() { String::new() } else { format!("{} of ", count(rows.len())) };
+    ui.weak(format!("{shown}{} events", count(state.len())));
+    let film = state.film();
+    let lost = film.map_or(0, |f| f.reel.lost());
+    if lost > 0 {
         ui.colored_label(
             ui.visuals().warn_fg_color,
-            format!("Capped: {} later events were not kept.", grouped(stage.lost() as usize)),
+            format!("Capped: {} later events were not kept.", count(lost as usize)),
         );
     }
     let height = ui.spacing().interact_size.y;
     let spacing = ui.spacing().item_spacing.y;
     let mut area = ScrollArea::vertical().auto_shrink(false).id_salt("events");
     // Bring the current row into sight when the step has changed.
-    let here = (state.step, stage.film_serial(), rows.len());
-    if cache.scrolled_to != Some(here) {
-        cache.scrolled_to = Some(here);
+    let here = (state.step, film.map_or(0, |f| f.serial), rows.len());
+    if scroll.shown != Some(here) {
+        scroll.shown = Some(here);
         let row = state.current().and_then(|at| state.outline.row_of(at)).unwrap_or(0);
         let (top, room) = (row as f32 * (height + spacing), ui.available_height());
-        let seen = cache.events_offset;
+        let seen = scroll.offset;
         if top < seen + height || top > seen + room - 2.0 * height {
             area = area.vertical_scroll_offset((top - room * 0.4).max(0.0));
         }
@@ -53,13 +61,15 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut A
     let output = area.show_rows(ui, height, rows.len(), |ui, range| {
         ui.set_min_width(ui.available_width());
         for row in range {
-            line(state, stage, rows[row] as usize, ui, answers);
+            if let (Some(stage), Some(film)) = (state.staged(), film) {
+                line(state, stage.scene(), film, rows[row] as usize, ui, answers);
+            }
         }
     });
-    cache.events_offset = output.state.clamped_offset().y;
+    scroll.offset = output.state.clamped_offset().y;
 }
 
-fn search(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+fn search(state: &State, scroll: &mut Scroll, ui: &mut egui::Ui, answers: &mut Answers) {
     let mut text = state.filter.clone();
     ui.horizontal(|ui| {
         let room = ui.available_width() - if text.is_empty() { 0.0 } else { 30.0 };
@@ -74,7 +84,7 @@ fn search(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Ans
              under:12  under:door  line:visible:3  depth>4",
         );
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter events"));
-        if std::mem::take(&mut cache.focus_filter) {
+        if std::mem::take(&mut scroll.focus_filter) {
             response.request_focus();
         }
         if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
@@ -95,11 +105,18 @@ fn search(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Ans
     }
 }
 
-fn line(state: &State, stage: &dyn Staged, at: usize, ui: &mut egui::Ui, answers: &mut Answers) {
-    let event = stage.events()[at];
-    let depth = stage.moves().map_or(0, |m| m.depth(at)).min(MAX_LEVELS);
+fn line(
+    state: &State,
+    scene: &dyn SceneFacts,
+    film: Footage<'_>,
+    at: usize,
+    ui: &mut egui::Ui,
+    answers: &mut Answers,
+) {
+    let event = film.reel.events()[at];
+    let depth = film.moves.depth(at).min(MAX_LEVELS);
     let is_current = state.current() == Some(at);
-    let subject = subject_at(stage, at);
+    let subject = subject_at(film.reel, at);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.add_space(depth as f32 * INDENT);
@@ -108,7 +125,8 @@ fn line(state: &State, stage: &dyn Staged, at: usize, ui: &mut egui::Ui, answers
             let is_folded = state.outline.is_folded(at as u32);
             let icon = if is_folded { Icon::Folded } else { Icon::Unfolded };
             let response = icons::plain(ui, icon, Sense::click(), ui.visuals().weak_text_color());
-            let name = format!("{} {}", if is_folded { "Unfold" } else { "Fold" }, label(stage, at));
+            let name =
+                format!("{} {}", if is_folded { "Unfold" } else { "Fold" }, label(scene, film.reel, at));
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
             if response.clicked() {
                 answers.push(Command::Fold(at as u32));
@@ -122,7 +140,7 @@ fn line(state: &State, stage: &dyn Staged, at: usize, ui: &mut egui::Ui, answers
             None => ui.add_space(0.0),
         }
         let future = at >= state.step;
-        let mut text = RichText::new(label(stage, at));
+        let mut text = RichText::new(label(scene, film.reel, at));
         if future {
             text = text.weak();
         }
@@ -144,44 +162,19 @@ fn line(state: &State, stage: &dyn Staged, at: usize, ui: &mut egui::Ui, answers
 }
 
 /// One line for an event.
-pub fn label(stage: &dyn Staged, at: usize) -> String {
-    let event = stage.events()[at];
-    let kind = spaced(kind_name(stage, at, event));
+fn label(scene: &dyn SceneFacts, reel: &dyn Reel, at: usize) -> String {
+    let event = reel.events()[at];
+    let kind = spaced(kind_name(reel, at));
     match event {
-        Event::Line(i) => stage.card().map_or(kind, |c| c.code[i as usize].text.trim().to_owned()),
+        Event::Line(i) => reel.card().code[i as usize].text.trim().to_owned(),
         Event::DecidedNode(n, v) => format!("node {n}: {}", v.name()),
-        Event::DecidedPrim(p, v) => format!("{} {p}: {}", stage.prim_name(), v.name()),
+        Event::DecidedPrim(p, v) => format!("{} {p}: {}", scene.prim_name(), v.name()),
         Event::Entered(n) => format!("node {n}"),
         Event::Left(n) => format!("end of node {n}"),
-        _ => match subject_at(stage, at) {
+        _ => match subject_at(reel, at) {
             Subject::Node(n) => format!("{kind}, node {n}"),
-            Subject::Prim(p) => format!("{kind}, {} {p}", stage.prim_name()),
+            Subject::Prim(p) => format!("{kind}, {} {p}", scene.prim_name()),
             _ => kind,
         },
     }
-}
-
-/// `NodeClassified` as `node classified`.
-pub fn spaced(kind: &str) -> String {
-    let mut text = String::new();
-    for c in kind.chars() {
-        if c.is_uppercase() && !text.is_empty() {
-            text.push(' ');
-        }
-        text.extend(c.to_lowercase());
-    }
-    text
-}
-
-/// A count with thin groups of three digits.
-pub fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, c) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(c);
-    }
-    text
 }

@@ -5,7 +5,7 @@
 use eframe::egui::{self, CursorIcon, Pos2, Response, Stroke};
 
 use super::palette;
-use crate::app::State;
+use crate::app::{Gesture, State};
 use crate::drawing::Role;
 
 /// A part of the Eye.
@@ -15,6 +15,25 @@ pub enum Handle {
     Position,
     /// Turns it.
     Target,
+}
+
+/// What the person does in the pictures, from frame to frame, and what the window is to know of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Hand {
+    /// The part of the Eye that the pointer holds.
+    pub held: Option<Handle>,
+    /// Number of the present gesture, for undo.
+    pub gesture: Gesture,
+    /// Whether letters carried the Eye in the last frame.
+    pub flew: bool,
+    /// Whether the Eye's picture takes letters to fly.
+    pub is_flying: bool,
+    /// Whether a picture has the focus.
+    pub is_picture_focused: bool,
+    /// Bring the selection, or everything, into the Observer's picture.
+    pub frame: bool,
+    /// Width over height of the Observer's picture.
+    pub aspect: f32,
 }
 
 /// How near the pointer must come.

@@ -92,20 +92,20 @@ fn paint(painter: &egui::Painter, icon: Icon, rect: Rect, color: Color32) {
             let points = vec![r.left_top(), r.right_top(), r.center_bottom()];
             painter.add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
         }
-        Icon::Theme => {
-            painter.circle_stroke(r.center(), side * 0.5, Stroke::new(1.5, color));
-            let at =
-                |k: i32| r.center() + egui::Vec2::angled((90.0 + 18.0 * k as f32).to_radians()) * side * 0.5;
-            painter.add(egui::Shape::convex_polygon(
-                (0..=10).map(at).collect::<Vec<Pos2>>(),
-                color,
-                Stroke::NONE,
-            ));
-        }
+        Icon::Theme => half_moon(painter, r, color),
         Icon::Dot => drop_shape(painter.circle_filled(r.center(), side * 0.5, color)),
         Icon::Ring => drop_shape(painter.circle_stroke(r.center(), side * 0.28, Stroke::new(1.0, color))),
         Icon::Here => triangle(r, true),
     }
+}
+
+/// A ring whose left half is filled.
+fn half_moon(painter: &egui::Painter, r: Rect, color: Color32) {
+    let radius = r.height() * 0.5;
+    painter.circle_stroke(r.center(), radius, Stroke::new(1.5, color));
+    let at = |k: i32| r.center() + egui::Vec2::angled((90.0 + 18.0 * k as f32).to_radians()) * radius;
+    let half = (0..=10).map(at).collect::<Vec<Pos2>>();
+    painter.add(egui::Shape::convex_polygon(half, color, Stroke::NONE));
 }
 
 /// An arrow that leaves upward.

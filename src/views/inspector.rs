@@ -3,21 +3,21 @@
 use eframe::egui::{self, Grid, RichText, ScrollArea};
 
 use super::Answers;
-use super::events::spaced;
-use super::why::{capitalized, subject_name};
-use crate::app::{Command, State, short};
+use super::why::subject_name;
+use crate::app::{Command, State};
 use crate::drawing::Subject;
+use crate::drawing::words::{Room, capitalized, short, spaced};
 use crate::method::Value;
 
 /// A value as a person reads it.
 pub fn value(value: &Value) -> String {
     match value {
-        Value::Number(v) => short(*v as f32),
+        Value::Number(v) => short(*v as f32, Room::Row),
         Value::Integer(v) => v.to_string(),
         Value::Switch(true) => "yes".into(),
         Value::Switch(false) => "no".into(),
         Value::Word(w) => w.clone(),
-        Value::List(list) => list.iter().map(|v| short(*v as f32)).collect::<Vec<_>>().join(", "),
+        Value::List(list) => list.iter().map(|v| short(*v as f32, Room::Row)).collect::<Vec<_>>().join(", "),
     }
 }
 
@@ -25,9 +25,9 @@ pub fn value(value: &Value) -> String {
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = state.staged() else { return };
     ScrollArea::vertical().auto_shrink(false).id_salt("inspector").show(ui, |ui| {
-        match state.current() {
-            Some(at) => {
-                let (kind, fields) = stage.fields(at);
+        match state.film().zip(state.current()) {
+            Some((film, at)) => {
+                let (kind, fields) = film.reel.fields(at);
                 ui.strong(format!("Step {}: {}", state.step, spaced(kind)));
                 rows(ui, "event", fields.iter().map(|f| (f.name.replace('_', " "), value(&f.value))));
             }
@@ -35,7 +35,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 ui.strong("Step 0: before the first event");
             }
         }
-        let stack = stage.moves().map_or(vec![], |m| m.stack(stage.events(), state.step));
+        let stack = state.film().map_or(vec![], |f| f.moves.stack(f.reel.events(), state.step));
         if !stack.is_empty() {
             ui.add_space(6.0);
             ui.horizontal_wrapped(|ui| {

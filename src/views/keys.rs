@@ -21,8 +21,8 @@ pub struct Inbox {
     pub is_typing: bool,
     /// Whether the pictures take letters to fly.
     pub is_flying: bool,
-    /// Actions that were asked for by a key.
-    pub asked: Vec<Action>,
+    /// Actions whose keys were pressed.
+    pub pressed: Vec<Action>,
 }
 
 /// The inbox, shared between the window and the hook.
@@ -115,7 +115,7 @@ impl egui::Plugin for Hook {
             };
             let found = self.bindings.iter().find(|(m, k, a)| fits(m, k) && inbox.enabled.contains(a));
             let Some((.., action)) = found else { return true };
-            inbox.asked.push(*action);
+            inbox.pressed.push(*action);
             taken_text.push(*key);
             false
         });

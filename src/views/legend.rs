@@ -4,12 +4,14 @@
 use eframe::egui::{self, Sense, vec2};
 use glam::Vec2;
 
-use crate::app::{Any, State};
+use crate::app::State;
+use crate::drawing::words::count;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::figure::role_of;
+use crate::geometry::Either;
 use crate::method::Verdict;
 use crate::render::screen;
-use crate::trace::State as Known;
+use crate::trace::{Counts, State as Known};
 
 /// Size of a mark.
 const MARK: egui::Vec2 = vec2(18.0, 12.0);
@@ -45,8 +47,8 @@ const STATES: [(Role, &str); 9] = [
 /// The legend in one wrapping line: the states that this film has, then the marks of the moment.
 pub fn show(state: &State, ui: &mut egui::Ui) {
     let Some(stage) = state.staged() else { return };
-    let end = stage.counts(stage.events().len());
-    let here = stage.counts(state.step);
+    let counts = |step| state.film().map_or(Counts::default(), |f| f.stamps.counts(step));
+    let (end, here) = (counts(state.len()), counts(state.step));
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let shown = stage.evidence_roles(state.step);
@@ -54,7 +56,7 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             if role == Role::Occluder && !shown.contains(&role) {
                 continue;
             }
-            let verdicts: Vec<Verdict> = crate::trace::Counts::VERDICTS
+            let verdicts: Vec<Verdict> = Counts::VERDICTS
                 .into_iter()
                 .filter(|&v| v != Verdict::Partial && role_of(Known::Decided(v)) == role)
                 .collect();
@@ -63,11 +65,11 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             if !verdicts.is_empty() && total == 0 && !matches!(role, Role::Visible | Role::Outside) {
                 continue;
             }
-            let count: usize = verdicts.iter().map(|&v| here.of(v)).sum();
+            let now: usize = verdicts.iter().map(|&v| here.of(v)).sum();
             let text = match role {
-                Role::Scene => format!("{words} {}", super::events::grouped(here.undecided)),
+                Role::Scene => format!("{words} {}", count(here.undecided)),
                 _ if verdicts.is_empty() => words.to_owned(),
-                _ => format!("{words} {}", super::events::grouped(count)),
+                _ => format!("{words} {}", count(now)),
             };
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 3.0;
@@ -76,7 +78,7 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
             });
             ui.add_space(6.0);
         }
-        let unit = if matches!(state.stage, Some(Any::Flat(_))) { "segments" } else { "triangles" };
+        let unit = if matches!(state.stage, Some(Either::Flat(_))) { "segments" } else { "triangles" };
         ui.weak(format!("(counts in {unit})"));
     });
 }

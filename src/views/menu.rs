@@ -5,6 +5,7 @@ use eframe::egui;
 use super::Answers;
 use super::icons::Icon;
 use crate::app::{Action, Command, Dialog, Menu, State, Surface, Theme};
+use crate::drawing::words::count;
 
 /// Shows the menus.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -39,7 +40,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.separator();
         if let Some(stage) = state.staged() {
             method(state, ui, answers);
-            if matches!(state.stage, Some(crate::app::Any::Solid(_))) {
+            if matches!(state.stage, Some(crate::geometry::Either::Solid(_))) {
                 surface(state, ui, answers);
             }
             let boxes = egui::Button::selectable(state.shown.nodes, "Boxes");
@@ -47,13 +48,9 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 answers.push(Action::ShowNodes.into());
             }
             ui.separator();
-            let report = stage.report();
-            let text = format!(
-                "{}: {} {}s",
-                stage.scene_name(),
-                super::events::grouped(stage.prim_count()),
-                stage.prim_name()
-            );
+            let scene = stage.scene();
+            let report = scene.report();
+            let text = format!("{}: {} {}s", scene.name(), count(scene.live_count()), scene.prim_name());
             let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
             let text = if has_news { format!("{text} (!)") } else { text };
             if ui.link(text).on_hover_text("Loading report").clicked() {

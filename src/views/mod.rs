@@ -1,8 +1,10 @@
 //! The explorer's window: panels that read [`State`] and answer in commands.
 //!
-//! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds what the person asked for.
-//! What only the screen needs (cached drawings, textures, half-typed text) is kept in [`window::App`].
+//! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds the commands that the person
+//! gives. What only the screen needs (cached drawings, half-typed text) is kept in [`cache::Cache`],
+//! and each panel is given its part.
 
+mod cache;
 mod canvas;
 mod code;
 mod dialogs;
@@ -34,7 +36,7 @@ use crate::app::{Action, Command, State};
 use crate::drawing::{Drawing, Mark};
 use crate::figure;
 
-/// What a person asked for in a frame.
+/// The commands that the person gives in a frame.
 pub type Answers = Vec<Command>;
 
 /// A button with a sign for an action.
@@ -45,18 +47,11 @@ fn icon_button(
     icon: icons::Icon,
     answers: &mut Answers,
 ) -> egui::Response {
-    let info = action.info();
-    let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
-    let button = icons::button(ui, icon, state.can(action))
-        .on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
-    button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, state.can(action), info.title));
-    if button.clicked() {
-        answers.push(action.into());
-    }
-    button
+    let button = icons::button(ui, icon, state.can(action));
+    bound(state, button, action, answers)
 }
 
-/// A button for an action: its title (or `text`), its help and key on hover, gray when it cannot be done.
+/// A button for an action with its title (or another text), gray when the action cannot be done.
 fn action_button(
     state: &State,
     ui: &mut egui::Ui,
@@ -64,9 +59,14 @@ fn action_button(
     text: &str,
     answers: &mut Answers,
 ) -> egui::Response {
+    let button = ui.add_enabled(state.can(action), egui::Button::new(text));
+    bound(state, button, action, answers)
+}
+
+/// Binds a button to an action: help and key on hover, the title for screen readers, the command on a click.
+fn bound(state: &State, button: egui::Response, action: Action, answers: &mut Answers) -> egui::Response {
     let info = action.info();
     let keys = info.keys.first().map_or(String::new(), |k| format!("  ({k})"));
-    let button = ui.add_enabled(state.can(action), egui::Button::new(text));
     let button = button.on_hover_text(format!("{}{keys}\n{}", info.title, info.help));
     button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, state.can(action), info.title));
     if button.clicked() {

@@ -3,26 +3,25 @@
 use eframe::egui::{self, ScrollArea};
 
 use super::Answers;
-use super::window::Cache;
-use crate::app::{Action, Any, AnyView, Command, State};
+use crate::app::{Action, Command, Gesture, State};
 use crate::culling::Methods;
+use crate::geometry::{Either, Flat, Solid, each};
 use crate::method::{Budget, Knob, KnobValue};
 
 /// Shows the parameters.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
-    let Some(stage) = state.staged() else { return };
+pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &mut Answers) {
     ScrollArea::vertical().auto_shrink(false).id_salt("parameters").show(ui, |ui| {
         for (knob, value) in wanted(state) {
-            edit(state, cache, ui, knob, &value, answers);
+            edit(state, gesture, ui, knob, &value, answers);
         }
         if !state.settings.0.is_empty() {
             super::action_button(state, ui, Action::ResetSettings, "Reset", answers);
         }
         ui.separator();
-        eye(state, cache, ui, answers);
+        eye(state, gesture, ui, answers);
         ui.add_space(4.0);
-        if let Some(card) = stage.card() {
-            ui.weak(card.summary);
+        if let Some(film) = state.film() {
+            ui.weak(film.reel.card().summary);
         }
     });
 }
@@ -33,15 +32,15 @@ fn wanted(state: &State) -> Vec<(Knob, KnobValue)> {
         S::method(&state.method).and_then(|m| m.knobs(&state.settings).ok()).unwrap_or_default()
     }
     match &state.stage {
-        Some(Any::Flat(_)) => of::<crate::geometry::Flat>(state),
-        Some(Any::Solid(_)) => of::<crate::geometry::Solid>(state),
+        Some(Either::Flat(_)) => of::<Flat>(state),
+        Some(Either::Solid(_)) => of::<Solid>(state),
         None => vec![],
     }
 }
 
 fn edit(
     state: &State,
-    cache: &mut Cache,
+    gesture: &mut Gesture,
     ui: &mut egui::Ui,
     knob: Knob,
     value: &KnobValue,
@@ -65,10 +64,10 @@ fn edit(
             let response =
                 ui.add(egui::Slider::new(&mut v, range.clone())).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if response.changed() {
-                answers.push(set(v.to_string(), cache.gesture));
+                answers.push(set(v.to_string(), *gesture));
             }
         }
         KnobValue::Real(v, range) => {
@@ -77,10 +76,10 @@ fn edit(
             let slider = egui::Slider::new(&mut v, range.clone()).suffix(knob.unit);
             let response = ui.add(slider).labelled_by(label.id).on_hover_text(&help);
             if response.drag_started() || (response.changed() && !response.dragged()) {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if response.changed() {
-                answers.push(set(v.to_string(), cache.gesture));
+                answers.push(set(v.to_string(), *gesture));
             }
         }
         KnobValue::Choice(chosen, options) => {
@@ -93,22 +92,22 @@ fn edit(
                 answers.push(set(options[chosen].to_owned(), 0));
             }
         }
-        KnobValue::Budget(budget) => self::budget(state, cache, ui, &title, &help, *budget, &set, answers),
+        KnobValue::Budget(budget) => self::budget(state, gesture, ui, &title, &help, *budget, &set, answers),
     }
 }
 
 #[expect(clippy::too_many_arguments, reason = "what a panel is drawn from, and where its answers go")]
 fn budget(
     state: &State,
-    cache: &mut Cache,
+    gesture: &mut Gesture,
     ui: &mut egui::Ui,
     title: &str,
     help: &str,
     now: Budget,
-    set: &dyn Fn(String, u64) -> Command,
+    set: &dyn Fn(String, Gesture) -> Command,
     answers: &mut Answers,
 ) {
-    let most = state.staged().map_or(1, |s| s.prim_count()) as u32;
+    let most = state.staged().map_or(1, |s| s.scene().live_count()) as u32;
     let label = ui.label(title).on_hover_text(help);
     ui.horizontal(|ui| {
         let (mut next, response) = match now {
@@ -129,7 +128,7 @@ fn budget(
         };
         let response = response.labelled_by(label.id).on_hover_text(help);
         if response.drag_started() || (response.changed() && !response.dragged()) {
-            cache.gesture += 1;
+            *gesture += 1;
         }
         let drawn = now.of(most as usize) as u32;
         let share = Budget::Percent((drawn as f32 * 100.0 / most.max(1) as f32 * 10.0).round() / 10.0);
@@ -142,17 +141,17 @@ fn budget(
             let is_now = std::mem::discriminant(&start) == std::mem::discriminant(&now);
             if ui.selectable_label(is_now, name).on_hover_text(meaning).clicked() && !is_now {
                 next = start;
-                cache.gesture += 1;
+                *gesture += 1;
             }
         }
         if next != now {
-            answers.push(set(next.to_string(), cache.gesture));
+            answers.push(set(next.to_string(), *gesture));
         }
     });
 }
 
 /// The Eye in numbers.
-fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+fn eye(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = &state.stage else { return };
     ui.horizontal_wrapped(|ui| {
         ui.strong("Eye");
@@ -164,12 +163,12 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
             answers,
         );
         super::action_button(state, ui, Action::EyeHome, "Back to path", answers);
-        if matches!(stage, Any::Solid(_)) {
+        if matches!(stage, Either::Solid(_)) {
             super::action_button(state, ui, Action::EyeHere, "From here", answers);
         }
     });
     let mut view = stage.view();
-    let extent = crate::app::each!(stage, s => s.scene.bounds().diagonal());
+    let extent = each!(stage, s => s.scene.bounds().diagonal());
     let speed = f64::from(extent) * 0.002;
     ui.add_enabled_ui(!state.is_eye_locked, |ui| {
         egui::Grid::new("eye").num_columns(2).spacing([8.0, 2.0]).show(ui, |ui| {
@@ -182,7 +181,7 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                 changed |= response.changed();
             };
             match &mut view {
-                Any::Flat(v) => {
+                Either::Flat(v) => {
                     vector(
                         ui,
                         "position",
@@ -193,7 +192,7 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                     vector(ui, "target", speed, &mut [&mut v.eye.target.x, &mut v.eye.target.y], &mut drag);
                     lens(ui, &mut v.eye.fov, &mut v.eye.near, &mut v.eye.far, speed, &mut drag);
                 }
-                Any::Solid(v) => {
+                Either::Solid(v) => {
                     let (p, t) = (&mut v.eye.position, &mut v.eye.target);
                     vector(ui, "position", speed, &mut [&mut p.x, &mut p.y, &mut p.z], &mut drag);
                     vector(ui, "target", speed, &mut [&mut t.x, &mut t.y, &mut t.z], &mut drag);
@@ -201,10 +200,10 @@ fn eye(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answer
                 }
             }
             if began {
-                cache.gesture += 1;
+                *gesture += 1;
             }
             if changed {
-                answers.push(Command::Eye(view as AnyView, cache.gesture));
+                answers.push(Command::Eye(view, *gesture));
             }
         });
     });

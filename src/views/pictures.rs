@@ -3,7 +3,6 @@
 use eframe::egui::{self, ComboBox, ScrollArea, Sense};
 use glam::vec2;
 
-use super::window::Cache;
 use crate::app::State;
 use crate::drawing::Drawing;
 use crate::raster::DepthScale;
@@ -19,17 +18,15 @@ pub struct Shown {
 }
 
 /// Shows a picture, with what it is and how its depths are shaded.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui) {
-    let Some(stage) = state.staged() else { return };
-    let names = stage.pictures();
-    if names.is_empty() {
+pub fn show(state: &State, shown: &mut Shown, ui: &mut egui::Ui) {
+    let Some(film) = state.film().filter(|f| !f.reel.pictures().is_empty()) else {
         ui.label("This method has no pictures of its own.");
         ui.weak(
             "Methods that keep an image, such as hierarchical-z with its pyramid of depths, show it here.",
         );
         return;
-    }
-    let shown = &mut cache.picture;
+    };
+    let names = film.reel.pictures();
     shown.which = shown.which.min(names.len() - 1);
     ui.horizontal_wrapped(|ui| {
         ComboBox::from_id_salt("picture").show_index(ui, &mut shown.which, names.len(), |i| names[i]);
@@ -38,9 +35,9 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui) {
         ComboBox::from_id_salt("depths").show_index(ui, &mut scale, DepthScale::ALL.len(), depths);
         shown.scale = DepthScale::ALL[scale];
     });
-    let key = (stage.film_serial(), state.step, shown.which, shown.scale);
+    let key = (film.serial, state.step, shown.which, shown.scale);
     if shown.drawn.as_ref().is_none_or(|(k, _)| *k != key) {
-        shown.drawn = Some((key, stage.picture(state.step, shown.which, shown.scale)));
+        shown.drawn = Some((key, film.reel.picture(state.step, shown.which, shown.scale)));
     }
     let Some((_, drawing)) = &shown.drawn else { return };
     ScrollArea::vertical().auto_shrink(false).id_salt("pictures").show(ui, |ui| {
@@ -57,7 +54,7 @@ pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui) {
         screen::paint(&ui.painter_at(rect), drawing, state.shown.theme, rect.min, scale);
         if let Some(at) = response.hover_pos() {
             let at = vec2(at.x - rect.min.x, at.y - rect.min.y) / scale;
-            if let Some(text) = stage.probe(state.step, shown.which, at) {
+            if let Some(text) = film.reel.probe(state.step, shown.which, at) {
                 response.on_hover_text_at_pointer(text);
             }
         }

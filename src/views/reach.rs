@@ -4,33 +4,27 @@ use eframe::egui::{self, Key, PointerButton, Pos2, Rect, pos2};
 use glam::{Quat, Vec2, Vec3};
 
 use super::Answers;
-use super::handles::{self, Handle};
-use super::window::Cache;
-use crate::app::{Action, Any, Command, Stage, State};
+use super::handles::{self, Hand, Handle};
+use crate::app::{Action, Command, Gesture, ObserverCamera, Stage, State};
 use crate::drawing::Subject;
 use crate::figure;
-use crate::geometry::{Aabb, Solid, View};
+use crate::geometry::{Aabb, Either, Solid, View};
+use crate::method::Verdict;
 use crate::render::gpu::SpaceCamera;
+use crate::trace::State as Known;
 
 /// Part of the Observer's distance to the Eye at which the turning handle stands.
 const AIM: f32 = 0.12;
 
 /// What `F` brings into the picture.
 pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
-    let scene = &stage.scene;
-    match (state.selection, &stage.recorded) {
-        (Subject::Prim(p), _) => scene.prim_bounds(p),
-        (Subject::Object(o), _) => scene
-            .live()
-            .iter()
-            .filter(|&&p| scene.object_of(p) == o)
-            .fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p))),
-        (Subject::Node(n), Some(r)) => r.film.hierarchy().bounds(n),
-        (Subject::Eye, _) => {
-            let around = Vec3::splat(scene.bounds().diagonal() * 0.1);
-            Aabb { min: stage.view.eye.position - around, max: stage.view.eye.position + around }
+    let (whole, eye) = (stage.scene.bounds(), stage.view.eye.position);
+    match state.selection {
+        Subject::Eye => {
+            let around = Vec3::splat(whole.diagonal() * 0.1);
+            Aabb { min: eye - around, max: eye + around }
         }
-        _ => scene.bounds(),
+        selected => stage.bounds_of(selected).unwrap_or(whole),
     }
 }
 
@@ -40,11 +34,26 @@ fn ray(view: &View<Solid>, rect: Rect, at: Pos2) -> (Vec3, Vec3) {
     camera.ray(Vec2::new(at.x - rect.left(), at.y - rect.top()), [rect.width() as u32, rect.height() as u32])
 }
 
-/// The Observer's picture.
+/// The Observer's picture, with the Eye as it stands in it.
+struct Outside<'a> {
+    state: &'a State,
+    stage: &'a Stage<Solid>,
+    response: &'a egui::Response,
+    view: &'a View<Solid>,
+    /// Distance of the Eye from the Observer.
+    depth: f32,
+    /// Where the turning handle stands.
+    aim: Vec3,
+    /// The handles on the screen; `None` behind the Observer.
+    position: Option<Pos2>,
+    target: Option<Pos2>,
+}
+
+/// The Observer's picture: dragging turns, the wheel zooms, the Eye can be grabbed, a click selects.
 pub fn observe(
     state: &State,
     stage: &Stage<Solid>,
-    cache: &mut Cache,
+    hand: &mut Hand,
     ui: &egui::Ui,
     response: &egui::Response,
     view: &View<Solid>,
@@ -58,53 +67,71 @@ pub fn observe(
     let depth = (eye.position - view.eye.position).length();
     let aim = eye.position + eye.forward() * (depth * AIM);
     let (position, target) = (to_screen(eye.position), to_screen(aim));
+    let outside = Outside { state, stage, response, view, depth, aim, position, target };
     if state.shown.eye {
         handles::paint(state, &ui.painter_at(rect), response, position, target);
     }
     let mut observer = state.observer;
-    let (scroll, pinch, shift, alt) =
-        ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta(), i.modifiers.shift, i.modifiers.alt));
-    if let Some(at) = response.hover_pos() {
+    outside.zoom(ui, &mut observer);
+    outside.drag(hand, ui, &mut observer, answers);
+    outside.click(&mut observer, answers);
+    if observer != state.observer {
+        answers.push(Command::Observe(observer));
+    }
+}
+
+impl Outside<'_> {
+    fn zoom(&self, ui: &egui::Ui, observer: &mut ObserverCamera) {
+        let Some(at) = self.response.hover_pos() else { return };
+        let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
         let factor = (-scroll * 0.004).exp() / pinch;
         if factor != 1.0 {
+            let rect = self.response.rect;
             let cursor = (at - rect.center()) / rect.size() * 2.0;
             observer.zoom(factor, Vec2::new(cursor.x, -cursor.y), rect.aspect_ratio());
         }
     }
-    if response.drag_started() {
-        let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
-        let primary = response.dragged_by(PointerButton::Primary) && !shift && !alt && state.shown.eye;
-        cache.held = handles::under(at, position, target).filter(|_| primary);
-        cache.gesture += 1;
-    }
-    if response.dragged() {
-        let delta = Vec2::new(response.drag_delta().x, response.drag_delta().y);
-        let unit = 2.0 * depth * (view.eye.fov * 0.5).tan() / rect.height();
-        let by = observer.rotation() * Vec3::new(delta.x * unit, -delta.y * unit, 0.0);
-        match cache.held {
-            Some(handle) => drag_eye(stage, handle, by, aim, cache.gesture, answers),
-            None if response.dragged_by(PointerButton::Secondary) || shift => {
-                observer.pan(delta, rect.height())
+
+    fn drag(&self, hand: &mut Hand, ui: &egui::Ui, observer: &mut ObserverCamera, answers: &mut Answers) {
+        let (response, height) = (self.response, self.response.rect.height());
+        let (shift, alt) = ui.input(|i| (i.modifiers.shift, i.modifiers.alt));
+        if response.drag_started() {
+            let at = ui.input(|i| i.pointer.press_origin()).unwrap_or(pos2(0.0, 0.0));
+            let grabs = response.dragged_by(PointerButton::Primary) && !shift && !alt && self.state.shown.eye;
+            hand.held = handles::under(at, self.position, self.target).filter(|_| grabs);
+            hand.gesture += 1;
+        }
+        if response.dragged() {
+            let delta = Vec2::new(response.drag_delta().x, response.drag_delta().y);
+            // World units of a screen point at the Eye's depth, so that the Eye stays under the pointer.
+            let unit = 2.0 * self.depth * (self.view.eye.fov * 0.5).tan() / height;
+            let by = observer.rotation() * Vec3::new(delta.x * unit, -delta.y * unit, 0.0);
+            match hand.held {
+                Some(handle) => drag_eye(self.stage, handle, by, self.aim, hand.gesture, answers),
+                None if response.dragged_by(PointerButton::Secondary) || shift => observer.pan(delta, height),
+                None if alt => observer.roll += delta.x * 0.01,
+                None => observer.orbit(-delta.x * 0.008, delta.y * 0.008),
             }
-            None if alt => observer.roll += delta.x * 0.01,
-            None => observer.orbit(-delta.x * 0.008, delta.y * 0.008),
+        }
+        if response.drag_stopped() {
+            hand.held = None;
         }
     }
-    if response.drag_stopped() {
-        cache.held = None;
-    }
-    if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked()) {
-        response.request_focus();
-        let (origin, direction) = ray(view, rect, at);
-        let hit = figure::pick(&stage.scene, origin, direction, |_| true);
-        if response.double_clicked() {
+
+    fn click(&self, observer: &mut ObserverCamera, answers: &mut Answers) {
+        let clicked = self.response.interact_pointer_pos().filter(|_| self.response.clicked());
+        let Some(at) = clicked else { return };
+        self.response.request_focus();
+        let (origin, direction) = ray(self.view, self.response.rect, at);
+        let hit = figure::pick(&self.stage.scene, origin, direction, |_| true);
+        if self.response.double_clicked() {
             match hit {
                 // The point under the cursor becomes what the Observer turns around.
                 Some((_, t)) => observer.pivot = (origin + direction * t).to_array(),
                 None => answers.extend([Command::Select(Subject::None), Action::FrameSelection.into()]),
             }
         } else {
-            let grabbed = handles::under(at, position, None).is_some() && state.shown.eye;
+            let grabbed = handles::under(at, self.position, None).is_some() && self.state.shown.eye;
             answers.push(Command::Select(if grabbed {
                 Subject::Eye
             } else {
@@ -112,12 +139,16 @@ pub fn observe(
             }));
         }
     }
-    if observer != state.observer {
-        answers.push(Command::Observe(observer));
-    }
 }
 
-fn drag_eye(stage: &Stage<Solid>, handle: Handle, by: Vec3, aim: Vec3, gesture: u64, answers: &mut Answers) {
+fn drag_eye(
+    stage: &Stage<Solid>,
+    handle: Handle,
+    by: Vec3,
+    aim: Vec3,
+    gesture: Gesture,
+    answers: &mut Answers,
+) {
     if by == Vec3::ZERO {
         return;
     }
@@ -133,14 +164,14 @@ fn drag_eye(stage: &Stage<Solid>, handle: Handle, by: Vec3, aim: Vec3, gesture: 
             eye.target = eye.position + (aim + by - eye.position).normalize_or(eye.forward()) * length;
         }
     }
-    answers.push(Command::Eye(Any::Solid(view), gesture));
+    answers.push(Command::Eye(Either::Solid(view), gesture));
 }
 
 /// The Eye's picture: dragging looks around, letters fly, a click selects.
 pub fn look_around(
     state: &State,
     stage: &Stage<Solid>,
-    cache: &mut Cache,
+    hand: &mut Hand,
     ui: &egui::Ui,
     response: &egui::Response,
     rect: Rect,
@@ -150,19 +181,18 @@ pub fn look_around(
         response.request_focus();
         let (origin, direction) = ray(&stage.view, rect, at);
         let drawn = |p| {
-            use crate::{method::Verdict, trace::State as Known};
             let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
             matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
         };
         let hit = figure::pick(&stage.scene, origin, direction, drawn);
         answers.push(Command::Select(hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))));
     }
-    cache.flying |= response.has_focus();
+    hand.is_flying |= response.has_focus();
     let mut view = stage.view;
     let eye = &mut view.eye;
     if response.drag_started() {
         response.request_focus();
-        cache.gesture += 1;
+        hand.gesture += 1;
     }
     let delta = response.drag_delta();
     if response.dragged() && delta != egui::Vec2::ZERO {
@@ -177,17 +207,17 @@ pub fn look_around(
         }
     }
     if response.has_focus() && !state.is_eye_locked {
-        let by = flight(ui, stage, cache);
+        let by = flight(ui, stage, hand);
         eye.position += by;
         eye.target += by;
     }
     if view != stage.view {
-        answers.push(Command::Eye(Any::Solid(view), cache.gesture));
+        answers.push(Command::Eye(Either::Solid(view), hand.gesture));
     }
 }
 
 /// How far the letters that are held carry the Eye in this frame.
-fn flight(ui: &egui::Ui, stage: &Stage<Solid>, cache: &mut Cache) -> Vec3 {
+fn flight(ui: &egui::Ui, stage: &Stage<Solid>, hand: &mut Hand) -> Vec3 {
     let eye = &stage.view.eye;
     let forward = eye.forward();
     let right = forward.cross(eye.up).normalize_or(Vec3::X);
@@ -207,11 +237,11 @@ fn flight(ui: &egui::Ui, stage: &Stage<Solid>, cache: &mut Cache) -> Vec3 {
         (held(i), i.stable_dt.min(0.1), i.modifiers.shift, i.modifiers.command || i.modifiers.ctrl)
     });
     if toward == Vec3::ZERO {
-        cache.flew = false;
+        hand.flew = false;
         return Vec3::ZERO;
     }
-    if !std::mem::replace(&mut cache.flew, true) {
-        cache.gesture += 1;
+    if !std::mem::replace(&mut hand.flew, true) {
+        hand.gesture += 1;
     }
     ui.ctx().request_repaint();
     let speed = stage.scene.bounds().diagonal()

@@ -1,26 +1,35 @@
 //! Space, through the Eye and from outside, on the graphics card: scrubbing changes one number there.
 
-use std::sync::Arc;
-
 use eframe::egui::{self, Sense};
 use eframe::egui_wgpu::{self, RenderState, wgpu};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use super::window::Cache;
+use super::handles::Hand;
 use super::{Answers, palette, reach};
 use crate::app::{Command, Stage, State, Surface};
-use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure;
 use crate::geometry::{Solid, View};
 use crate::render::gpu::{self, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, ViewportId};
 use crate::render::screen;
 
-/// What was uploaded last.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What lies on the graphics card.
+#[derive(Clone, Debug, Default)]
 pub struct Uploaded {
     scene: u64,
     film: u64,
-    marks: Option<(u64, usize, figure::Look)>,
+    /// The marks of a step, and the film, step and look that they were drawn for.
+    marks: Option<((u64, usize, figure::Look), Drawing<Vec3>)>,
+}
+
+/// What the pictures of space need beside the state.
+pub struct Tools<'a> {
+    /// The graphics card, if there is one.
+    pub gpu: Option<&'a RenderState>,
+    /// What lies on it.
+    pub uploaded: &'a mut Uploaded,
+    /// What the person does.
+    pub hand: &'a mut Hand,
 }
 
 /// Shows space: what the Eye sees, or what the Observer sees.
@@ -28,19 +37,19 @@ pub fn show(
     state: &State,
     stage: &Stage<Solid>,
     is_eye: bool,
-    cache: &mut Cache,
-    gpu: Option<&RenderState>,
+    tools: Tools<'_>,
     ui: &mut egui::Ui,
     answers: &mut Answers,
 ) {
+    let Tools { gpu, uploaded, hand } = tools;
     let (pane, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     let name = if is_eye { "Eye view" } else { "Observer view" };
     response.widget_info(|| {
         egui::WidgetInfo::labeled(egui::Role::Image, true, format!("{name}. {}", state.sentence()))
     });
-    cache.picture_focused |= response.has_focus();
+    hand.is_picture_focused |= response.has_focus();
     ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
-    if !is_eye && std::mem::take(&mut cache.frame) {
+    if !is_eye && std::mem::take(&mut hand.frame) {
         let mut camera = state.observer;
         camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds());
         answers.push(Command::Observe(camera));
@@ -51,7 +60,10 @@ pub fn show(
     let view =
         if is_eye { stage.view } else { state.observer.view(rect.width() as u32, rect.height() as u32) };
     match gpu {
-        Some(gpu) => picture(state, stage, is_eye, cache, gpu, ui, rect, &view),
+        Some(gpu) => {
+            upload(state, stage, uploaded, gpu);
+            picture(state, is_eye, ui, rect, &view);
+        }
         None => {
             ui.painter().text(
                 rect.center(),
@@ -63,7 +75,7 @@ pub fn show(
         }
     }
     if !is_eye {
-        cache.aspect = rect.aspect_ratio();
+        hand.aspect = rect.aspect_ratio();
     }
     if is_eye {
         ui.painter_at(pane).rect_stroke(
@@ -72,10 +84,10 @@ pub fn show(
             egui::Stroke::new(1.0, palette::panel(state).border),
             egui::StrokeKind::Inside,
         );
-        reach::look_around(state, stage, cache, ui, &response, rect, answers);
+        reach::look_around(state, stage, hand, ui, &response, rect, answers);
     } else {
-        labels(state, stage, cache, ui, rect, &view);
-        reach::observe(state, stage, cache, ui, &response, &view, answers);
+        labels(state, stage, uploaded, ui, rect, &view);
+        reach::observe(state, stage, hand, ui, &response, &view, answers);
     }
     super::canvas::focus_ring(state, ui, &response);
 }
@@ -90,18 +102,7 @@ fn fitted(pane: egui::Rect, aspect: f32) -> egui::Rect {
     egui::Rect::from_center_size(pane.center(), size)
 }
 
-#[expect(clippy::too_many_arguments, reason = "what a panel is drawn from, and where its answers go")]
-fn picture(
-    state: &State,
-    stage: &Stage<Solid>,
-    is_eye: bool,
-    cache: &mut Cache,
-    gpu: &RenderState,
-    ui: &egui::Ui,
-    rect: egui::Rect,
-    view: &View<Solid>,
-) {
-    upload(state, stage, cache, gpu);
+fn picture(state: &State, is_eye: bool, ui: &egui::Ui, rect: egui::Rect, view: &View<Solid>) {
     let ppp = ui.ctx().pixels_per_point();
     let size_px = [(rect.width() * ppp).round() as u32, (rect.height() * ppp).round() as u32];
     let call = Call {
@@ -114,15 +115,14 @@ fn picture(
 }
 
 /// Takes the scene, the film and the marks of the step to the graphics card, each when it has changed.
-fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderState) {
+fn upload(state: &State, stage: &Stage<Solid>, now: &mut Uploaded, gpu: &RenderState) {
     let mut renderer = gpu.renderer.write();
     let resources = &mut renderer.callback_resources;
     if resources.get::<SpaceLayer>().is_none() {
         resources.insert(SpaceLayer::new(&gpu.device, gpu.target_format));
-        cache.uploaded = Uploaded::default();
+        *now = Uploaded::default();
     }
     let Some(layer) = resources.get_mut::<SpaceLayer>() else { return };
-    let now = &mut cache.uploaded;
     if now.scene != stage.serial {
         *now = Uploaded { scene: stage.serial, ..Uploaded::default() };
         layer.set_scene(&gpu.device, &stage.scene);
@@ -140,11 +140,10 @@ fn upload(state: &State, stage: &Stage<Solid>, cache: &mut Cache, gpu: &RenderSt
         ..state.look()
     };
     let key = (recorded.serial, state.step, look);
-    if now.marks != Some(key) {
-        now.marks = Some(key);
-        let world = Arc::new(figure::world(&*recorded.film, &recorded.stamps, state.step, &look));
+    if now.marks.as_ref().is_none_or(|(k, _)| *k != key) {
+        let world = figure::world(&*recorded.film, &recorded.stamps, state.step, &look);
         layer.set_marks(&gpu.device, &gpu.queue, &world);
-        cache.marks = Some(world);
+        now.marks = Some((key, world));
     }
 }
 
@@ -212,12 +211,12 @@ impl egui_wgpu::CallbackTrait for Call {
 fn labels(
     state: &State,
     stage: &Stage<Solid>,
-    cache: &Cache,
+    uploaded: &Uploaded,
     ui: &egui::Ui,
     rect: egui::Rect,
     view: &View<Solid>,
 ) {
-    let Some(marks) = &cache.marks else { return };
+    let Some((_, marks)) = &uploaded.marks else { return };
     if stage.recorded.is_none() || !state.shown.evidence {
         return;
     }
@@ -235,9 +234,9 @@ fn labels(
 }
 
 /// The Observer's picture as it is on the graphics card.
-pub fn pixels(gpu: &RenderState) -> Option<crate::drawing::Pixels> {
+pub fn pixels(gpu: &RenderState) -> Option<Pixels> {
     let renderer = gpu.renderer.read();
     let layer = renderer.callback_resources.get::<SpaceLayer>()?;
     let (width, height, rgba) = layer.read_rgba(&gpu.device, &gpu.queue, ViewportId(0)).ok()??;
-    Some(crate::drawing::Pixels { width, height, rgba: rgba.into() })
+    Some(Pixels { width, height, rgba: rgba.into() })
 }

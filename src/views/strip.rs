@@ -1,22 +1,37 @@
 //! Flatland through the Eye: its image is one line of pixels. Above the line each column stands as high as
 //! what it shows is near, as in the first games with walls; below it are the depths as a graph.
 
-use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, FontId, Rangef, Rect, Sense, Stroke, pos2, vec2};
 
-use super::window::Cache;
+use super::handles::Hand;
 use super::{Answers, palette};
-use crate::app::{Any, Command, Stage, State};
+use crate::app::{Command, Gesture, Stage, State};
+use crate::drawing::words::{Room, short};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
-use crate::geometry::Flat;
+use crate::geometry::{Either, Flat, PrimId, View};
 use crate::method::Verdict;
 use crate::trace::State as Known;
 
+/// The gesture of turning the Eye in its picture: all turns in a row are one step of undo.
+const LOOK_GESTURE: Gesture = Gesture::MAX;
 /// Height of the strip itself.
 const STRIP: f32 = 22.0;
 
+/// What a column of the image shows: a segment and its view depth.
+type Column = Option<(PrimId, f32)>;
+/// The columns of the image, and the scene and view that they were rendered for.
+pub type Image = ((u64, View<Flat>), Vec<Column>);
+
 /// Shows what the Eye sees.
-pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+pub fn show(
+    state: &State,
+    stage: &Stage<Flat>,
+    rendered: &mut Option<Image>,
+    hand: &mut Hand,
+    ui: &mut egui::Ui,
+    answers: &mut Answers,
+) {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
     response.widget_info(|| {
         egui::WidgetInfo::labeled(
@@ -25,48 +40,18 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
             "Eye view: the one line of pixels that the Eye sees",
         )
     });
-    cache.picture_focused |= response.has_focus();
+    hand.is_picture_focused |= response.has_focus();
     let painter = ui.painter_at(rect);
     let colors = palette::panel(state);
     painter.rect_filled(rect, 0.0, colors.canvas);
     let key = (stage.serial, stage.view);
-    if cache.image.as_ref().is_none_or(|(k, _)| *k != key) {
-        cache.image = Some((key, stage.image()));
+    if rendered.as_ref().is_none_or(|(k, _)| *k != key) {
+        *rendered = Some((key, stage.image()));
     }
-    let Some((_, image)) = &cache.image else { return };
-    let (walls, strip) = layout(rect);
-    let nearest = image.iter().flatten().map(|(_, d)| *d).fold(f32::INFINITY, f32::min);
+    let Some((_, image)) = rendered else { return };
     let per_column = rect.width() / image.len().max(1) as f32;
-    for (i, cell) in image.iter().enumerate() {
-        let Some((prim, depth)) = cell else { continue };
-        let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(*prim, state.step));
-        let style = palette::role(state, role_of(known));
-        let x = rect.left() + i as f32 * per_column;
-        let column =
-            |y: egui::Rangef| Rect::from_x_y_ranges(egui::Rangef::new(x, x + per_column.max(1.0)), y);
-        let half = walls.height() * 0.46 * (nearest / depth).sqrt();
-        let band = egui::Rangef::new(walls.center().y - half, walls.center().y + half);
-        let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
-        // What was culled has gaps: every other pair of columns is left out.
-        let culled = matches!(known, Known::Decided(v) if v != Verdict::Visible && v != Verdict::Partial);
-        if !culled || (i / 2) % 2 == 0 {
-            painter.rect_filled(column(band), 0.0, faded);
-        }
-        painter.rect_filled(column(strip.y_range()), 0.0, style);
-        let edge = i == 0 || image[i - 1].is_none_or(|(p, _)| p != *prim);
-        if edge {
-            painter.vline(x, band, Stroke::new(1.0, colors.canvas));
-            painter.vline(x, strip.y_range(), Stroke::new(1.0, colors.canvas));
-        }
-        if state.selection == Subject::Prim(*prim) {
-            painter.hline(
-                egui::Rangef::new(x, x + per_column.max(1.0)),
-                strip.bottom() + 3.0,
-                Stroke::new(4.0, palette::role(state, Role::Current)),
-            );
-        }
-    }
-    painter.rect_stroke(strip, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
+    paint_columns(state, stage, image, &painter, rect);
+    painter.rect_stroke(layout(rect).1, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
     let distinct: std::collections::BTreeSet<_> = image.iter().flatten().map(|(p, _)| *p).collect();
     let text = format!("{} pixels, {} segments seen", image.len(), distinct.len());
     painter.text(
@@ -80,14 +65,45 @@ pub fn show(state: &State, stage: &Stage<Flat>, cache: &mut Cache, ui: &mut egui
     super::canvas::focus_ring(state, ui, &response);
 }
 
+/// Paints each column twice: as a wall as high as it is near, and as a pixel of the strip.
+fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: &egui::Painter, rect: Rect) {
+    let (walls, strip) = layout(rect);
+    let rim = Stroke::new(1.0, palette::panel(state).canvas);
+    let nearest = image.iter().flatten().map(|(_, d)| *d).fold(f32::INFINITY, f32::min);
+    let per_column = rect.width() / image.len().max(1) as f32;
+    for (i, cell) in image.iter().enumerate() {
+        let Some((prim, depth)) = cell else { continue };
+        let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(*prim, state.step));
+        let style = palette::role(state, role_of(known));
+        let x = rect.left() + i as f32 * per_column;
+        let width = Rangef::new(x, x + per_column.max(1.0));
+        let half = walls.height() * 0.46 * (nearest / depth).sqrt();
+        let band = Rangef::new(walls.center().y - half, walls.center().y + half);
+        let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
+        // What was culled has gaps: every other pair of columns is left out.
+        let culled = matches!(known, Known::Decided(v) if v != Verdict::Visible && v != Verdict::Partial);
+        if !culled || (i / 2) % 2 == 0 {
+            painter.rect_filled(Rect::from_x_y_ranges(width, band), 0.0, faded);
+        }
+        painter.rect_filled(Rect::from_x_y_ranges(width, strip.y_range()), 0.0, style);
+        // Neighbors of one role stay apart.
+        if i == 0 || image[i - 1].is_none_or(|(p, _)| p != *prim) {
+            painter.vline(x, band, rim);
+            painter.vline(x, strip.y_range(), rim);
+        }
+        if state.selection == Subject::Prim(*prim) {
+            let mark = Stroke::new(4.0, palette::role(state, Role::Current));
+            painter.hline(width, strip.bottom() + 3.0, mark);
+        }
+    }
+}
+
 /// The walls above, the strip of pixels below.
 fn layout(rect: Rect) -> (Rect, Rect) {
     let strip =
         Rect::from_min_size(pos2(rect.left(), rect.bottom() - STRIP - 12.0), vec2(rect.width(), STRIP));
     (rect.with_max_y(strip.top() - 8.0).with_min_y(rect.top() + 20.0), strip)
 }
-
-type Column = Option<(crate::geometry::PrimId, f32)>;
 
 fn interact(
     stage: &Stage<Flat>,
@@ -110,11 +126,11 @@ fn interact(
         let turn = response.drag_delta().x / response.rect.width().max(1.0) * view.eye.fov;
         let toward = glam::Vec2::from_angle(turn).rotate(view.eye.target - view.eye.position);
         view.eye.target = view.eye.position + toward;
-        answers.push(Command::Eye(Any::Flat(view), super::window::LOOK_GESTURE));
+        answers.push(Command::Eye(Either::Flat(view), LOOK_GESTURE));
     }
     if let Some((prim, depth)) = response.hover_pos().and_then(|at| under(at.x)) {
         response
             .clone()
-            .on_hover_text_at_pointer(format!("segment {prim}, {} units away", crate::app::short(depth)));
+            .on_hover_text_at_pointer(format!("segment {prim}, {} units away", short(depth, Room::Row)));
     }
 }

@@ -3,31 +3,35 @@
 use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 
 use super::icons::Icon;
-use super::window::Cache;
 use super::{Answers, palette};
 use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes, subject_at, verdict_of};
-use crate::drawing::Subject;
+use crate::drawing::words::count;
+use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
-use crate::method::Event;
+use crate::method::{Event, Verdict};
 use crate::trace::{Detail, State as Known};
 
 /// Room for the names of lanes.
 const NAMES: f32 = 72.0;
 
+/// The cells of the lanes, and the film and width that they were counted for.
+pub type Lanes = ((u64, usize), [Vec<Cell>; 4]);
+
 /// Shows the timeline.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+pub fn show(state: &State, lanes: &mut Option<Lanes>, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = state.staged() else { return };
     moves(state, ui, answers);
     frames(state, stage, ui, answers);
-    if stage.lost() > 0 {
+    let lost = state.film().map_or(0, |f| f.reel.lost());
+    if lost > 0 {
         let text = format!(
             "This film is capped: it shows the first {} events; {} more happened.",
-            super::events::grouped(state.len()),
-            super::events::grouped(stage.lost() as usize)
+            count(state.len()),
+            count(lost as usize)
         );
         ui.colored_label(ui.visuals().warn_fg_color, text);
     }
-    scrubber(state, stage, cache, ui, answers);
+    scrubber(state, lanes, ui, answers);
 }
 
 fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -53,7 +57,7 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         if response.changed() {
             answers.push(Command::GoTo(step));
         }
-        ui.label(format!("of {}", super::events::grouped(state.len())));
+        ui.label(format!("of {}", count(state.len())));
         ui.add_space(4.0);
         let mut speed = state.speed;
         // One widget, so that the name and the number wrap together.
@@ -74,7 +78,7 @@ fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
 }
 
 fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut Answers) {
-    let (names, (path, frame)) = (stage.path_names(), stage.place());
+    let (names, (path, frame)) = (stage.paths(), stage.place());
     if names.len() == 1 && names[0].1 == 1 {
         return;
     }
@@ -112,73 +116,80 @@ fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut An
     });
 }
 
-fn scrubber(state: &State, stage: &dyn Staged, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
+/// The bar of the film: the steps from left to right.
+struct Bar {
+    rect: Rect,
+    steps: usize,
+}
+
+impl Bar {
+    fn per_step(&self) -> f32 {
+        self.rect.width() / self.steps as f32
+    }
+    fn x_of(&self, step: usize) -> f32 {
+        self.rect.left() + step as f32 * self.per_step()
+    }
+    fn step_at(&self, x: f32) -> usize {
+        (((x - self.rect.left()) / self.per_step()).round().max(0.0) as usize).min(self.steps)
+    }
+}
+
+fn scrubber(state: &State, kept: &mut Option<Lanes>, ui: &mut egui::Ui, answers: &mut Answers) {
     let size = vec2(ui.available_width(), ui.available_height().max(40.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, state.step as f64, "Timeline"));
-    let events = stage.events();
-    let bar = Rect::from_min_max(pos2(rect.left() + NAMES, rect.top()), rect.max);
-    if events.is_empty() || bar.width() < 4.0 {
+    let Some(film) = state.film() else { return };
+    let events = film.reel.events();
+    let bar = Bar { rect: rect.with_min_x(rect.left() + NAMES), steps: events.len() };
+    if events.is_empty() || bar.rect.width() < 4.0 {
         return;
     }
-    let per_step = bar.width() / events.len() as f32;
-    let x_of = |step: usize| bar.left() + step as f32 * per_step;
-    let step_at = |x: f32| (((x - bar.left()) / per_step).round().max(0.0) as usize).min(events.len());
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
-        let step = step_at(at.x);
+        let step = bar.step_at(at.x);
         answers.push(Command::GoTo(step));
-        if response.clicked()
-            && let Some(event) = step.checked_sub(1)
-            && subject_at(stage, event) != Subject::None
-        {
-            answers.push(Command::Select(subject_at(stage, event)));
+        let subject = step.checked_sub(1).map_or(Subject::None, |event| subject_at(film.reel, event));
+        if response.clicked() && subject != Subject::None {
+            answers.push(Command::Select(subject));
         }
     }
-    let columns = bar.width().max(1.0) as usize;
-    let key = (stage.film_serial(), columns);
-    if cache.lanes.as_ref().is_none_or(|(k, _)| *k != key) {
-        cache.lanes = Some((key, lanes(events, columns)));
+    let columns = bar.rect.width().max(1.0) as usize;
+    let key = (film.serial, columns);
+    if kept.as_ref().is_none_or(|(k, _)| *k != key) {
+        *kept = Some((key, lanes(events, columns)));
     }
-    let Some((_, lanes)) = &cache.lanes else { return };
+    let Some((_, lanes)) = kept else { return };
     let painter = ui.painter_at(rect);
+    paint_lanes(state, lanes, &bar, &painter, rect);
+    marks(state, events, &painter, &bar);
+    let (x, accent) = (bar.x_of(state.step), palette::panel(state).accent);
+    painter.vline(x, rect.y_range(), Stroke::new(2.0, accent));
+    painter.circle_filled(pos2(x, rect.top() + 3.0), 4.0, accent);
+    if let Some(at) = response.hover_pos().filter(|p| bar.rect.contains(*p)) {
+        let step = bar.step_at(at.x);
+        let text = step.checked_sub(1).map_or("before the first event".into(), |i| film.reel.sentence(i));
+        response.on_hover_text_at_pointer(format!("Step {step}: {text}"));
+    }
+}
+
+/// The lanes one below the other, each with its name on the left.
+fn paint_lanes(state: &State, lanes: &[Vec<Cell>; 4], bar: &Bar, painter: &egui::Painter, rect: Rect) {
     let height = rect.height() / Lane::ALL.len() as f32;
     let colors = palette::panel(state);
+    let font = FontId::proportional((height * 0.7).clamp(8.0, 13.0));
+    let width = bar.per_step().clamp(1.0, 6.0);
     for (row, lane) in Lane::ALL.into_iter().enumerate() {
-        let lane_rect = Rect::from_min_size(
-            pos2(rect.left(), rect.top() + row as f32 * height),
-            vec2(rect.width(), height),
-        );
-        let font = FontId::proportional((height * 0.7).clamp(8.0, 13.0));
-        painter.text(
-            pos2(rect.left(), lane_rect.center().y),
-            Align2::LEFT_CENTER,
-            lane.name(),
-            font,
-            colors.faint,
-        );
+        let top = rect.top() + row as f32 * height;
+        let lane_rect = Rect::from_min_size(pos2(rect.left(), top), vec2(rect.width(), height));
+        let name_at = pos2(rect.left(), lane_rect.center().y);
+        painter.text(name_at, Align2::LEFT_CENTER, lane.name(), font.clone(), colors.faint);
         painter.hline(rect.x_range(), lane_rect.bottom(), Stroke::new(1.0, colors.border));
-        let deepest = lanes[lane as usize].iter().map(|c| c.depth).max().unwrap_or(0).max(1);
-        for (column, cell) in lanes[lane as usize].iter().enumerate().filter(|(_, c)| c.count > 0) {
-            let x = bar.left() + column as f32;
-            let width = per_step.clamp(1.0, 6.0);
-            paint_cell(
-                state,
-                &painter,
-                lane,
-                cell,
-                deepest,
-                Rect::from_min_size(pos2(x, lane_rect.top() + 2.0), vec2(width, height - 4.0)),
-            );
+        let cells = &lanes[lane as usize];
+        let deepest = cells.iter().map(|c| c.depth).max().unwrap_or(0).max(1);
+        for (column, cell) in cells.iter().enumerate().filter(|(_, c)| c.count > 0) {
+            let corner = pos2(bar.rect.left() + column as f32, lane_rect.top() + 2.0);
+            let place = Rect::from_min_size(corner, vec2(width, height - 4.0));
+            paint_cell(state, painter, lane, cell, deepest, place);
         }
-    }
-    marks(state, events, &painter, bar, &x_of);
-    let x = x_of(state.step);
-    painter.vline(x, rect.y_range(), Stroke::new(2.0, colors.accent));
-    painter.circle_filled(pos2(x, rect.top() + 3.0), 4.0, colors.accent);
-    if let Some(at) = response.hover_pos().filter(|p| bar.contains(*p)) {
-        let step = step_at(at.x);
-        let text = step.checked_sub(1).map_or("before the first event".into(), |i| stage.sentence(i));
-        response.on_hover_text_at_pointer(format!("Step {step}: {text}"));
     }
 }
 
@@ -187,14 +198,14 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
         (Lane::Walk, _) => {
             let rise = rect.height() * cell.depth as f32 / deepest as f32;
             let low = Rect::from_min_max(pos2(rect.left(), rect.bottom() - rise.max(1.0)), rect.max);
-            painter.rect_filled(low, 0.0, palette::role(state, crate::drawing::Role::Faint));
+            painter.rect_filled(low, 0.0, palette::role(state, Role::Faint));
         }
         (_, Some(verdict)) => {
             // Form as well as hue: what is kept fills the lane, what is culled hangs in its upper half.
-            let kept = matches!(verdict, crate::method::Verdict::Visible);
+            let kept = matches!(verdict, Verdict::Visible);
             let part = match verdict {
                 _ if kept => rect,
-                crate::method::Verdict::Partial => rect.shrink2(vec2(0.0, rect.height() * 0.35)),
+                Verdict::Partial => rect.shrink2(vec2(0.0, rect.height() * 0.35)),
                 _ => rect.with_max_y(rect.center().y),
             };
             painter.rect_filled(part, 0.0, palette::role(state, role_of(Known::Decided(verdict))));
@@ -203,20 +214,20 @@ fn paint_cell(state: &State, painter: &egui::Painter, lane: Lane, cell: &Cell, d
             painter.rect_filled(
                 rect.shrink2(vec2(0.0, rect.height() * 0.3)),
                 0.0,
-                palette::role(state, crate::drawing::Role::Evidence),
+                palette::role(state, Role::Evidence),
             );
         }
     }
 }
 
 /// Bookmarks as flags, breakpoints at verdicts as dots, up to as many as a person can tell apart.
-fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: Rect, x_of: &dyn Fn(usize) -> f32) {
+fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: &Bar) {
     let colors = palette::panel(state);
     for (i, bookmark) in state.bookmarks.iter().enumerate() {
-        let x = x_of(bookmark.step);
-        painter.vline(x, bar.y_range(), Stroke::new(1.0, colors.text));
+        let x = bar.x_of(bookmark.step);
+        painter.vline(x, bar.rect.y_range(), Stroke::new(1.0, colors.text));
         painter.text(
-            pos2(x + 2.0, bar.top()),
+            pos2(x + 2.0, bar.rect.top()),
             Align2::LEFT_TOP,
             (i + 1).to_string(),
             FontId::proportional(10.0),
@@ -224,7 +235,7 @@ fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: Rect, x_
         );
     }
     let dot = |i: usize| {
-        painter.circle_filled(pos2(x_of(i + 1), bar.bottom() - 3.0), 2.5, colors.text);
+        painter.circle_filled(pos2(bar.x_of(i + 1), bar.rect.bottom() - 3.0), 2.5, colors.text);
     };
     if state.breakpoints.iter().any(|b| !matches!(b, Breakpoint::Verdict(_))) {
         let stops = (0..events.len()).filter(|&i| state.stops_at(i)).take(500);

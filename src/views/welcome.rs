@@ -3,7 +3,6 @@
 use eframe::egui::{self, RichText};
 
 use super::Answers;
-use super::window::Cache;
 use crate::app::{Action, Command, Example, State, examples};
 
 /// Size of a card, points.
@@ -12,8 +11,8 @@ const CARD: egui::Vec2 = egui::vec2(270.0, 132.0);
 const GAP: f32 = 12.0;
 
 /// Shows the start screen.
-pub fn show(state: &State, cache: &mut Cache, ui: &mut egui::Ui, answers: &mut Answers) {
-    let list = cache.examples.get_or_insert_with(examples);
+pub fn show(state: &State, kept: &mut Option<Vec<Example>>, ui: &mut egui::Ui, answers: &mut Answers) {
+    let list = kept.get_or_insert_with(examples);
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.vertical_centered(|ui| {
             ui.set_max_width(760.0);

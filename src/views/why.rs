@@ -5,14 +5,15 @@ use eframe::egui::{self, ScrollArea};
 use super::Answers;
 use crate::app::{Action, Command, State, why};
 use crate::drawing::Subject;
+use crate::drawing::words::capitalized;
 
 /// A thing by its name.
 pub fn subject_name(state: &State, subject: Subject) -> String {
     let Some(stage) = state.staged() else { return "nothing".into() };
     match subject {
-        Subject::Prim(p) => format!("{} {p}", stage.prim_name()),
+        Subject::Prim(p) => format!("{} {p}", stage.scene().prim_name()),
         Subject::Node(n) => format!("node {n}"),
-        Subject::Object(o) => format!("object {}", stage.object_name(o)),
+        Subject::Object(o) => format!("object {}", stage.scene().object_name(o)),
         Subject::Plane(i) => format!("plane {i} of the frustum"),
         Subject::Eye => "the Eye".into(),
         Subject::None => "nothing".into(),
@@ -40,8 +41,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         ui.horizontal_wrapped(|ui| {
             ui.strong(capitalized(&subject_name(state, state.selection)));
             if let Subject::Prim(p) = state.selection {
-                let object = stage.object_of(p);
-                let name = stage.object_name(object);
+                let object = stage.scene().object_of(p);
+                let name = stage.scene().object_name(object);
                 if !name.is_empty() && ui.link(name).on_hover_text("Select the object").clicked() {
                     answers.push(Command::Select(Subject::Object(object)));
                 }
@@ -65,10 +66,4 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         });
     });
-}
-
-/// With a capital letter.
-pub fn capitalized(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }

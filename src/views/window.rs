@@ -1,102 +1,17 @@
 //! The window: egui's frame around the state, and what only the screen needs.
 
-use std::sync::mpsc::{Receiver, channel};
-
 use eframe::egui::{self, Panel, ViewportCommand};
 use egui_tiles::Tree;
 
+use super::cache::Cache;
 use super::dock::{self, Dock, Pane};
-use super::handles::Handle;
+use super::handles::Hand;
 use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
-use crate::app::{
-    Action, Any, Cell, Command, Dialog, Effect, Example, Layout, Session, Start, State, VECTOR_PRIMS,
-};
-use crate::drawing::Drawing;
-use crate::figure::Look;
-use crate::geometry::{Flat, PrimId, View};
+use crate::app::{Action, Command, Dialog, Effect, Layout, Session, Start, State, Theme, VECTOR_PRIMS};
+use crate::drawing::Pixels;
+use crate::geometry::Either;
 use crate::render::screen;
-
-/// The gesture of looking around with the pointer in the Eye view.
-pub(super) const LOOK_GESTURE: u64 = u64::MAX;
-
-/// For a scene and a view, what each column of the flatland image shows.
-pub type Image = ((u64, View<Flat>), Vec<Option<(PrimId, f32)>>);
-/// For a film and a width, the cells of the timeline.
-pub type Lanes = ((u64, usize), [Vec<Cell>; 4]);
-
-/// What only the screen needs: cached pictures, half-typed text, what the pointer holds.
-#[derive(Default)]
-pub struct Cache {
-    /// The flatland drawing of a film's step.
-    pub flat: Option<((u64, usize, Look), Drawing<glam::Vec2>)>,
-    /// The method's picture at a step.
-    pub picture: super::pictures::Shown,
-    /// The flatland Eye's image.
-    pub image: Option<Image>,
-    /// The timeline's cells for a film and a width.
-    pub lanes: Option<Lanes>,
-    /// What the event tree was last scrolled for.
-    pub scrolled_to: Option<(usize, u64, usize)>,
-    /// How far the event tree is scrolled, points.
-    pub events_offset: f32,
-    /// Put the cursor into the filter.
-    pub focus_filter: bool,
-    /// Bring the selection, or everything, into the Observer's picture.
-    pub frame: bool,
-    /// The part of the Eye that the pointer holds.
-    pub held: Option<Handle>,
-    /// Number of the present gesture, for undo.
-    pub gesture: u64,
-    /// The marks of the step in space.
-    pub marks: Option<std::sync::Arc<Drawing<glam::Vec3>>>,
-    /// What lies on the graphics card.
-    pub uploaded: super::space::Uploaded,
-    /// Whether the Eye's picture takes letters to fly.
-    pub flying: bool,
-    /// Whether letters carried the Eye in the last frame.
-    pub flew: bool,
-    /// Width over height of the Observer's picture.
-    pub aspect: f32,
-    /// Whether a picture has the focus.
-    pub picture_focused: bool,
-    /// Text typed into the open dialog.
-    pub typed: String,
-    /// Which dialog it was typed for.
-    pub typed_for: Dialog,
-    /// Chosen row of the palette.
-    pub choice: usize,
-    /// Examples of the start screen.
-    pub examples: Option<Vec<Example>>,
-    asked: Option<Receiver<Option<String>>>,
-}
-
-impl Cache {
-    /// Whether the system's dialog is open.
-    pub fn is_asking(&self) -> bool {
-        self.asked.is_some()
-    }
-    /// Opens the system's dialog on a thread of its own, so that the window goes on.
-    pub fn ask_open(&mut self) {
-        let (send, receive) = channel();
-        self.asked = Some(receive);
-        std::thread::spawn(move || {
-            let dialog = rfd::FileDialog::new()
-                .set_title("Open a scene")
-                .add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
-            let _ = send.send(dialog.pick_file().map(|p| p.to_string_lossy().into_owned()));
-        });
-    }
-    fn asked(&mut self) -> Option<Option<String>> {
-        let answer = match self.asked.as_ref()?.try_recv() {
-            Ok(path) => path,
-            Err(std::sync::mpsc::TryRecvError::Empty) => return None,
-            Err(_) => None,
-        };
-        self.asked = None;
-        Some(answer)
-    }
-}
 
 /// The explorer.
 pub struct App {
@@ -106,13 +21,17 @@ pub struct App {
     tree: Tree<Pane>,
     keys: Keys,
     start: Start,
-    dressed: Option<(crate::app::Theme, Layout, u32)>,
+    /// Theme, layout and scale (in thousandths) that egui was set up for.
+    dressed: Option<(Theme, Layout, u32)>,
     title: String,
     is_fullscreen: bool,
+    /// Frames in a row in which nothing was waited for.
     quiet_frames: u32,
     is_shot: bool,
 }
 
+/// Frames without work before a screenshot is taken.
+const QUIET_FRAMES: u32 = 8;
 /// Keys in eframe's storage.
 const LAYOUT: &str = "layout-1";
 const SESSION: &str = "session-1";
@@ -137,8 +56,8 @@ impl App {
             .and_then(|text| serde_json::from_str::<(String, Tree<Pane>)>(&text).ok());
         let layout = layout.filter(|(name, tree)| *name == state.shown.layout.name() && dock::is_sound(tree));
         let tree = layout.map_or_else(|| dock::tree(state.shown.layout), |(_, tree)| tree);
-        let frame = true;
-        let cache = Cache { frame, ..Cache::default() };
+        let hand = Hand { frame: true, ..Hand::default() };
+        let cache = Cache { hand, ..Cache::default() };
         Self {
             state,
             cache,
@@ -175,33 +94,34 @@ impl App {
             let ground = egui::Frame::NONE.fill(ui.visuals().panel_fill);
             egui::CentralPanel::no_frame().frame(ground).show(ui, |ui| self.tree.ui(&mut dock, ui));
         } else {
-            let cache = &mut self.cache;
-            egui::CentralPanel::default().show(ui, |ui| welcome::show(state, cache, ui, answers));
+            let examples = &mut self.cache.examples;
+            egui::CentralPanel::default().show(ui, |ui| welcome::show(state, examples, ui, answers));
         }
-        dialogs::show(state, &mut self.cache, ui.ctx(), answers);
+        dialogs::show(state, &mut self.cache.typing, ui.ctx(), answers);
     }
 
-    /// What the hook of the keys needs to know before the next frame.
-    fn tell_keys(&mut self, ctx: &egui::Context) {
+    /// Prepares the hook of the keys for the next frame, whose keys it sees before any panel.
+    fn prepare_keys(&mut self, ctx: &egui::Context) {
         let mut inbox = self.keys.inbox();
         inbox.enabled = Action::ALL.iter().map(|i| i.action).filter(|&a| self.state.can(a)).collect();
-        inbox.is_picture_focused = self.cache.picture_focused;
-        inbox.is_flying = std::mem::take(&mut self.cache.flying);
+        inbox.is_picture_focused = self.cache.hand.is_picture_focused;
+        inbox.is_flying = std::mem::take(&mut self.cache.hand.is_flying);
         inbox.is_typing = self.state.dialog != Dialog::None;
         if self.state.dialog != Dialog::None || egui::Popup::is_any_open(ctx) {
             // An open menu or dialog closes itself on Escape.
             inbox.enabled.remove(&Action::Cancel);
         }
-        self.cache.picture_focused = false;
+        self.cache.hand.is_picture_focused = false;
     }
 
+    /// Commands that come from outside the panels: keys, dropped files, the system's dialog.
     fn outside_world(&mut self, ctx: &egui::Context) -> Answers {
         let mut answers: Answers =
-            std::mem::take(&mut self.keys.inbox().asked).into_iter().map(Command::from).collect();
+            std::mem::take(&mut self.keys.inbox().pressed).into_iter().map(Command::from).collect();
         let dropped =
             ctx.input(|i| i.raw.dropped_files.first().map(|f| f.path().to_string_lossy().into_owned()));
         answers.extend(dropped.map(Command::Open));
-        match self.cache.asked() {
+        match self.cache.typing.chooser.answer() {
             Some(Some(path)) => answers.push(Command::Open(path)),
             Some(None) => self.state.tell("No file was chosen. If no dialog appeared, type the path."),
             None => {}
@@ -212,10 +132,8 @@ impl App {
     fn effects(&mut self, ctx: &egui::Context, gpu: Option<&eframe::egui_wgpu::RenderState>) {
         for effect in std::mem::take(&mut self.state.effects) {
             match effect {
-                Effect::AskOpen => self.cache.ask_open(),
-                Effect::AskSave => {}
                 Effect::Export(format) => {
-                    let (aspect, pixels) = (self.cache.aspect, self.pixels(gpu));
+                    let (aspect, pixels) = (self.cache.hand.aspect, self.pixels(gpu));
                     self.state.export(format, aspect, pixels);
                 }
                 Effect::Copy(text) => ctx.copy_text(text),
@@ -225,39 +143,37 @@ impl App {
                 }
                 Effect::ResetLayout => {
                     self.tree = dock::tree(self.state.shown.layout);
-                    self.cache.frame = true;
+                    self.cache.hand.frame = true;
                 }
-                Effect::FocusFilter => self.cache.focus_filter = true,
-                Effect::Frame => self.cache.frame = true,
+                Effect::FocusFilter => self.cache.scroll.focus_filter = true,
+                Effect::Frame => self.cache.hand.frame = true,
                 Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             }
         }
     }
 
     /// The Observer's picture of a scene that is too large for vectors.
-    fn pixels(&self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<crate::drawing::Pixels> {
-        let large = matches!(&self.state.stage, Some(Any::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
+    fn pixels(&self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<Pixels> {
+        let large =
+            matches!(&self.state.stage, Some(Either::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
         gpu.filter(|_| large).and_then(super::space::pixels)
     }
 
-    /// Writes the picture that the start asked for, once everything has been quiet for some frames, and
-    /// quits.
+    /// Writes the screenshot of the command line once the window has been quiet for some frames, and quits.
     fn shoot(&mut self, ctx: &egui::Context) {
         let Some(shot) = self.start.shot.clone().filter(|_| !self.is_shot) else { return };
         self.quiet_frames = if self.state.busy().is_none() { self.quiet_frames + 1 } else { 0 };
         ctx.request_repaint();
-        if self.quiet_frames < 8 {
+        // Layout and textures settle over some frames after the last change.
+        if self.quiet_frames < QUIET_FRAMES {
             return;
         }
         self.is_shot = true;
         let quit = ctx.clone();
         ctx.request_screenshot(move |image: std::sync::Arc<egui::ColorImage>| {
             let rgba: Vec<u8> = image.pixels.iter().flat_map(|c| c.to_srgba_unmultiplied()).collect();
-            let pixels = crate::drawing::Pixels {
-                width: image.size[0] as u32,
-                height: image.size[1] as u32,
-                rgba: rgba.into(),
-            };
+            let pixels =
+                Pixels { width: image.size[0] as u32, height: image.size[1] as u32, rgba: rgba.into() };
             if let Err(error) = crate::app::write_file(&shot.path, &crate::render::png_pixels(&pixels)) {
                 eprintln!("error: {error}");
             }
@@ -272,11 +188,13 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         self.state.poll();
         self.dress(&ctx);
+        // Keys and files come before the panels, which then show what they did in this frame.
         let mut answers = self.outside_world(&ctx);
         for command in answers.drain(..) {
             self.state.apply(command);
         }
         self.panels(ui, frame, &mut answers);
+        // What the panels answer is not shown before the next frame.
         for command in answers {
             self.state.apply(command);
             ctx.request_repaint();
@@ -285,9 +203,11 @@ impl eframe::App for App {
         if self.state.tick(ctx.input(|i| i.stable_dt)) {
             ctx.request_repaint();
         }
-        self.tell_keys(&ctx);
-        let title =
-            self.state.staged().map_or("cullscope".to_owned(), |s| format!("{} – cullscope", s.scene_name()));
+        self.prepare_keys(&ctx);
+        let title = self
+            .state
+            .staged()
+            .map_or("cullscope".to_owned(), |s| format!("{} – cullscope", s.scene().name()));
         if title != self.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;

@@ -28,9 +28,10 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::table::{Cell, Column, Table, grouped};
+use super::table::{Cell, Column, Table};
 use crate::culling::Methods;
 use crate::drawing::Plot;
+use crate::drawing::words::grouped;
 use crate::geometry::{Flat, Solid};
 use crate::method::{KnobValue, SettingError, Settings};
 use crate::raster::Drawable;

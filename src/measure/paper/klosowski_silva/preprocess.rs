@@ -3,13 +3,14 @@
 use std::sync::{Arc, Mutex};
 
 use super::{DELAUNAY, KD_TREE, METHOD, OCTREE, Way, settings};
+use crate::drawing::words::grouped;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::NodeId;
 use crate::measure::Stopwatch;
 use crate::measure::paper::flight::{about, path};
 use crate::measure::paper::walk::ROUNDS;
 use crate::measure::paper::{Measured, PaperError, SCENE, SOURCE, Setup, Sweep, World, column, method, part};
-use crate::measure::table::{Cell, Table, grouped};
+use crate::measure::table::{Cell, Table};
 use crate::measure::timing::median;
 use crate::method::Run;
 use crate::scene::{Progress, Scene};
