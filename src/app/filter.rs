@@ -7,9 +7,9 @@ use std::fmt;
 
 use super::stage::{Footage, SceneFacts};
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, PrimId};
-use crate::method::{Event, Reel, Value, Verdict};
-use crate::trace::{Detail, subject};
+use crate::geometry::{NodeId, ObjectId, PrimId};
+use crate::method::Event;
+use crate::trace::Detail;
 
 /// A parsed filter.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -122,20 +122,21 @@ impl Applied<'_> {
             .zip(&self.ranges)
             .all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
     }
+    fn is_of(&self, object: ObjectId, name: &str) -> bool {
+        self.scene.object_name(object).to_lowercase().contains(name)
+    }
     fn holds(&self, term: &Term, range: Option<(usize, usize)>, at: usize, event: Event) -> bool {
         let (reel, depth) = (self.film.reel, || self.film.moves.depth(at));
+        let subject = reel.subject(at);
         match term {
-            Term::Kind(kind) => kind_name(reel, at).to_lowercase().contains(kind),
-            Term::Verdict(verdict) => {
-                verdict_of(event).is_some_and(|v| v.name().starts_with(verdict.as_str()))
-            }
-            Term::Node(n) => subject_at(reel, at) == Subject::Node(NodeId(*n)),
-            Term::Prim(p) => subject_at(reel, at) == Subject::Prim(PrimId(*p)),
+            Term::Kind(kind) => reel.kind(at).to_lowercase().contains(kind),
+            Term::Verdict(verdict) => event.verdict().is_some_and(|v| v.name().starts_with(verdict.as_str())),
+            Term::Node(n) => subject == Subject::Node(NodeId(*n)),
+            Term::Prim(p) => subject == Subject::Prim(PrimId(*p)),
             Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
-            Term::UnderObject(name) => match subject_at(reel, at) {
-                Subject::Prim(p) => {
-                    self.scene.object_name(self.scene.object_of(p)).to_lowercase().contains(name)
-                }
+            Term::UnderObject(name) => match subject {
+                Subject::Prim(p) => self.is_of(self.scene.object_of(p), name),
+                Subject::Object(object) => self.is_of(object, name),
                 _ => false,
             },
             Term::Line(text) => match event {
@@ -145,52 +146,14 @@ impl Applied<'_> {
             Term::Deeper(d) => depth() > *d,
             Term::Shallower(d) => depth() < *d,
             Term::Word(word) => {
-                kind_name(reel, at).to_lowercase().contains(word)
-                    || verdict_of(event).is_some_and(|v| v.name().contains(word.as_str()))
-                    || word.parse().is_ok_and(|id: u32| match subject_at(reel, at) {
+                reel.kind(at).to_lowercase().contains(word)
+                    || event.verdict().is_some_and(|v| v.name().contains(word.as_str()))
+                    || word.parse().is_ok_and(|id: u32| match subject {
                         Subject::Node(n) => n.0 == id,
                         Subject::Prim(p) => p.0 == id,
                         _ => false,
                     })
             }
         }
-    }
-}
-
-/// Verdict of an event, if it is a decision.
-pub fn verdict_of(event: Event) -> Option<Verdict> {
-    event.verdict()
-}
-
-/// Kind of an event; its operands are made only where it is a note.
-pub fn kind_name(reel: &dyn Reel, at: usize) -> &'static str {
-    match reel.events()[at] {
-        Event::FrameBegan => "FrameBegan",
-        Event::Entered(_) => "NodeEntered",
-        Event::Left(_) => "NodeLeft",
-        Event::Queued(..) => "NodeQueued",
-        Event::DecidedNode(..) => "NodeDecided",
-        Event::DecidedPrim(..) => "PrimDecided",
-        Event::Line(_) => "LineReached",
-        Event::Noted(_) => reel.fields(at).0,
-    }
-}
-
-/// The node or primitive that an event or a note is about.
-pub fn subject_at(reel: &dyn Reel, at: usize) -> Subject {
-    let Some(event) = reel.events().get(at) else { return Subject::None };
-    match (event, subject(event)) {
-        (_, (Some(node), _)) => Subject::Node(node),
-        (_, (_, Some(prim))) => Subject::Prim(prim),
-        (Event::Noted(_), _) => {
-            let id = |v: &Value| if let Value::Integer(i) = v { Some(*i as u32) } else { None };
-            let found = reel.fields(at).1.iter().find_map(|f| match f.name {
-                "node" => id(&f.value).map(|i| Subject::Node(NodeId(i))),
-                "prim" => id(&f.value).map(|i| Subject::Prim(PrimId(i))),
-                _ => None,
-            });
-            found.unwrap_or_default()
-        }
-        _ => Subject::None,
     }
 }

@@ -34,7 +34,6 @@ pub use camera::ObserverCamera;
 pub use command::{Action, Command, Info, Menu, fuzzy};
 pub use export::VECTOR_PRIMS;
 pub use file::{discard_unfinished, write_whole};
-pub use filter::{kind_name, subject_at, verdict_of};
 pub use lanes::{Cell, Lane, lanes};
 pub use measured::{Measured, Tables, tables};
 pub use open::{Example, examples};

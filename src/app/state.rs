@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
-use super::filter::subject_at;
 use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};
@@ -205,7 +204,7 @@ impl State {
     /// What the current event, or the evidence around it, is about.
     pub fn current_subject(&self) -> Subject {
         let (Some(film), Some(at)) = (self.film(), self.current()) else { return Subject::None };
-        match subject_at(film.reel, at) {
+        match film.reel.subject(at) {
             Subject::None => {
                 let open = film.moves.stack(film.reel.events(), self.step);
                 open.last().map_or(Subject::None, |&node| Subject::Node(node))

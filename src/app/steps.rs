@@ -1,7 +1,6 @@
 //! Moving through the film: stepping, running to breakpoints, playing.
 
 use super::command::Action;
-use super::filter::{kind_name, subject_at, verdict_of};
 use super::session::Bookmark;
 use super::shown::{Breakpoint, Dialog};
 use super::stage::Footage;
@@ -37,8 +36,8 @@ impl State {
             Action::NextVerdict => moves.next(events, step, Moves::is_verdict),
             Action::PreviousVerdict => moves.previous(events, step, Moves::is_verdict),
             Action::NextSame | Action::PreviousSame => {
-                let kind = kind_name(reel, at?);
-                self.seek(action == Action::NextSame, |i| kind_name(reel, i) == kind)
+                let kind = reel.kind(at?);
+                self.seek(action == Action::NextSame, |i| reel.kind(i) == kind)
             }
             Action::NextOnSelected
             | Action::PreviousOnSelected
@@ -46,7 +45,7 @@ impl State {
             | Action::BackToCursor => {
                 let wanted = Some(self.selection).filter(|s| *s != Subject::None)?;
                 let forward = matches!(action, Action::NextOnSelected | Action::RunToCursor);
-                self.seek(forward, |i| subject_at(reel, i) == wanted)
+                self.seek(forward, |i| reel.subject(i) == wanted)
             }
             Action::Run => Some(self.seek(true, |i| self.stops_at(i)).unwrap_or(events.len())),
             Action::RunBack => Some(self.seek(false, |i| self.stops_at(i)).unwrap_or(0)),
@@ -79,9 +78,9 @@ impl State {
         let event = reel.events()[at];
         self.breakpoints.iter().any(|b| match b {
             Breakpoint::Line(line) => event == Event::Line(*line),
-            Breakpoint::Verdict(verdict) => verdict_of(event) == Some(*verdict),
-            Breakpoint::Node(node) => subject_at(reel, at) == Subject::Node(*node),
-            Breakpoint::Prim(prim) => subject_at(reel, at) == Subject::Prim(*prim),
+            Breakpoint::Verdict(verdict) => event.verdict() == Some(*verdict),
+            Breakpoint::Node(node) => reel.subject(at) == Subject::Node(*node),
+            Breakpoint::Prim(prim) => reel.subject(at) == Subject::Prim(*prim),
         })
     }
 

@@ -248,7 +248,7 @@ fn the_event_tree_folds_filters_and_reveals() {
     assert!(state.outline.rows().contains(&99), "the current event is shown");
     state.apply(Command::Filter("verdict:outside kind:node".into()));
     let rows = state.outline.rows();
-    let outside = state.events().iter().filter(|e| verdict_of(**e) == Some(Verdict::Outside)).count();
+    let outside = state.events().iter().filter(|e| e.verdict() == Some(Verdict::Outside)).count();
     assert_eq!(rows.len(), outside);
     state.apply(Command::Filter("under:3 -line".into()));
     let within = state.outline.rows().len();

@@ -1,6 +1,5 @@
 //! Why a thing has the state it has, read from the film alone.
 
-use super::filter::verdict_of;
 use super::stage::{Footage, SceneFacts, Staged};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
@@ -141,19 +140,12 @@ fn why_node(stage: &dyn Staged, film: Footage<'_>, node: NodeId, step: usize) ->
     }
 }
 
-/// The evidence right before the decision that is event `at − 1`, and the decision itself.
+/// The evidence of the decision that is event `at − 1`, and the decision itself.
 fn evidence(film: Footage<'_>, at: usize) -> Vec<Because> {
     let decision = at - 1;
-    let first = decision.saturating_sub(EVIDENCE_REACH);
-    let noted = (first..decision)
-        .rev()
-        .take_while(|&i| verdict_of(film.reel.events()[i]).is_none())
-        .find(|&i| matches!(film.reel.events()[i], Event::Noted(_)));
+    let noted = film.reel.evidence_of(decision);
     noted.into_iter().chain([decision]).map(|i| because(film.reel.sentence(i), Some(i + 1))).collect()
 }
-
-/// How far before a decision its evidence may lie: a line of pseudocode may come between.
-const EVIDENCE_REACH: usize = 3;
 
 /// A verdict in a sentence.
 pub fn spoken(verdict: Verdict) -> &'static str {

@@ -34,6 +34,9 @@ pub trait Reel: Send + Sync {
     /// or primitive, the primitive's object, or the node that is being visited. `None` if `at` is no decision,
     /// or rests on none.
     fn evidence_of(&self, at: usize) -> Option<usize>;
+    /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
+    /// Lines of pseudocode, queueing and leaving a node change nothing about that.
+    fn evidence_at(&self, step: usize) -> Option<usize>;
     /// The kind and the operands of event `at`, for traces and the inspector.
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
     /// What event `at` did, in a sentence or two.
@@ -163,17 +166,12 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
         *last = Some((at, state.clone()));
         state
     }
-    /// The note that a step is about: what was just recorded, or the evidence of the decision just made. Lines
-    /// of pseudocode, queueing and leaving a node change nothing about that.
+    /// The note that a step is about.
     fn note_at(&self, step: usize) -> Option<&M::Note> {
-        let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let at =
-            events.iter().rposition(|e| !matches!(e, Event::Line(_) | Event::Left(_) | Event::Queued(..)));
-        let at = match events[at?] {
-            Event::DecidedNode(..) | Event::DecidedPrim(..) => self.evidence_of(at?)?,
-            _ => at?,
-        };
-        if let Event::Noted(i) = events[at] { self.recorder.notes.get(i as usize) } else { None }
+        match self.recorder.events[self.evidence_at(step)?] {
+            Event::Noted(i) => self.recorder.notes.get(i as usize),
+            _ => None,
+        }
     }
     /// Does something with a step.
     fn at<T>(&self, step: usize, look: impl FnOnce(&Moment<'_, S, M>) -> T) -> T {
@@ -260,6 +258,16 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
         let grounds = self.evidence.get_or_init(|| self.grounds());
         let found = grounds.binary_search_by_key(&(at as u32), |g| g.decision).ok()?;
         Some(grounds[found].evidence as usize)
+    }
+    fn evidence_at(&self, step: usize) -> Option<usize> {
+        let events = &self.recorder.events[..step.min(self.recorder.events.len())];
+        let at =
+            events.iter().rposition(|e| !matches!(e, Event::Line(_) | Event::Left(_) | Event::Queued(..)))?;
+        match events[at] {
+            Event::Noted(_) => Some(at),
+            Event::DecidedNode(..) | Event::DecidedPrim(..) => self.evidence_of(at),
+            _ => None,
+        }
     }
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
         let fields = match self.recorder.events[at] {

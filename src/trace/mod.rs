@@ -10,5 +10,5 @@ mod stamps;
 #[cfg(test)]
 mod tests;
 
-pub use moves::{Detail, Moves, subject};
+pub use moves::{Detail, Moves};
 pub use stamps::{Counts, Stamp, Stamps, State};

@@ -3,7 +3,7 @@
 //! Step `k` lies between event `k − 1` (the last that happened, the *current* one) and event `k`.
 //! Memory: 8 bytes an event.
 
-use crate::geometry::{NodeId, PrimId};
+use crate::geometry::NodeId;
 use crate::method::{Event, Verdict};
 
 /// How fine a step is.
@@ -143,16 +143,5 @@ impl Moves {
         std::iter::successors(Some(self.around[at]), |&e| (e != NONE).then(|| self.around[e as usize]))
             .take_while(|&e| e != NONE)
             .count()
-    }
-}
-
-/// What an event is about, if it is about a node or primitive.
-pub fn subject(event: &Event) -> (Option<NodeId>, Option<PrimId>) {
-    match *event {
-        Event::Entered(n) | Event::Left(n) | Event::Queued(n, _) | Event::DecidedNode(n, _) => {
-            (Some(n), None)
-        }
-        Event::DecidedPrim(p, _) => (None, Some(p)),
-        _ => (None, None),
     }
 }

@@ -145,15 +145,14 @@ fn next_time(state: &State, line: u8) -> Option<usize> {
     (state.step..events.len()).find(at).or_else(|| (0..events.len()).find(at)).map(|i| i + 1)
 }
 
-/// The values that matter at this step: of the newest evidence or decision since the line was reached.
+/// The values that matter at this step: of the event itself, at a line of pseudocode those of the evidence
+/// around it.
 fn values(state: &State) -> String {
     let (Some(film), Some(at)) = (state.film(), state.current()) else { return String::new() };
-    let events = film.reel.events();
-    let first = at.saturating_sub(2);
-    let Some(i) = (first..=at).rev().find(|&i| !matches!(events[i], Event::Line(_) | Event::FrameBegan))
-    else {
-        return String::new();
-    };
+    let event = film.reel.events()[at];
+    let is_line = matches!(event, Event::Line(_) | Event::FrameBegan);
+    let shown = if is_line { film.reel.evidence_at(state.step) } else { Some(at) };
+    let Some(i) = shown else { return String::new() };
     let fields = film.reel.fields(i).1;
     fields
         .iter()

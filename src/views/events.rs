@@ -6,7 +6,7 @@ use eframe::egui::{self, Align, RichText, ScrollArea, Sense, TextEdit};
 use super::Answers;
 use super::icons::{self, Icon};
 use super::legend::verdict_mark;
-use crate::app::{Command, Footage, SceneFacts, State, kind_name, subject_at, verdict_of};
+use crate::app::{Command, Footage, SceneFacts, State};
 use crate::drawing::Subject;
 use crate::drawing::words::{count, spaced};
 use crate::method::{Event, Reel};
@@ -116,7 +116,7 @@ fn line(
     let event = film.reel.events()[at];
     let depth = film.moves.depth(at).min(MAX_LEVELS);
     let is_current = state.current() == Some(at);
-    let subject = subject_at(film.reel, at);
+    let subject = film.reel.subject(at);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.add_space(depth as f32 * INDENT);
@@ -135,7 +135,7 @@ fn line(
             ui.add_space(17.0);
         }
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
-        match verdict_of(event) {
+        match event.verdict() {
             Some(verdict) => verdict_mark(state, ui, verdict),
             None => ui.add_space(0.0),
         }
@@ -164,14 +164,14 @@ fn line(
 /// One line for an event.
 fn label(scene: &dyn SceneFacts, reel: &dyn Reel, at: usize) -> String {
     let event = reel.events()[at];
-    let kind = spaced(kind_name(reel, at));
+    let kind = spaced(reel.kind(at));
     match event {
         Event::Line(i) => reel.card().code[i as usize].text.trim().to_owned(),
         Event::DecidedNode(n, v) => format!("node {n}: {}", v.name()),
         Event::DecidedPrim(p, v) => format!("{} {p}: {}", scene.prim_name(), v.name()),
         Event::Entered(n) => format!("node {n}"),
         Event::Left(n) => format!("end of node {n}"),
-        _ => match subject_at(reel, at) {
+        _ => match reel.subject(at) {
             Subject::Node(n) => format!("{kind}, node {n}"),
             Subject::Prim(p) => format!("{kind}, {} {p}", scene.prim_name()),
             _ => kind,

@@ -4,7 +4,7 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 
 use super::icons::Icon;
 use super::{Answers, palette};
-use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes, subject_at, verdict_of};
+use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes};
 use crate::drawing::words::count;
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
@@ -147,7 +147,7 @@ fn scrubber(state: &State, kept: &mut Option<Lanes>, ui: &mut egui::Ui, answers:
     if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
         let step = bar.step_at(at.x);
         answers.push(Command::GoTo(step));
-        let subject = step.checked_sub(1).map_or(Subject::None, |event| subject_at(film.reel, event));
+        let subject = step.checked_sub(1).map_or(Subject::None, |event| film.reel.subject(event));
         if response.clicked() && subject != Subject::None {
             answers.push(Command::Select(subject));
         }
@@ -242,7 +242,7 @@ fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: &Bar) {
         stops.for_each(dot);
     } else {
         let wanted =
-            |e: &Event| verdict_of(*e).is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
+            |e: &Event| e.verdict().is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
         let stops = events.iter().enumerate().filter(|(_, e)| wanted(e)).take(500);
         stops.for_each(|(i, _)| dot(i));
     }
