@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use super::stage::{Footage, SceneFacts};
+use super::stage::{Reading, SceneFacts};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Event;
@@ -64,7 +64,7 @@ impl Filter {
         self.terms.is_empty()
     }
     /// Binds the filter to a film, looking up once what depends on it.
-    pub fn on<'a>(&'a self, scene: &'a dyn SceneFacts, film: Footage<'a>) -> Applied<'a> {
+    pub fn on<'a>(&'a self, scene: &'a dyn SceneFacts, film: Reading<'a>) -> Applied<'a> {
         let ranges = self.terms.iter().map(|(_, term)| term.range(film)).collect();
         Applied { filter: self, scene, film, ranges }
     }
@@ -96,7 +96,7 @@ impl Term {
         }
     }
     /// The events from entering the node of `under:` to leaving it.
-    fn range(&self, film: Footage<'_>) -> Option<(usize, usize)> {
+    fn range(&self, film: Reading<'_>) -> Option<(usize, usize)> {
         let Self::UnderNode(node) = self else { return None };
         let node = Some(NodeId(*node)).filter(|n| n.at() < film.node_count())?;
         let entered = film.stamps.entered_at(node)? - 1;
@@ -108,7 +108,7 @@ impl Term {
 pub struct Applied<'a> {
     filter: &'a Filter,
     scene: &'a dyn SceneFacts,
-    film: Footage<'a>,
+    film: Reading<'a>,
     ranges: Vec<Option<(usize, usize)>>,
 }
 

@@ -40,7 +40,7 @@ pub use open::{Example, examples};
 pub use outline::Outline;
 pub use session::{Bookmark, Session, SessionError, write_file};
 pub use shown::{Breakpoint, Dialog, Gesture, Layout, Shown, Surface, Theme};
-pub use stage::{Footage, Recorded, SceneFacts, Stage, Staged};
+pub use stage::{Reading, Recorded, SceneFacts, Stage, Staged};
 pub use start::{Shot, Start};
 pub use state::{Effect, Notice, State};
 pub use why::{Because, spoken, why};

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::filter::{Filter, FilterError};
-use super::stage::{Footage, SceneFacts, Staged};
+use super::stage::{Reading, SceneFacts, Staged};
 use crate::method::Event;
 use crate::trace::Detail;
 
@@ -48,7 +48,7 @@ impl Outline {
         self.built_for = None;
     }
     /// Unfolds what hides event `at`.
-    pub fn reveal(&mut self, film: Footage<'_>, at: usize) {
+    pub fn reveal(&mut self, film: Reading<'_>, at: usize) {
         let end = |folded: u32| film.moves.over(film.reel.events(), folded as usize, Detail::Full);
         let hiding: Vec<u32> =
             self.folded.iter().copied().filter(|&f| (f as usize) < at && at < end(f)).collect();
@@ -84,7 +84,7 @@ impl Outline {
         }
         self.built_for = Some(wanted);
     }
-    fn list(&mut self, scene: &dyn SceneFacts, film: Footage<'_>, detail: Detail, filter: &Filter) {
+    fn list(&mut self, scene: &dyn SceneFacts, film: Reading<'_>, detail: Detail, filter: &Filter) {
         let (events, filtering) = (film.reel.events(), !filter.is_empty());
         let applied = filter.on(scene, film);
         let mut at = 0;

@@ -194,7 +194,7 @@ impl<S: Space> SceneFacts for Scene<S> {
 
 /// A recorded film as panels read it that do not care about the space.
 #[derive(Clone, Copy)]
-pub struct Footage<'a> {
+pub struct Reading<'a> {
     /// The film.
     pub reel: &'a dyn Reel,
     /// When each node and primitive was decided.
@@ -205,7 +205,7 @@ pub struct Footage<'a> {
     pub serial: u64,
 }
 
-impl Footage<'_> {
+impl Reading<'_> {
     /// Number of nodes of the index.
     pub fn node_count(&self) -> usize {
         self.stamps.nodes().len()
@@ -217,7 +217,7 @@ pub trait Staged {
     /// The scene.
     fn scene(&self) -> &dyn SceneFacts;
     /// The recorded film, once there is one.
-    fn film(&self) -> Option<Footage<'_>>;
+    fn film(&self) -> Option<Reading<'_>>;
     /// The roles of the marks with which the method explains a step, for the legend.
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role>;
     /// Parent of a node of the film's index.
@@ -244,9 +244,9 @@ impl<S: Methods> Staged for Stage<S> {
     fn scene(&self) -> &dyn SceneFacts {
         &*self.scene
     }
-    fn film(&self) -> Option<Footage<'_>> {
+    fn film(&self) -> Option<Reading<'_>> {
         let r = self.recorded.as_ref()?;
-        Some(Footage { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial })
+        Some(Reading { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial })
     }
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
         let mut to = Drawing::default();

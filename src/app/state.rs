@@ -10,7 +10,7 @@ use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
-use super::stage::{Footage, Staged};
+use super::stage::{Reading, Staged};
 use super::undo::History;
 use super::worker::{Busy, FILM_CAP_EVENTS, Worker};
 use crate::culling::DEFAULT_METHOD;
@@ -160,7 +160,7 @@ impl State {
         self.stage.as_ref().map(|s| s.get())
     }
     /// The recorded film, once there is one.
-    pub fn film(&self) -> Option<Footage<'_>> {
+    pub fn film(&self) -> Option<Reading<'_>> {
         self.staged()?.film()
     }
     /// Events of the film; none before it is recorded.

@@ -3,7 +3,7 @@
 use super::command::Action;
 use super::session::Bookmark;
 use super::shown::{Breakpoint, Dialog};
-use super::stage::Footage;
+use super::stage::Reading;
 use super::state::State;
 use crate::drawing::Subject;
 use crate::method::Event;
@@ -21,7 +21,7 @@ impl State {
 
     /// The step that an action leads to; `None` if the action is no move or leads nowhere.
     fn target_of(&self, action: Action) -> Option<usize> {
-        let Footage { reel, moves, .. } = self.film()?;
+        let Reading { reel, moves, .. } = self.film()?;
         let (events, step, detail) = (reel.events(), self.step, self.detail);
         let at = self.current();
         match action {
@@ -74,7 +74,7 @@ impl State {
 
     /// Whether a breakpoint stops at event `at`.
     pub fn stops_at(&self, at: usize) -> bool {
-        let Some(Footage { reel, .. }) = self.film() else { return false };
+        let Some(Reading { reel, .. }) = self.film() else { return false };
         let event = reel.events()[at];
         self.breakpoints.iter().any(|b| match b {
             Breakpoint::Line(line) => event == Event::Line(*line),
@@ -166,7 +166,7 @@ impl State {
         self.pending += seconds.clamp(0.0, 1.0) * self.speed;
         let whole = self.pending as usize;
         self.pending -= whole as f32;
-        let Some(Footage { reel, moves, .. }) = self.film() else { return false };
+        let Some(Reading { reel, moves, .. }) = self.film() else { return false };
         let mut step = self.step;
         for _ in 0..whole {
             let next = moves.forward(reel.events(), step, self.detail);

@@ -1,6 +1,6 @@
 //! Why a thing has the state it has, read from the film alone.
 
-use super::stage::{Footage, SceneFacts, Staged};
+use super::stage::{Reading, SceneFacts, Staged};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId};
 use crate::method::{Event, Verdict};
@@ -49,7 +49,7 @@ fn name(scene: &dyn SceneFacts, prim: PrimId) -> String {
     format!("{} {prim}{of}", scene.prim_name())
 }
 
-fn why_prim(stage: &dyn Staged, film: Footage<'_>, prim: PrimId, step: usize) -> Vec<Because> {
+fn why_prim(stage: &dyn Staged, film: Reading<'_>, prim: PrimId, step: usize) -> Vec<Because> {
     let name = name(stage.scene(), prim);
     match film.stamps.prim_decision(prim) {
         None if film.reel.lost() > 0 => vec![because(
@@ -87,7 +87,7 @@ fn why_prim(stage: &dyn Staged, film: Footage<'_>, prim: PrimId, step: usize) ->
     }
 }
 
-fn why_node(stage: &dyn Staged, film: Footage<'_>, node: NodeId, step: usize) -> Vec<Because> {
+fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) -> Vec<Because> {
     if let Some((at, verdict)) = film.stamps.node_decision(node) {
         if at > step {
             let text = match film.stamps.entered_at(node) {
@@ -141,7 +141,7 @@ fn why_node(stage: &dyn Staged, film: Footage<'_>, node: NodeId, step: usize) ->
 }
 
 /// The evidence of the decision that is event `at − 1`, and the decision itself.
-fn evidence(film: Footage<'_>, at: usize) -> Vec<Because> {
+fn evidence(film: Reading<'_>, at: usize) -> Vec<Because> {
     let decision = at - 1;
     let noted = film.reel.evidence_of(decision);
     noted.into_iter().chain([decision]).map(|i| because(film.reel.sentence(i), Some(i + 1))).collect()

@@ -6,7 +6,7 @@ use eframe::egui::{self, Align, RichText, ScrollArea, Sense, TextEdit};
 use super::Answers;
 use super::icons::{self, Icon};
 use super::legend::verdict_mark;
-use crate::app::{Command, Footage, SceneFacts, State};
+use crate::app::{Command, Reading, SceneFacts, State};
 use crate::drawing::Subject;
 use crate::drawing::words::{count, spaced};
 use crate::method::{Event, Reel};
@@ -108,7 +108,7 @@ fn search(state: &State, scroll: &mut Scroll, ui: &mut egui::Ui, answers: &mut A
 fn line(
     state: &State,
     scene: &dyn SceneFacts,
-    film: Footage<'_>,
+    film: Reading<'_>,
     at: usize,
     ui: &mut egui::Ui,
     answers: &mut Answers,
