@@ -29,7 +29,7 @@ struct Stripped<'a> {
 }
 
 impl Stripped<'_> {
-    fn cull(&self, view: &View<Solid>) -> DrawList {
+    fn cull(&self, view: &View<Solid>) -> DrawList<Solid> {
         let mut out = DrawList::default();
         let frustum = view.frustum();
         let Self { tree: index, scene, backface_culling } = self;
@@ -46,7 +46,7 @@ struct Walk<'a> {
     view: &'a View<Solid>,
     frustum: Frustum<Vec3>,
     backface_culling: bool,
-    out: &'a mut DrawList,
+    out: &'a mut DrawList<Solid>,
 }
 
 impl Walk<'_> {
@@ -83,7 +83,7 @@ impl Walk<'_> {
     }
 }
 
-fn hash(lists: impl Iterator<Item = DrawList>) -> u64 {
+fn hash(lists: impl Iterator<Item = DrawList<Solid>>) -> u64 {
     lists
         .flat_map(|l| l.prims)
         .fold(0xcbf2_9ce4_8422_2325, |h, p| (h ^ u64::from(p.0)).wrapping_mul(0x100_0000_01b3))
