@@ -11,8 +11,8 @@ use crate::scene::Scene;
 const LABEL_PT: f32 = 8.0;
 
 /// A box was tested against the planes of the view's frustum. Only the question and the answer are kept, a
-/// quarter of the bytes: the distances are computed when the note is read, by [`Frustum::test_plane`], the same
-/// function that decided in the run, so they are the same to the last bit.
+/// quarter of the bytes: the distances are computed when the note is read, by [`Frustum::test_plane`], the
+/// same function that decided in the run, so they are the same to the last bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Tested<S: Space> {
     /// Whose box.
