@@ -1,15 +1,17 @@
 //! What watching costs: `frustum` unobserved, counted and recorded against a copy with every trace of the
 //! observer stripped by hand.
 //!
-//! `cargo bench --bench observer`. Interleaved and paired: each round times both ways, the median ratio of
-//! the rounds is printed with its quartiles. The copy lives here so that the library has one function only.
+//! `cargo bench --bench observer`. Interleaved and paired: each round times every view both ways in turn. The
+//! median ratio of these pairs is printed with its quartiles: a pair takes so little time that other programs
+//! interrupt few of them. The copy lives here so that the library has one function only.
 
+use std::hint::black_box;
 use std::sync::Arc;
 
 use cullscope::culling::Methods;
 use cullscope::geometry::{Frustum, FrustumTest, NodeId, Solid, View, faces_away};
 use cullscope::index::KdTree;
-use cullscope::measure::timing::{Paired, paired};
+use cullscope::measure::timing::{median, timed};
 use cullscope::method::{DrawList, Settings};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use glam::Vec3;
@@ -87,10 +89,41 @@ fn hash(lists: impl Iterator<Item = DrawList<Solid>>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |h, p| (h ^ u64::from(p.0)).wrapping_mul(0x100_0000_01b3))
 }
 
-fn print(name: &str, p: &Paired) {
+/// Times two ways over the views, each view both ways, and prints how they compare. Which way goes first
+/// alternates.
+fn compare<A, B>(
+    name: &str,
+    views: &[View<Solid>],
+    mut bare: impl FnMut(&View<Solid>) -> A,
+    mut watched: impl FnMut(&View<Solid>) -> B,
+) {
+    let mut pairs = Vec::new();
+    for round in 0..=ROUNDS {
+        for (i, view) in views.iter().enumerate() {
+            // What a way returns is dropped within its time.
+            let mut bare_ms = || timed(|| drop(black_box(bare(view)))).1;
+            let mut watched_ms = || timed(|| drop(black_box(watched(view)))).1;
+            let pair = if (round + i).is_multiple_of(2) {
+                let first = bare_ms();
+                (first, watched_ms())
+            } else {
+                let first = watched_ms();
+                (bare_ms(), first)
+            };
+            pairs.push(pair);
+        }
+    }
+    // The first round warms up.
+    pairs.drain(..views.len());
+    let mut ratios: Vec<f64> = pairs.iter().map(|(bare, watched)| watched / bare).collect();
+    ratios.sort_by(f64::total_cmp);
     println!(
-        "{name}: ×{:.3} (quartiles {:.3} to {:.3}); {:.3} ms against {:.3} ms for {VIEWS} views",
-        p.ratio, p.spread[0], p.spread[1], p.b_ms, p.a_ms
+        "{name}: ×{:.3} (quartiles {:.3} to {:.3}); {:.1} µs against {:.1} µs a view",
+        median(ratios.clone()),
+        ratios[ratios.len() / 4],
+        ratios[ratios.len() * 3 / 4],
+        1e3 * median(pairs.iter().map(|p| p.1).collect()),
+        1e3 * median(pairs.iter().map(|p| p.0).collect()),
     );
 }
 
@@ -101,11 +134,8 @@ fn main() {
     };
     let views = random_views(&scene, VIEWS, 7);
     // Each way has a tree of its own, so each finds the other one's in the caches.
-    let [stripped, again] = [(); 2].map(|()| Stripped {
-        tree: build(&scene),
-        scene: &scene,
-        backface_culling: std::hint::black_box(false),
-    });
+    let [stripped, again] =
+        [(); 2].map(|()| Stripped { tree: build(&scene), scene: &scene, backface_culling: black_box(false) });
     let settings = Settings([("tree-height".to_owned(), HEIGHT.to_string())].into());
     let entry = Solid::method("frustum").expect("a method");
     let [mut a, mut b, mut c] =
@@ -119,25 +149,11 @@ fn main() {
         scene.live().len()
     );
 
-    let bare = || views.iter().for_each(|v| drop(std::hint::black_box(stripped.cull(v))));
-    print(
-        "stripped again",
-        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(again.cull(v))))),
-    );
-    print(
-        "unobserved    ",
-        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(a.cull(v))))),
-    );
-    print(
-        "counted       ",
-        &paired(ROUNDS, bare, || views.iter().for_each(|v| drop(std::hint::black_box(b.count(v))))),
-    );
-    print(
-        "recorded      ",
-        &paired(ROUNDS, bare, || {
-            views.iter().for_each(|v| drop(std::hint::black_box(c.record(v, usize::MAX).list)))
-        }),
-    );
+    let bare = |view: &View<Solid>| stripped.cull(view);
+    compare("stripped again", &views, bare, |view| again.cull(view));
+    compare("unobserved    ", &views, bare, |view| a.cull(view));
+    compare("counted       ", &views, bare, |view| b.count(view));
+    compare("recorded      ", &views, bare, |view| c.record(view, usize::MAX).list);
     println!("hash {want:016x}");
 }
 

@@ -149,6 +149,11 @@ pub struct Tally {
     pub nodes_decided: u64,
     /// Primitives decided one by one.
     pub prims_decided: u64,
+    // What the evidence that methods share stands for. These are counted at every node: each has a place of
+    // its own, where a name would have to be looked up.
+    pub(super) boxes_tested: u64,
+    pub(super) planes_tested: u64,
+    pub(super) orientations_tested: u64,
     /// The method's own counts, in the order of their first use. A handful that is looked up at every
     /// test: a scan by address is cheaper than a map.
     own: Vec<(&'static str, u64)>,
@@ -181,6 +186,13 @@ impl Tally {
     /// All counts by name.
     pub fn named(&self) -> BTreeMap<&'static str, u64> {
         let mut all: BTreeMap<_, _> = self.own.iter().copied().collect();
+        // Counts of tests that a method never makes are not its own.
+        if self.boxes_tested > 0 {
+            all.extend([("boxes_tested", self.boxes_tested), ("planes_tested", self.planes_tested)]);
+        }
+        if self.orientations_tested > 0 {
+            all.insert("orientations_tested", self.orientations_tested);
+        }
         all.extend([
             ("nodes_entered", self.nodes_entered),
             ("nodes_decided", self.nodes_decided),
@@ -237,6 +249,11 @@ impl<N> Recorder<N> {
     pub fn new(cap: usize) -> Self {
         Self { events: Vec::new(), notes: Vec::new(), lost: 0, cap }
     }
+    /// Makes room for as many events and notes as are expected, within the cap.
+    pub fn expect(&mut self, events: usize, notes: usize) {
+        self.events.reserve(events.min(self.cap));
+        self.notes.reserve(notes.min(self.cap));
+    }
 }
 
 impl<N> Observer<N> for Recorder<N> {
@@ -266,31 +283,27 @@ mod tests {
     #[test]
     fn own_counts_are_found_by_address_and_by_text() {
         let mut tally = Tally { nodes_entered: 2, ..Tally::default() };
-        let elsewhere: &'static str = Box::leak("planes_tested".to_owned().into_boxed_str());
-        for (name, by) in [
-            ("planes_tested", 3),
-            ("boxes_tested", 1),
-            (elsewhere, 4),
-            ("planes_tested", 5),
-            (&elsewhere[..6], 7),
-        ] {
+        let elsewhere: &'static str = Box::leak("cells_tested".to_owned().into_boxed_str());
+        for (name, by) in
+            [("cells_tested", 3), ("marks", 1), (elsewhere, 4), ("cells_tested", 5), (&elsewhere[..5], 7)]
+        {
             tally.add(name, by);
         }
         let want = [
-            ("boxes_tested", 1),
+            ("cells", 7),
+            ("cells_tested", 12),
+            ("marks", 1),
             ("nodes_decided", 0),
             ("nodes_entered", 2),
-            ("planes", 7),
-            ("planes_tested", 12),
             ("prims_decided", 0),
         ];
         assert_eq!(tally.named(), BTreeMap::from(want));
         let mut other = Tally { nodes_entered: 2, ..Tally::default() };
-        for (name, by) in [("boxes_tested", 1), ("planes", 7), ("planes_tested", 12)] {
+        for (name, by) in [("marks", 1), ("cells", 7), ("cells_tested", 12)] {
             other.add(name, by);
         }
         assert_eq!(tally, other, "in another order");
-        other.add("planes", 1);
+        other.add("cells", 1);
         assert_ne!(tally, other);
     }
 }

@@ -1,7 +1,7 @@
 //! Evidence that several methods record: a box against the frustum, a primitive's orientation; and how
 //! evidence in general is worded and drawn.
 
-use super::{Claim, Field, Tally, Value};
+use super::{Claim, Context, Field, Tally, Value};
 use crate::drawing::words::{self, Room};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View, faces_away};
@@ -10,56 +10,62 @@ use crate::scene::Scene;
 /// Size of labels beside evidence.
 const LABEL_PT: f32 = 8.0;
 
-/// A box was tested against the planes of the frustum.
+/// A box was tested against the planes of the view's frustum. Only the question and the answer are kept, a
+/// quarter of the bytes: the distances are computed when the note is read, by [`Frustum::test_plane`], the
+/// same function that decided in the run, so they are the same to the last bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Tested<S: Space> {
     /// Whose box.
     subject: Subject,
     bounds: Aabb<S::Vector>,
-    /// The tests in order, up to the first that says outside.
-    tests: [PlaneTest; 6],
-    count: u8,
-    /// Planes that still cut the box; meaningless if outside.
-    cutting: u8,
-    outside: bool,
+    /// Planes to test, a bit each.
+    planes: u8,
+    found: Found,
+}
+
+/// A [`FrustumTest`] without its distances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Found {
+    /// Outside this plane.
+    Outside(u8),
+    /// Neither; the bits are the planes that still cut the box.
+    Partial(u8),
+    /// Inside all planes tested.
+    Inside,
 }
 
 impl<S: Space> Tested<S> {
-    /// The operands of `frustum.test(bounds, planes)`, which returned `result`.
-    pub fn of(
-        subject: Subject,
-        frustum: &Frustum<S::Vector>,
-        bounds: &Aabb<S::Vector>,
-        planes: u8,
-        result: FrustumTest,
-    ) -> Self {
-        let mut tested = Self {
-            subject,
-            bounds: *bounds,
-            tests: [PlaneTest { plane: 0, far_corner: 0.0, near_corner: 0.0, error: 0.0 }; 6],
-            count: 0,
-            cutting: if let FrustumTest::Partial(cutting) = result { cutting } else { 0 },
-            outside: matches!(result, FrustumTest::Outside(_)),
+    /// The view's frustum answered `test(bounds, planes)` with `result`.
+    #[inline]
+    pub fn of(subject: Subject, bounds: &Aabb<S::Vector>, planes: u8, result: FrustumTest) -> Self {
+        let found = match result {
+            FrustumTest::Outside(test) => Found::Outside(test.plane),
+            FrustumTest::Partial(cutting) => Found::Partial(cutting),
+            FrustumTest::Inside => Found::Inside,
         };
-        for plane in (0..Frustum::<S::Vector>::PLANES).filter(|p| planes >> p & 1 == 1) {
-            let test = frustum.test_plane(plane, bounds);
-            tested.tests[tested.count as usize] = test;
-            tested.count += 1;
-            if test.is_outside() {
-                break;
-            }
-        }
-        tested
+        Self { subject, bounds: *bounds, planes, found }
     }
-    fn tests(&self) -> &[PlaneTest] {
-        &self.tests[..self.count as usize]
+    /// The planes that were tested, a bit each: those asked for, up to the one that says outside.
+    #[inline]
+    fn tested(&self) -> u8 {
+        match self.found {
+            Found::Outside(plane) => self.planes & ((2 << plane) - 1),
+            Found::Partial(_) | Found::Inside => self.planes,
+        }
+    }
+    /// The tests in order.
+    fn tests(&self, frustum: &Frustum<S::Vector>) -> Vec<PlaneTest> {
+        let tested = self.tested();
+        (0..Frustum::<S::Vector>::PLANES)
+            .filter(|plane| tested >> plane & 1 == 1)
+            .map(|plane| frustum.test_plane(plane, &self.bounds))
+            .collect()
     }
     /// The test that decided: the one that says outside, or else the one with the least margin.
-    fn decisive(&self) -> Option<PlaneTest> {
-        if self.outside {
-            self.tests().last().copied()
-        } else {
-            self.tests().iter().copied().min_by(|a, b| a.near_corner.total_cmp(&b.near_corner))
+    fn decisive(&self, tests: &[PlaneTest]) -> Option<PlaneTest> {
+        match self.found {
+            Found::Outside(_) => tests.last().copied(),
+            _ => tests.iter().copied().min_by(|a, b| a.near_corner.total_cmp(&b.near_corner)),
         }
     }
     fn name(&self) -> String {
@@ -71,10 +77,10 @@ impl<S: Space> Tested<S> {
         }
     }
     fn result(&self) -> &'static str {
-        match (self.outside, self.cutting) {
-            (true, _) => "outside",
-            (false, 0) => "inside",
-            (false, _) => "partial",
+        match self.found {
+            Found::Outside(_) => "outside",
+            Found::Inside => "inside",
+            Found::Partial(_) => "partial",
         }
     }
 
@@ -83,10 +89,11 @@ impl<S: Space> Tested<S> {
         self.subject
     }
     /// That it lies outside, if it does.
-    pub(crate) fn claim(&self) -> Option<Claim<S::Vector>> {
-        let test = self.tests().last().filter(|_| self.outside)?;
+    pub(crate) fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        let Found::Outside(plane) = self.found else { return None };
+        let test = context.view.frustum().test_plane(plane.into(), &self.bounds);
         Some(Claim::Outside {
-            plane: Frustum::<S::Vector>::plane_name(test.plane as usize),
+            plane: Frustum::<S::Vector>::plane_name(plane.into()),
             far_corner: test.far_corner.into(),
             error: test.error.into(),
             bounds: self.bounds,
@@ -100,20 +107,21 @@ impl<S: Space> Tested<S> {
             _ => "PrimClassified",
         }
     }
+    #[inline]
     pub(crate) fn tally(&self, tally: &mut Tally) {
-        tally.add("boxes_tested", 1);
-        tally.add("planes_tested", self.count.into());
+        tally.boxes_tested += 1;
+        tally.planes_tested += u64::from(self.tested().count_ones());
     }
-    pub(crate) fn fields(&self) -> Vec<Field> {
+    pub(crate) fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
+        let tests = self.tests(&context.view.frustum());
         let id = match self.subject {
             Subject::Prim(p) => integer("prim", p.0),
             Subject::Node(id) => integer("node", id.0),
             Subject::Object(id) => integer("object", id.0),
             _ => integer("subject", 0),
         };
-        let list = |f: fn(&PlaneTest) -> f64| Value::List(self.tests().iter().map(f).collect());
-        let planes = self
-            .tests()
+        let list = |f: fn(&PlaneTest) -> f64| Value::List(tests.iter().map(f).collect());
+        let planes = tests
             .iter()
             .map(|t| Frustum::<S::Vector>::plane_name(t.plane as usize))
             .collect::<Vec<_>>()
@@ -130,30 +138,28 @@ impl<S: Space> Tested<S> {
         ]
     }
 
-    pub(crate) fn sentence(&self) -> String {
-        let name = self.name();
+    pub(crate) fn sentence(&self, context: &Context<'_, S>) -> String {
+        let (name, tests) = (self.name(), self.tests(&context.view.frustum()));
         let plane = |t: &PlaneTest| Frustum::<S::Vector>::plane_name(t.plane as usize);
-        match (self.outside, self.cutting, self.decisive()) {
-            (true, _, Some(t)) => format!(
+        match (self.found, self.decisive(&tests)) {
+            (Found::Outside(_), Some(t)) => format!(
                 "{name} lies outside the {} plane: even its corner that reaches farthest in is {} units \
                  outside (rounding could account for {}).",
                 plane(&t),
                 short(-t.far_corner),
                 short(t.error)
             ),
-            (_, 0, Some(t)) => {
+            (Found::Inside, Some(t)) => {
                 format!(
                     "{name} lies inside every plane tested; the closest is the {} plane, {} units away.",
                     plane(&t),
                     short(t.near_corner)
                 )
             }
-            (_, 0, None) => format!("{name} lies inside all planes: its parents already did."),
-            _ => {
-                let cut: Vec<_> = self
-                    .tests()
+            (Found::Partial(cutting), _) => {
+                let cut: Vec<_> = tests
                     .iter()
-                    .filter(|t| self.cutting >> t.plane & 1 == 1)
+                    .filter(|t| cutting >> t.plane & 1 == 1)
                     .map(|t| plane(t).to_owned())
                     .collect();
                 let (plural, verb) = if cut.len() == 1 { ("", "cuts") } else { ("s", "cut") };
@@ -164,13 +170,14 @@ impl<S: Space> Tested<S> {
                 };
                 format!("The {cut} plane{plural} {verb} {}: part of it may be in view.", name.to_lowercase())
             }
+            (_, None) => format!("{name} lies inside all planes: its parents already did."),
         }
     }
 
     pub(crate) fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
         to.bounds(Layer::Emphasis, Role::Current, self.subject, &self.bounds);
-        let Some(test) = self.decisive() else { return };
         let frustum = view.frustum();
+        let Some(test) = self.decisive(&self.tests(&frustum)) else { return };
         let corners = Frustum::corners(&view.projection(), view.eye.near, view.eye.far);
         let side: &[usize] = match (S::Vector::AXES, test.plane) {
             (2, 0) => &[0, 2],
@@ -190,11 +197,12 @@ impl<S: Space> Tested<S> {
 
         // The corner that decided, and its distance from the plane.
         let (normal, _) = frustum.plane(test.plane as usize);
-        let inward = if self.outside { normal } else { -normal };
+        let is_outside = matches!(self.found, Found::Outside(_));
+        let inward = if is_outside { normal } else { -normal };
         let corner = S::Vector::from_fn(|a| {
             if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) }
         });
-        let distance = if self.outside { test.far_corner } else { test.near_corner };
+        let distance = if is_outside { test.far_corner } else { test.near_corner };
         let foot = corner - normal * distance;
         to.line(Layer::Evidence, Role::Evidence, Subject::None, [corner, foot]);
         to.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Dot { at: corner, radius_pt: 2.5 });
@@ -206,43 +214,46 @@ impl<S: Space> Tested<S> {
     }
 }
 
-/// A primitive was asked whether it faces the eye.
+/// A primitive was asked whether it faces the eye, and did not.
 #[derive(Clone, Copy, Debug)]
 pub struct Facing {
     prim: PrimId,
-    /// Signed distance of the eye from the primitive's plane, world units; negative behind it.
-    eye_distance: f32,
 }
 
 impl Facing {
-    /// The operands of [`crate::geometry::faces_away`] for a primitive.
-    pub fn of<S: Space>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> Self {
-        let normal = scene.normal(prim);
-        let corner = scene.prim_points(prim).next().unwrap_or_default();
-        Self {
-            prim,
-            eye_distance: normal.dot(view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE),
-        }
+    /// [`crate::geometry::faces_away`] was asked for this primitive.
+    #[inline]
+    pub fn of(prim: PrimId) -> Self {
+        Self { prim }
+    }
+    /// Signed distance of the eye from the primitive's plane, world units; negative behind it.
+    fn eye_distance<S: Space>(&self, context: &Context<'_, S>) -> f32 {
+        let normal = context.scene.normal(self.prim);
+        let corner = context.scene.prim_points(self.prim).next().unwrap_or_default();
+        normal.dot(context.view.eye.position - corner) / normal.length().max(f32::MIN_POSITIVE)
     }
     pub(crate) fn subject(&self) -> Subject {
         Subject::Prim(self.prim)
     }
     /// That it faces away, if it does.
-    pub(crate) fn claim<V>(&self) -> Option<Claim<V>> {
-        (self.eye_distance < 0.0).then(|| Claim::FacesAway { eye_distance: self.eye_distance.into() })
+    pub(crate) fn claim<S: Space>(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        let eye_distance = self.eye_distance(context);
+        (eye_distance < 0.0).then(|| Claim::FacesAway { eye_distance: eye_distance.into() })
     }
+    #[inline]
     pub(crate) fn tally(tally: &mut Tally) {
-        tally.add("orientations_tested", 1);
+        tally.orientations_tested += 1;
     }
-    pub(crate) fn fields(&self) -> Vec<Field> {
-        vec![integer("prim", self.prim.0), number("eye_distance_units", self.eye_distance.into())]
+    pub(crate) fn fields<S: Space>(&self, context: &Context<'_, S>) -> Vec<Field> {
+        vec![integer("prim", self.prim.0), number("eye_distance_units", self.eye_distance(context).into())]
     }
-    pub(crate) fn sentence<S: Space>(&self) -> String {
+    pub(crate) fn sentence<S: Space>(&self, context: &Context<'_, S>) -> String {
+        let distance = self.eye_distance(context);
         let (side, verdict) =
-            if self.eye_distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
+            if distance < 0.0 { ("behind", "away from") } else { ("in front of", "toward") };
         format!(
             "The eye is {} units {side} the plane of {} {}, so it faces {verdict} the eye.",
-            short(self.eye_distance.abs()),
+            short(distance.abs()),
             S::PRIM,
             self.prim
         )

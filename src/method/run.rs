@@ -170,12 +170,16 @@ struct Bound<S: Space, M: Method<S>> {
     memory: M::Memory,
     /// Of the last frame; its memory is that of the next.
     state: M::State,
+    /// The most events and notes of a film so far. With room for as many the next one need not be copied
+    /// whenever it grows.
+    longest: [usize; 2],
 }
 
 impl<S: Space, M: Shown<S>> Bound<S, M> {
     fn boxed(scene: &Arc<Scene<S>>, index: M::Index, params: M::Params) -> Box<dyn Run<S>> {
         let (scene, index) = (scene.clone(), Arc::new(index));
-        Box::new(Self { scene, index, params, memory: M::Memory::default(), state: M::State::default() })
+        let (memory, state) = (M::Memory::default(), M::State::default());
+        Box::new(Self { scene, index, params, memory, state, longest: [0; 2] })
     }
     fn run<O: Observer<M::Note>>(
         &mut self,
@@ -217,7 +221,10 @@ impl<S: Space, M: Shown<S>> Run<S> for Bound<S, M> {
     }
     fn record_until(&mut self, view: &View<S>, limit: Option<&Limit<'_>>, cap: usize) -> Recording<S> {
         let mut recorder = Recorder::new(cap);
+        recorder.expect(self.longest[0], self.longest[1]);
         let list = self.run(view, limit, &mut recorder);
+        self.longest =
+            [self.longest[0].max(recorder.events.len()), self.longest[1].max(recorder.notes.len())];
         recorder.events.shrink_to_fit();
         recorder.notes.shrink_to_fit();
         let (scene, index, params) = (self.scene.clone(), self.index.clone(), self.params.clone());

@@ -144,12 +144,10 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
         let planes = geometry::Frustum::<S::Vector>::ALL;
         let test = frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
-            watch.note(move || {
-                Evidence::Tested(Tested::of(Subject::Prim(prim), &frustum, &bounds, planes, test))
-            });
+            watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, planes, test)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else if params.backface_culling && prim_faces_away(scene, eye, prim) {
-            watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+            watch.note(move || Evidence::Facing(Facing::of(prim)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else {
             watch.event(Event::Line(line::PUT));

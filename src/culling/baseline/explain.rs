@@ -84,6 +84,7 @@ impl<S: Space> Evidence<S> {
 }
 
 impl<S: Space> Tallied for Evidence<S> {
+    #[inline]
     fn tally(&self, tally: &mut Tally) {
         match self {
             Self::Tested(n) => n.tally(tally),
@@ -108,17 +109,17 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Distance(n) => Subject::Prim(n.prim),
         }
     }
-    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
-            Self::Tested(n) => n.claim(),
-            Self::Facing(n) => n.claim(),
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
             Self::Distance(_) => None,
         }
     }
-    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
         match self {
-            Self::Tested(n) => n.fields(),
-            Self::Facing(n) => n.fields(),
+            Self::Tested(n) => n.fields(context),
+            Self::Facing(n) => n.fields(context),
             Self::Distance(n) => {
                 vec![
                     integer("prim", n.prim.0),
@@ -129,10 +130,10 @@ impl<S: Space> Note<S> for Evidence<S> {
             }
         }
     }
-    fn sentence(&self, _: &Context<'_, S>) -> String {
+    fn sentence(&self, context: &Context<'_, S>) -> String {
         match self {
-            Self::Tested(n) => n.sentence(),
-            Self::Facing(n) => n.sentence::<S>(),
+            Self::Tested(n) => n.sentence(context),
+            Self::Facing(n) => n.sentence(context),
             Self::Distance(n) => n.sentence(),
         }
     }

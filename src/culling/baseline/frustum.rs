@@ -144,10 +144,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         self.watch.event(Event::Entered(id));
         self.watch.event(Event::Line(line::TEST));
         let test = self.frustum.test(&node.bounds, planes);
-        let frustum = &self.frustum;
-        self.watch.note(move || {
-            Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
-        });
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
                 self.watch.event(Event::Line(line::OUTSIDE));
@@ -180,7 +177,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             self.watch.event(Event::Line(line::DRAW));
             let away = prim_faces_away(scene, view.eye.position, prim);
             if away {
-                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             } else {
                 self.out.prims.push(prim);
             }

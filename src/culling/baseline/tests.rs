@@ -2,7 +2,7 @@
 
 use crate::culling::Methods;
 use crate::geometry::{Eye, Flat, PrimId, Solid, Space, Vector, View, faces_away};
-use crate::method::{Event, SettingError, Settings, Verdict};
+use crate::method::{Event, SettingError, Settings, Value, Verdict};
 use crate::scene::{Quiet, Scene, framing_view, samples};
 use std::sync::Arc;
 
@@ -146,6 +146,32 @@ fn counts_agree_with_the_film() {
     let (boxes, planes) = (tally.named()["boxes_tested"], tally.named()["planes_tested"]);
     assert_eq!(boxes, tally.nodes_entered);
     assert!(planes >= tally.nodes_entered && planes <= 4 * tally.nodes_entered);
+
+    // What is computed when a note is read is what was found when it was taken.
+    let (mut told, mut outside) = (0, 0);
+    for at in 0..recording.film.events().len() {
+        let (kind, fields) = recording.film.fields(at);
+        if kind != "NodeClassified" {
+            continue;
+        }
+        let value = |name: &str| &fields.iter().find(|f| f.name == name).expect("a field").value;
+        let (Value::Word(result), Value::List(far), Value::List(near), Value::List(error)) =
+            (value("result"), value("far_corner_units"), value("near_corner_units"), value("error_units"))
+        else {
+            panic!("{fields:?}");
+        };
+        told += far.len() as u64;
+        let last = far.len() - 1;
+        assert_eq!(result == "outside", far[last] < -error[last]);
+        assert!(
+            (0..last).all(|i| far[i] >= -error[i]),
+            "the first plane that says outside is the last one tested"
+        );
+        assert!(result != "inside" || near.iter().all(|d| *d >= 0.0));
+        outside += u64::from(result == "outside");
+    }
+    assert_eq!(told, planes, "planes named by notes and planes counted");
+    assert!(outside > 10, "{outside}");
 }
 
 #[test]

@@ -82,7 +82,7 @@ impl<S: Space> Method<S> for ZBuffer {
         for &prim in scene.live() {
             if params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
                 watch.event(Event::Line(line::SKIP));
-                watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                watch.note(move || Evidence::Facing(Facing::of(prim)));
                 watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {
                 watch.event(Event::Line(line::DRAW));

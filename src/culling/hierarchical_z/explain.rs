@@ -327,17 +327,17 @@ impl<S: Faces> Note<S> for Evidence<S> {
             }
         }
     }
-    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
-            Self::Tested(n) => n.claim(),
-            Self::Facing(n) => n.claim(),
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
             _ => None,
         }
     }
-    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
         match self {
             Self::Listed(n, _) | Self::Unlisted(n) => vec![integer("node", n.0)],
-            Self::Tested(n) => n.fields(),
+            Self::Tested(n) => n.fields(context),
             Self::Read(node, n) => {
                 let mut fields = vec![integer("node", node.0)];
                 fields.extend(n.face.map(|face| integer("face", face.into())));
@@ -368,7 +368,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 fields
             }
             Self::SharedUnseen(prim, node) => vec![integer("prim", prim.0), integer("node", node.0)],
-            Self::Facing(n) => n.fields(),
+            Self::Facing(n) => n.fields(context),
             Self::Checked(n) => vec![
                 Field { name: "due", value: Value::Switch(n.is_due) },
                 integer("frames", n.frames),
@@ -381,7 +381,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Worked(n) => n.fields(),
         }
     }
-    fn sentence(&self, _: &Context<'_, S>) -> String {
+    fn sentence(&self, context: &Context<'_, S>) -> String {
         match self {
             Self::Listed(n, true) => {
                 format!("Node {n} was visible in the last frame, so it is drawn at once, without a test.")
@@ -392,7 +392,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Unlisted(n) => format!(
                 "Node {n} cannot be seen in the finished image; it leaves the visible list with all below it."
             ),
-            Self::Tested(n) => n.sentence(),
+            Self::Tested(n) => n.sentence(context),
             Self::Read(node, n) => {
                 let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
                 format!("{what} of node {node} against {}: {}.", place(n.cell), n.comparison())
@@ -417,7 +417,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 "The {} {prim} lies in several cubes below node {node}; none of them can be seen.",
                 S::PRIM
             ),
-            Self::Facing(n) => n.sentence::<S>(),
+            Self::Facing(n) => n.sentence(context),
             Self::Checked(n) => n.sentence(),
             Self::Worked(n) => n.sentence(),
         }

@@ -589,10 +589,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         self.watch.event(Event::Entered(id));
         self.watch.event(Event::Line(line::OUTSIDE));
         let test = self.frustum.test(&node.bounds, planes);
-        let frustum = &self.frustum;
-        self.watch.note(move || {
-            Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
-        });
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
         let cutting = match test {
             FrustumTest::Outside(_) => return self.leave(id, Verdict::Outside),
             FrustumTest::Partial(cutting) => cutting,
@@ -669,7 +666,7 @@ impl<S: Faces, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         for at in first..self.prims.len() {
             let prim = self.prims[at];
             if prim_faces_away(scene, view.eye.position, prim) {
-                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {
                 self.prims[kept] = prim;

@@ -355,9 +355,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let is_outside = matches!(test, FrustumTest::Outside(_));
         if is_outside {
             for &prim in self.index.own(node) {
-                self.watch.note(move || {
-                    Evidence::Tested(Tested::of(Subject::Node(node), frustum, held, all, test))
-                });
+                self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node), held, all, test)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             }
         }
@@ -520,7 +518,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             }
             let (scene, view) = (self.scene, self.view);
             if self.options.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
-                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
                 continue;
             }

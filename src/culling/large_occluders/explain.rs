@@ -253,16 +253,16 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Facing(n) => n.subject(),
         }
     }
-    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
-            Self::Tested(n) => n.claim(),
-            Self::Facing(n) => n.claim(),
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
             Self::Related(n) => (n.occlusion == Occlusion::Full).then_some(Claim::Hidden),
             Self::Joined(_) => Some(Claim::Hidden),
             Self::Chosen(_) => None,
         }
     }
-    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
             Self::Chosen(n) => vec![
@@ -274,7 +274,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("direction", n.direction),
                 switch("new", n.new),
             ],
-            Self::Tested(n) => n.fields(),
+            Self::Tested(n) => n.fields(context),
             Self::Related(n) => vec![
                 owner_field(n.owner),
                 integer("occluder", n.occluder),
@@ -308,10 +308,10 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("partial_occluders", n.candidates),
                 integer("shared_edges_ignored", n.shared),
             ],
-            Self::Facing(n) => n.fields(),
+            Self::Facing(n) => n.fields(context),
         }
     }
-    fn sentence(&self, _: &Context<'_, S>) -> String {
+    fn sentence(&self, context: &Context<'_, S>) -> String {
         match self {
             Self::Chosen(n) => format!(
                 "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of \
@@ -324,7 +324,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 n.direction,
                 if n.new { "; it was not in the frame before" } else { "" }
             ),
-            Self::Tested(n) => n.sentence(),
+            Self::Tested(n) => n.sentence(context),
             Self::Related(n) => n.sentence::<S>(),
             Self::Joined(n) => format!(
                 "{} connected occluders hide {} together: the eye is inside all their supporting planes but \
@@ -333,7 +333,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 owner_name(n.owner),
                 n.shared
             ),
-            Self::Facing(n) => n.sentence::<S>(),
+            Self::Facing(n) => n.sentence(context),
         }
     }
 }

@@ -494,10 +494,8 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let mut cutting = 0;
         if planes != 0 {
             let test = self.frustum.test(&node.bounds, planes);
-            let frustum = &self.frustum;
-            self.watch.note(move || {
-                Evidence::Tested(Tested::of(Subject::Node(id), frustum, &node.bounds, planes, test))
-            });
+            self.watch
+                .note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
             match test {
                 FrustumTest::Outside(_) => {
                     self.watch.event(Event::Line(line::OUTSIDE));
@@ -662,7 +660,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
             if prim_faces_away(scene, view.eye.position, prim) {
-                self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {
                 self.out.prims.push(prim);
@@ -688,10 +686,7 @@ impl<S: Shape, O: Observer<Evidence<S>>> Walk<'_, S, O> {
 
     fn is_outside(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, planes: u8) -> bool {
         let test = self.frustum.test(bounds, planes);
-        let frustum = &self.frustum;
-        self.watch.note(move || {
-            Evidence::Tested(Tested::of(Subject::Object(object), frustum, bounds, planes, test))
-        });
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Object(object), bounds, planes, test)));
         matches!(test, FrustumTest::Outside(_))
     }
 

@@ -208,14 +208,14 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Bounded(_) | Self::Ended(_) => Subject::None,
         }
     }
-    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
-            Self::Tested(n) => n.claim(),
-            Self::Facing(n) => n.claim(),
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
             _ => None,
         }
     }
-    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
         let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
@@ -224,8 +224,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 number("distance_units", n.distance.into()),
                 word("origin", n.origin.word()),
             ],
-            Self::Tested(n) => n.fields(),
-            Self::Facing(n) => n.fields(),
+            Self::Tested(n) => n.fields(context),
+            Self::Facing(n) => n.fields(context),
             Self::Transferred(n) => vec![
                 integer("from_node", node_of(n.a).0),
                 integer("node", node_of(n.b).0),
@@ -267,12 +267,12 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             }
         }
     }
-    fn sentence(&self, _: &Context<'_, S>) -> String {
+    fn sentence(&self, context: &Context<'_, S>) -> String {
         let prims = S::PRIM;
         match self {
             Self::Seeded(n) => seed_sentence(n),
-            Self::Tested(n) => n.sentence(),
-            Self::Facing(n) => n.sentence::<S>(),
+            Self::Tested(n) => n.sentence(context),
+            Self::Facing(n) => n.sentence(context),
             Self::Transferred(n) => transfer_sentence::<S>(n),
             Self::Projected(n) => format!(
                 "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} \

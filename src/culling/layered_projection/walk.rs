@@ -321,10 +321,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let bounds = self.cells.bounds(cell);
         let planes = Frustum::<S::Vector>::ALL;
         let test = self.frustum.test(&bounds, planes);
-        let frustum = &self.frustum;
-        self.watch.note(move || {
-            Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), frustum, &bounds, planes, test))
-        });
+        self.watch
+            .note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), &bounds, planes, test)));
         let sight = match test {
             FrustumTest::Outside(_) => {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
@@ -470,15 +468,13 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let bounds: Aabb<S::Vector> = scene.prim_bounds(prim);
             let test = self.frustum.test(&bounds, cutting);
             if matches!(test, FrustumTest::Outside(_)) {
-                let frustum = &self.frustum;
-                self.watch.note(move || {
-                    Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, cutting, test))
-                });
+                self.watch
+                    .note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, cutting, test)));
                 return Some(Verdict::Outside);
             }
         }
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
-            self.watch.note(move || Evidence::Facing(Facing::of(scene, view, prim)));
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             return Some(Verdict::Outside);
         }
         None
@@ -512,10 +508,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (bounds, planes) = (self.scene.prim_bounds(prim), Frustum::<S::Vector>::ALL);
         let test = self.frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
-            let frustum = &self.frustum;
-            self.watch.note(move || {
-                Evidence::Tested(Tested::of(Subject::Prim(prim), frustum, &bounds, planes, test))
-            });
+            self.watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, planes, test)));
             return Verdict::Outside;
         }
         // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though
