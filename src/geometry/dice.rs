@@ -1,17 +1,17 @@
 //! Random numbers for unit tests, the same on every machine.
 
 use glam::Vec3;
-use rand_pcg::Pcg32;
+use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
 use super::Vector;
 
 /// Seeded dice.
-pub(crate) struct Dice(Pcg32);
+pub(crate) struct Dice(Pcg64Mcg);
 
 impl Dice {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(Pcg32::new(seed, 17))
+        Self(Pcg64Mcg::new(u128::from(seed) << 64 | 0xcafe_f00d_d15e_a5e5))
     }
     /// Any 32 bits.
     pub(crate) fn bits(&mut self) -> u32 {

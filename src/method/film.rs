@@ -31,8 +31,8 @@ pub trait Reel: Send + Sync {
     /// What event `at` is about; of evidence, what it was gathered about.
     fn subject(&self, at: usize) -> Subject;
     /// The evidence on which the decision that is event `at` rests: the latest before it about the same node
-    /// or primitive, the primitive's object, or the node that is being visited. `None` if `at` is no decision,
-    /// or rests on none.
+    /// or primitive, the primitive's object, or the node that is being visited; of several the one that claims
+    /// the verdict. `None` if `at` is no decision, or rests on none.
     fn evidence_of(&self, at: usize) -> Option<usize>;
     /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
     /// Lines of pseudocode, queueing and leaving a node change nothing about that.
@@ -179,6 +179,20 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
         let state = self.state_after(notes.len());
         look(&Moment { frame: self.frame(), state: &state, notes, note: self.note_at(step) })
     }
+    /// Whether the note that is event `at` claims what a verdict says.
+    fn claims(&self, at: u32, verdict: Verdict) -> bool {
+        let Event::Noted(i) = self.recorder.events[at as usize] else { return false };
+        match verdict {
+            Verdict::Outside => matches!(
+                self.recorder.notes[i as usize].claim(&self.context()),
+                Some(Claim::Outside { .. } | Claim::FacesAway { .. })
+            ),
+            Verdict::Hidden => {
+                matches!(self.recorder.notes[i as usize].claim(&self.context()), Some(Claim::Hidden))
+            }
+            _ => false,
+        }
+    }
     /// Goes through the film once and finds what each decision rests on. O(events + nodes + primitives).
     fn grounds(&self) -> Vec<Grounds> {
         const NONE: u32 = u32::MAX;
@@ -208,13 +222,15 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
                     continue;
                 }
                 Event::DecidedNode(node, _) => of_node[node.at()],
-                Event::DecidedPrim(prim, _) => {
-                    // The node that is visited stands for what it holds, where nothing was found out about the
-                    // primitive itself or its object since.
+                Event::DecidedPrim(prim, verdict) => {
+                    // The node that is visited stands for what it holds.
                     let around = open.iter().rev().map(|n| of_node[n.at()]).find(|at| *at != NONE);
                     let own = [of_prim[prim.at()], of_object[self.scene.object_of(prim).at()]];
                     let known = own.into_iter().chain(around).filter(|at| *at != NONE);
-                    known.max().unwrap_or(NONE)
+                    // An object may have been decided for good in another node: what claims the verdict counts
+                    // before what came later.
+                    let claims = known.clone().filter(|at| self.claims(*at, verdict));
+                    claims.max().or(known.max()).unwrap_or(NONE)
                 }
                 _ => continue,
             };

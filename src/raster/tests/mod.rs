@@ -14,7 +14,9 @@ use crate::scene::Parts;
 
 /// A scene of one object and one material.
 pub(super) fn scene_of<S: Space>(points: Vec<S::Vector>, prims: Vec<S::Corners>) -> Scene<S> {
-    Scene::new(Parts::simple("test", points, prims)).expect("the test's scene is valid")
+    let mut parts = Parts::simple("test", points, prims);
+    parts.materials[0].color = [0.5; 3];
+    Scene::new(parts).expect("the test's scene is valid")
 }
 
 /// Triangles with points of their own.
