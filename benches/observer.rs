@@ -106,7 +106,7 @@ fn main() {
         scene: &scene,
         backface_culling: std::hint::black_box(false),
     });
-    let settings = Settings([("tree-height".to_owned(), HEIGHT.to_string())].into());
+    let settings = Settings::of(&[("tree-height", &HEIGHT.to_string())]);
     let entry = Solid::method("frustum").expect("a method");
     let [mut a, mut b, mut c] =
         [(); 3].map(|()| entry.ready(&scene, &settings, &Quiet).expect("settings").expect("not cancelled"));

@@ -9,8 +9,9 @@ use super::state::{State, Theme};
 use super::worker::Job;
 use crate::drawing::Drawing;
 use crate::figure::chart;
-use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::measure::{ExperimentError, Report, Setup};
 use crate::method::Settings;
+use crate::papers;
 use crate::render::{self, PngSize, SvgOptions};
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 
@@ -41,7 +42,7 @@ pub struct Measured {
 
 /// Names and titles of all tables, for lists.
 pub fn tables() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    EXPERIMENTS.iter().map(|e| (e.name, e.title, e.summary))
+    papers::tables().map(|t| (t.name, t.title, t.summary))
 }
 
 /// Runs on the worker.
@@ -51,7 +52,7 @@ pub(super) fn measure(
     settings: Settings,
     progress: &dyn Progress,
 ) -> Result<Measured, String> {
-    let experiment = Experiment::named(name).ok_or_else(|| format!("there is no table `{name}`"))?;
+    let experiment = papers::table(name).ok_or_else(|| format!("there is no table `{name}`"))?;
     let mut start = 0.0;
     let mut scenes: Vec<AnyScene> = scene.into_iter().collect();
     if scenes.is_empty() {
@@ -64,7 +65,7 @@ pub(super) fn measure(
     }
     let setup = Setup { frames: FRAMES, settings, ..Setup::default() };
     let rest = Part { whole: progress, start, length: 1.0 - start };
-    let report = experiment.run(&scenes, &setup, &rest).map_err(|e: PaperError| e.to_string())?;
+    let report = experiment.run(&scenes, &setup, &rest).map_err(|e: ExperimentError| e.to_string())?;
     let chart = chart(report.title, &report.plots, &report.caption());
     Ok(Measured { report, chart })
 }
@@ -78,7 +79,7 @@ impl State {
                     Any::Solid(s) => AnyScene::Solid(s.scene.clone()),
                 });
                 // The parameters that are set are taken over if they are those of its method.
-                let is_its = Experiment::named(name).is_some_and(|e| e.method == self.method);
+                let is_its = papers::table(name).is_some_and(|e| e.method == self.method);
                 let settings = if is_its { self.settings.clone() } else { Settings::default() };
                 self.worker.ask("Measuring", Job::Measure { name, scene, settings });
             }

@@ -182,7 +182,7 @@ mod tests {
         pairs: &[(&str, &str)],
         scene: &Arc<Scene<S>>,
     ) -> Box<dyn Run<S>> {
-        let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+        let settings = Settings::of(pairs);
         S::method(method)
             .expect("listed")
             .ready(scene, &settings, &Quiet)
