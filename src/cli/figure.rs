@@ -103,8 +103,11 @@ fn chosen(args: &Args) -> Result<Vec<&'static Figure>, CliError> {
     }
     let find = |name: &String| {
         let missing = || {
-            CliError::words(name.as_str(), "there is no such figure")
-                .with_help(suggest::help(name, &known, "figures"))
+            let help = match papers::table(name) {
+                Some(table) => format!("it is a table: `cullscope paper {}` measures it", table.name),
+                None => suggest::help(name, &known, "figures"),
+            };
+            CliError::words(name.as_str(), "there is no such figure").with_help(help)
         };
         let figure = papers::figure(name).ok_or_else(missing)?;
         if figure.name != name {

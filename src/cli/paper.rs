@@ -215,8 +215,11 @@ fn chosen(args: &Args) -> Result<Vec<&'static Experiment>, CliError> {
     }
     let find = |name: &String| {
         let missing = || {
-            CliError::words(name.as_str(), "there is no such table")
-                .with_help(suggest::help(name, &known, "tables"))
+            let help = match papers::figure(name) {
+                Some(figure) => format!("it is a figure: `cullscope figure {}` makes it", figure.name),
+                None => suggest::help(name, &known, "tables"),
+            };
+            CliError::words(name.as_str(), "there is no such table").with_help(help)
         };
         papers::table(name).ok_or_else(missing)
     };

@@ -146,31 +146,29 @@ fn parameters(width_pt: f32) -> Plan {
     plan
 }
 
-/// Figure 11: the area-angle, its parameters, and what it estimates.
-pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
-    const HEIGHT_PT: f32 = 140.0;
-    const GAP_PT: f32 = 12.0;
-    let width = (TWO_COLUMNS_PT - 2.0 * GAP_PT) / 3.0;
-    let left = |i: usize| (width + GAP_PT) * i as f32;
-    let mut paper =
-        Drawing { size_pt: vec2(TWO_COLUMNS_PT, HEIGHT_PT + LABEL_PT * 2.0), ..Drawing::default() };
-    let plan = parameters(width);
+/// Draws the parameters of the area-angle into the upper left of a page, `size` large.
+fn draw_parameters(to: &mut Drawing, size: Vec2) {
+    let plan = parameters(size.x);
     let mut sketch = Drawing::default();
-    let corners = [Vec2::ZERO, vec2(width, HEIGHT_PT)];
+    let corners = [Vec2::ZERO, size];
     Sheet::fit(&plan.frame, corners[0], corners[1]).place(&plan.world, &mut sketch);
     clip(&mut sketch, corners[0], corners[1]);
-    paper.items.extend(sketch.items);
-    paper.text(
+    to.items.extend(sketch.items);
+    to.text(
         Layer::Labels,
         Role::Ink,
-        vec2(width * 0.5, HEIGHT_PT + LABEL_PT * 1.6),
+        vec2(size.x * 0.5, size.y + LABEL_PT * 1.6),
         LABEL_PT,
         Anchor::Middle,
         "(a) parameters, in cross section",
     );
+}
+
+/// The charts: by distance and by obliqueness.
+fn charts() -> [Chart; 2] {
     let axis =
         |label: &str, low: f64, high: f64, logarithmic| Axis { label: label.into(), low, high, logarithmic };
-    let charts = [
+    [
         Chart {
             x: axis("distance, units", 0.1, 100.0, true),
             y: axis("solid angle, sr", 1e-4, 1e3, true),
@@ -186,8 +184,19 @@ pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
             rows: (0..=90).step_by(3).map(|a| (f64::from(a), at_angle(f64::from(a)))).collect(),
             label: "(c) by obliqueness, 4 units away",
         },
-    ];
-    for (i, chart) in charts.iter().enumerate() {
+    ]
+}
+
+/// Figure 11: the area-angle, its parameters, and what it estimates.
+pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
+    const HEIGHT_PT: f32 = 140.0;
+    const GAP_PT: f32 = 12.0;
+    let width = (TWO_COLUMNS_PT - 2.0 * GAP_PT) / 3.0;
+    let left = |i: usize| (width + GAP_PT) * i as f32;
+    let mut paper =
+        Drawing { size_pt: vec2(TWO_COLUMNS_PT, HEIGHT_PT + LABEL_PT * 2.0), ..Drawing::default() };
+    draw_parameters(&mut paper, vec2(width, HEIGHT_PT));
+    for (i, chart) in charts().iter().enumerate() {
         chart.draw(&mut paper, vec2(left(i + 1), 0.0), vec2(left(i + 1) + width, HEIGHT_PT));
     }
     let legend = vec![

@@ -34,19 +34,8 @@ fn region_role(occlusion: Occlusion) -> (Role, &'static str, &'static str) {
     }
 }
 
-/// Figure 2: regions 1, 2 and 3.
-pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
-    let setting = Setting::of("occluder_and_box")?;
-    let mut plan = Plan::new(frame([-8.4, 8.4], [-6.4, 5.6]), COLUMN_PT);
-    let all = one_occluder(&setting, &plan);
-    for (occlusion, cell) in &all {
-        plan.area(region_role(*occlusion).0, cell);
-    }
-    for [supporting, separating] in setting.tangents(0) {
-        draw_tangent(&mut plan, Role::Ink, &separating);
-        draw_tangent(&mut plan, Role::Evidence, &supporting);
-    }
-    setting.draw(&mut plan, &[1.0, 1.0]);
+/// Sets the number of each region and what it means into its cells.
+fn name_regions(plan: &mut Plan, all: &[(Occlusion, Vec<DVec2>)]) {
     for occlusion in [Occlusion::None, Occlusion::Partial, Occlusion::Full] {
         let (_, number, words) = region_role(occlusion);
         let mut middles: Vec<Vec2> = all
@@ -62,6 +51,22 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
             plan.plate(at - Vec2::Y * 6.0 * plan.unit, LABEL_PT, Font::Regular, words);
         }
     }
+}
+
+/// Figure 2: regions 1, 2 and 3.
+pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
+    let setting = Setting::of("occluder_and_box")?;
+    let mut plan = Plan::new(frame([-8.4, 8.4], [-6.4, 5.6]), COLUMN_PT);
+    let all = one_occluder(&setting, &plan);
+    for (occlusion, cell) in &all {
+        plan.area(region_role(*occlusion).0, cell);
+    }
+    for [supporting, separating] in setting.tangents(0) {
+        draw_tangent(&mut plan, Role::Ink, &separating);
+        draw_tangent(&mut plan, Role::Evidence, &supporting);
+    }
+    setting.draw(&mut plan, &[1.0, 1.0]);
+    name_regions(&mut plan, &all);
     let eye = setting.eye(0);
     plan.viewpoint(eye, "P");
     let (_, number, words) = region_role(setting.blockers.classify(0, &setting.target, eye));
@@ -98,6 +103,25 @@ fn who_hides(setting: &Setting, p: DVec2) -> Option<Hiding> {
     }
 }
 
+/// Draws the supporting lines of all occluders, those through their shared end in another role.
+fn draw_supporting_lines(plan: &mut Plan, setting: &Setting, shared: Vec2) {
+    for [supporting, _] in (0..setting.occluders.len()).flat_map(|id| setting.tangents(id)) {
+        let role = if supporting.edge[0] == shared { Role::Outside } else { Role::Evidence };
+        draw_tangent(plan, role, &supporting);
+    }
+}
+
+/// Sets the name of each occluder into the region where it hides T alone.
+fn name_alone(plan: &mut Plan, setting: &Setting, all: &[(Hiding, Vec<DVec2>)]) {
+    for (id, (name, _)) in setting.occluders.iter().enumerate() {
+        let alone = |p: DVec2| setting.blockers.classify(id, &setting.target, p.as_vec2()) == Occlusion::Full;
+        if let Some(at) = largest(all.iter().filter(|(_, c)| alone(super::regions::middle(c))).map(|r| &r.1))
+        {
+            plan.plate(at, LABEL_PT, Font::Regular, &format!("{name} alone"));
+        }
+    }
+}
+
 /// Figure 3: what two connected occluders hide together.
 pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
     let setting = Setting::of("connected_occluders")?;
@@ -107,17 +131,8 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
         plan.area(if *who == Hiding::Jointly { Role::Hidden } else { Role::Faint }, cell);
     }
     let shared = shared_end(&setting);
-    for (id, (name, _)) in setting.occluders.iter().enumerate() {
-        for [supporting, _] in setting.tangents(id) {
-            let ignored = supporting.edge[0] == shared;
-            draw_tangent(&mut plan, if ignored { Role::Outside } else { Role::Evidence }, &supporting);
-        }
-        let alone = |p: DVec2| setting.blockers.classify(id, &setting.target, p.as_vec2()) == Occlusion::Full;
-        if let Some(at) = largest(all.iter().filter(|(_, c)| alone(super::regions::middle(c))).map(|r| &r.1))
-        {
-            plan.plate(at, LABEL_PT, Font::Regular, &format!("{name} alone"));
-        }
-    }
+    draw_supporting_lines(&mut plan, &setting, shared);
+    name_alone(&mut plan, &setting, &all);
     setting.draw(&mut plan, &[1.0, 1.0]);
     plan.plate(shared + Vec2::Y * 10.0 * plan.unit, NAME_PT, Font::Bold, "E");
     if let Some(at) = largest(all.iter().filter(|r| r.0 == Hiding::Jointly).map(|r| &r.1)) {
@@ -177,27 +192,8 @@ fn verdict(setting: &Setting, p: DVec2) -> Option<Verdict> {
     }
 }
 
-/// Figure 4: a shared silhouette edge must not be ignored.
-pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
-    let setting = Setting::of("silhouette_edge")?;
-    let mut plan = Plan::new(frame([-9.4, 7.4], [-6.4, 5.8]), COLUMN_PT);
-    let all = regions(&plan.wide(), &setting.borders(), |p| verdict(&setting, p));
-    for (verdict, cell) in &all {
-        plan.area(if *verdict == Verdict::Wrong { Role::Wrong } else { Role::Hidden }, cell);
-    }
-    let shared = shared_end(&setting);
-    for id in 0..setting.occluders.len() {
-        for [supporting, _] in setting.tangents(id) {
-            draw_tangent(
-                &mut plan,
-                if supporting.edge[0] == shared { Role::Outside } else { Role::Evidence },
-                &supporting,
-            );
-        }
-    }
-    setting.draw(&mut plan, &[1.0, -1.0]);
-    plan.plate(shared + Vec2::new(9.0, -1.0) * plan.unit, NAME_PT, Font::Bold, "E");
-    let eyes = [setting.eye(0), setting.eye(1)];
+/// Draws both viewpoints, what P sees of T, and what is true of T in the two kinds of regions.
+fn draw_views(plan: &mut Plan, setting: &Setting, eyes: [Vec2; 2], all: &[(Verdict, Vec<DVec2>)]) {
     // The corner of T that P sees past E.
     let seen = Vec2::new(setting.target.max.x, setting.target.min.y);
     plan.line(Role::Eye, eyes[0], seen);
@@ -211,6 +207,22 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
             plan.plate(at + aside * plan.unit, LABEL_PT, Font::Regular, words);
         }
     }
+}
+
+/// Figure 4: a shared silhouette edge must not be ignored.
+pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
+    let setting = Setting::of("silhouette_edge")?;
+    let mut plan = Plan::new(frame([-9.4, 7.4], [-6.4, 5.8]), COLUMN_PT);
+    let all = regions(&plan.wide(), &setting.borders(), |p| verdict(&setting, p));
+    for (verdict, cell) in &all {
+        plan.area(if *verdict == Verdict::Wrong { Role::Wrong } else { Role::Hidden }, cell);
+    }
+    let shared = shared_end(&setting);
+    draw_supporting_lines(&mut plan, &setting, shared);
+    setting.draw(&mut plan, &[1.0, -1.0]);
+    plan.plate(shared + Vec2::new(9.0, -1.0) * plan.unit, NAME_PT, Font::Bold, "E");
+    let eyes = [setting.eye(0), setting.eye(1)];
+    draw_views(&mut plan, &setting, eyes, &all);
     let says = |eye: Vec2| {
         if setting.blockers.hiding(&setting.target, eye).is_empty() { "visible" } else { "hidden" }
     };

@@ -11,7 +11,7 @@ use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::tools::{
     COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page, ready,
 };
-use crate::figure::{Look, Paper, Swatch, panels, world};
+use crate::figure::{Look, Panel, Paper, Swatch, panels, world};
 use crate::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId};
 use crate::method::Film;
 use crate::papers::keys::LARGE_OCCLUDERS;
@@ -87,47 +87,46 @@ fn named_nodes(films: &[Arc<dyn Film<Flat>>; 2], frame: usize) -> [Option<NodeId
     ]
 }
 
+/// Width of a panel of Figure 10.
+const PANEL_PT: f32 = 156.0;
+
+/// Fills the last nodes of each descent of a frame, in the role that their test gives them.
+fn fill_deepest(plan: &mut Plan, film: &dyn Film<Flat>, all: &[Test], role: impl Fn(&Test) -> Role) {
+    for test in all {
+        if let Some(node) = test.node.filter(|&node| is_deepest(film, all, node)) {
+            fill(plan, role(test), node, &film.hierarchy().bounds(node));
+        }
+    }
+}
+
+/// Viewpoint number `i`: nodes by their class.
+fn classes(films: &[Arc<dyn Film<Flat>>; 2], i: usize) -> Panel {
+    let (film, all) = (&*films[i], tests(&*films[i]));
+    let mut plan = Plan::new(frame_10(), PANEL_PT);
+    fill_deepest(&mut plan, film, &all, |test| class_role(&test.occlusion));
+    for (k, node) in named_nodes(films, i).into_iter().enumerate() {
+        let Some(node) = node else { continue };
+        let at = film.hierarchy().bounds(node).center();
+        plan.plate(at, LABEL_PT, Font::Bold, &(k + 1).to_string());
+    }
+    shadow(&mut plan, film, all[0].occluder, &format!("P{}", i + 1));
+    plan.panel(format!("viewpoint P{}: {} nodes tested", i + 1, all.len()))
+}
+
+/// The second viewpoint: nodes by whether their lines were kept from the first.
+fn reuse(film: &dyn Film<Flat>) -> Panel {
+    let all = tests(film);
+    let mut plan = Plan::new(frame_10(), PANEL_PT);
+    fill_deepest(&mut plan, film, &all, |test| if test.reused { Role::Approximated } else { Role::Scene });
+    shadow(&mut plan, film, all[0].occluder, "P2");
+    let reused = all.iter().filter(|t| t.reused).count();
+    plan.panel(format!("at P2: {reused} nodes reused, {} new", all.len() - reused))
+}
+
 /// Figure 10: nodes classified for two viewpoints in a row, and what was reused.
 pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
     let films = two_frames()?;
-    let mut all_panels = Vec::new();
-    for (i, film) in films.iter().enumerate() {
-        let all = tests(&**film);
-        let mut plan = Plan::new(frame_10(), 156.0);
-        for test in &all {
-            let Some(node) = test.node else { continue };
-            let bounds = film.hierarchy().bounds(node);
-            if is_deepest(&**film, &all, node) {
-                fill(&mut plan, class_role(&test.occlusion), node, &bounds);
-            }
-        }
-        for (k, node) in named_nodes(&films, i).iter().enumerate() {
-            if let Some(node) = node {
-                plan.plate(
-                    film.hierarchy().bounds(*node).center(),
-                    LABEL_PT,
-                    Font::Bold,
-                    &(k + 1).to_string(),
-                );
-            }
-        }
-        shadow(&mut plan, &**film, all[0].occluder, &format!("P{}", i + 1));
-        all_panels.push(plan.panel(format!("viewpoint P{}: {} nodes tested", i + 1, all.len())));
-    }
-    let (film, all) = (&films[1], tests(&*films[1]));
-    let mut plan = Plan::new(frame_10(), 156.0);
-    for test in all.iter().filter(|t| t.node.is_some_and(|n| is_deepest(&**film, &all, n))) {
-        let Some(node) = test.node else { continue };
-        fill(
-            &mut plan,
-            if test.reused { Role::Approximated } else { Role::Scene },
-            node,
-            &film.hierarchy().bounds(node),
-        );
-    }
-    shadow(&mut plan, &**film, all[0].occluder, "P2");
-    let reused = all.iter().filter(|t| t.reused).count();
-    all_panels.push(plan.panel(format!("at P2: {reused} nodes reused, {} new", all.len() - reused)));
+    let all_panels = [classes(&films, 0), classes(&films, 1), reuse(&*films[1])];
     let content = panels(TWO_COLUMNS_PT, 3, &all_panels);
     let legend = vec![
         entry(Role::Occluder, Swatch::Line, "occluder O"),
@@ -160,6 +159,29 @@ fn bounds_of(scene: &Scene<Flat>, object: ObjectId) -> Aabb<Vec2> {
     of_it.fold(Aabb::empty(), |sum, &p| sum.union(scene.prim_bounds(p)))
 }
 
+/// Draws the detail objects' names, and the occluders near them that hide some; how many are hidden.
+fn draw_details(plan: &mut Plan, film: &dyn Film<Flat>) -> usize {
+    let scene = film.scene();
+    let mut culled = 0;
+    for test in tests(film).iter().filter(|t| t.occlusion == "full") {
+        let Some(object) = test.object else { continue };
+        let ends: Vec<Vec2> = scene.prim_points(test.occluder).collect();
+        let one = Blockers::<Flat>::new(&ends, &[vec![0, 1]]);
+        for [supporting, _] in
+            one.planes(0, &bounds_of(scene, object), film.view().eye.position).iter().flatten()
+        {
+            draw_tangent(plan, Role::Evidence, supporting);
+        }
+        plan.world.line(Layer::Emphasis, Role::Occluder, Subject::Prim(test.occluder), ends);
+        culled += 1;
+    }
+    for (i, object) in scene.objects().iter().enumerate().filter(|(_, o)| o.name.starts_with('D')) {
+        let bounds = bounds_of(scene, ObjectId(i as u32));
+        plan.plate(bounds.center() + Vec2::X * 15.0 * plan.unit, NAME_PT, Font::Bold, &object.name);
+    }
+    culled
+}
+
 /// Figure 12: detail objects and the occluders near them.
 pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
     let film = details_film(true)?;
@@ -171,23 +193,7 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
         let ends: Vec<Vec2> = scene.prim_points(prim).collect();
         plan.world.line(Layer::Emphasis, Role::Eye, Subject::Prim(prim), ends);
     }
-    let mut culled = 0;
-    for test in tests(&*film).iter().filter(|t| t.occlusion == "full") {
-        let Some(object) = test.object else { continue };
-        let ends: Vec<Vec2> = scene.prim_points(test.occluder).collect();
-        let one = Blockers::<Flat>::new(&ends, &[vec![0, 1]]);
-        for [supporting, _] in
-            one.planes(0, &bounds_of(&scene, object), film.view().eye.position).iter().flatten()
-        {
-            draw_tangent(&mut plan, Role::Evidence, supporting);
-        }
-        plan.world.line(Layer::Emphasis, Role::Occluder, Subject::Prim(test.occluder), ends);
-        culled += 1;
-    }
-    for (i, object) in scene.objects().iter().enumerate().filter(|(_, o)| o.name.starts_with('D')) {
-        let bounds = bounds_of(&scene, ObjectId(i as u32));
-        plan.plate(bounds.center() + Vec2::X * 15.0 * plan.unit, NAME_PT, Font::Bold, &object.name);
-    }
+    let culled = draw_details(&mut plan, &*film);
     plan.viewpoint(film.view().eye.position, "P");
     let content = panels(
         COLUMN_PT,

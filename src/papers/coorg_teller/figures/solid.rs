@@ -155,17 +155,25 @@ fn sheet(tangent: &Tangent<Vec3>, before: f32, past: f32) -> Vec<Vec3> {
     vec![a - across * before, b - across * before, b + across * past, a + across * past]
 }
 
-/// Figure 6: the two planes through an edge of a polygon that touch a box.
-pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
-    let points = [[-1.3, -1.1, 0.0], [1.3, -1.1, 0.0], [1.3, 1.1, 0.0], [-1.3, 1.1, 0.0]].map(Vec3::from);
-    let blockers = Blockers::<Solid>::new(&points, &[vec![0, 1, 2, 3]]);
+/// The occluder of Figure 6.
+const POLYGON: [Vec3; 4] = [
+    Vec3::new(-1.3, -1.1, 0.0),
+    Vec3::new(1.3, -1.1, 0.0),
+    Vec3::new(1.3, 1.1, 0.0),
+    Vec3::new(-1.3, 1.1, 0.0),
+];
+
+/// The box of Figure 6, and the supporting and the separating plane through each edge of the occluder.
+fn planes_of_polygon() -> (Aabb<Vec3>, Vec<Option<[Tangent<Vec3>; 2]>>) {
     let target = bounds([-0.9, -0.8, -4.6], [0.8, 0.8, -3.0]);
-    let planes = blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0));
-    let Some([supporting, separating]) = &planes[1] else {
-        unreachable!("the edge's line does not meet the box")
-    };
+    let blockers = Blockers::<Solid>::new(&POLYGON, &[vec![0, 1, 2, 3]]);
+    (target, blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0)))
+}
+
+/// Draws the occluder, the box, and both planes through an edge.
+fn draw_planes(target: &Aabb<Vec3>, [supporting, separating]: &[Tangent<Vec3>; 2]) -> Drawing<Vec3> {
     let mut world = Drawing::default();
-    world.push(Layer::Scene, Role::Occluder, Subject::None, Mark::Area(points.to_vec()));
+    world.push(Layer::Scene, Role::Occluder, Subject::None, Mark::Area(POLYGON.to_vec()));
     for (tangent, role, before, past) in
         [(separating, Role::Partial, 0.35, 1.15), (supporting, Role::Evidence, 0.35, 1.15)]
     {
@@ -175,10 +183,18 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
         world.push(Layer::Evidence, role, Subject::None, Mark::Arrow(arrow, arrow + tangent.normal * 0.8));
         world.push(Layer::Emphasis, role, Subject::None, Mark::Dot { at: tangent.vertex, radius_pt: 3.0 });
     }
-    world.bounds(Layer::Nodes, Role::Ink, Subject::None, &target);
+    world.bounds(Layer::Nodes, Role::Ink, Subject::None, target);
     world.line(Layer::Emphasis, Role::Current, Subject::None, supporting.edge.clone());
     name(&mut world, supporting.edge[0].lerp(supporting.edge[1], 0.5) + Vec3::X * 0.45, "E");
     name(&mut world, target.center() + Vec3::Y * (target.size().y * 0.5), "T");
+    world
+}
+
+/// Figure 6: the two planes through an edge of a polygon that touch a box.
+pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
+    let (target, planes) = planes_of_polygon();
+    let Some(through_edge) = &planes[1] else { unreachable!("the edge's line does not meet the box") };
+    let world = draw_planes(&target, through_edge);
     let observer = view(Vec3::new(7.0, 5.5, 5.0), Vec3::new(0.2, -0.15, -1.2), 32.0, [400, 300]);
     let content = panels(
         COLUMN_PT,
@@ -321,22 +337,9 @@ fn crosses(a: DVec2, b: DVec2, at: DVec2, half: DVec2) -> bool {
     (0..=64).any(|i| (a.lerp(b, f64::from(i) / 64.0) - at).abs().cmple(half).all())
 }
 
-/// Figure 8: the regions between the extended outline and their codes.
-pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
-    let target = the_box();
-    let (projected, wide) = figure_8();
-    let mut plan = Plan::new(Aabb { min: wide.min.as_vec2(), max: wide.max.as_vec2() }, COLUMN_PT);
-    let outline = outline_seen_from(projected.from, &target);
-    let corner = |i: u8| projected.flat(target.corner(i as usize)).as_vec2();
-    let all = coded_cells(&projected, &target, &wide);
-    let e = Vec2::new(0.36, -0.05);
-    let [Some(touched), _] =
-        tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target)
-    else {
-        unreachable!("the edge's projection lies beside the box")
-    };
-    let tangents = touched.map(|v| [e, corner(v) + (corner(v) - e) * 0.2]);
-    for (code, cell) in &all {
+/// Fills the regions and sets their codes where they fit beside the tangents.
+fn draw_codes(plan: &mut Plan, all: &[(u8, Vec<DVec2>)], tangents: &[[Vec2; 2]]) {
+    for (code, cell) in all {
         plan.area(Role::Faint, cell);
         let inside = *code == 0 || *code == 63;
         if inside {
@@ -344,23 +347,50 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
         }
         let text = format!("{code:06b}");
         if let Some((at, size_pt)) =
-            CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit, &tangents)?, size)))
+            CODE_PT.into_iter().find_map(|size| Some((room(cell, &text, size, plan.unit, tangents)?, size)))
         {
             plan.label(at, size_pt, Font::Mono, &text);
         }
     }
+}
+
+/// Draws the directed outline with the numbers of its corners.
+fn draw_outline(plan: &mut Plan, outline: &[u8], corner: impl Fn(u8) -> Vec2) {
     for (i, &a) in outline.iter().enumerate() {
         let b = outline[(i + 1) % outline.len()];
         plan.world.push(Layer::Emphasis, Role::Eye, Subject::None, Mark::Arrow(corner(a), corner(b)));
         let out = corner(a).normalize() * 7.0 * plan.unit;
         plan.plate(corner(a) + out, LABEL_PT, Font::Bold, &a.to_string());
     }
+}
+
+/// Draws the projected edge e and the tangents from it, which touch the box at two corners.
+fn draw_tangents(plan: &mut Plan, e: Vec2, touched: [Vec2; 2], tangents: [[Vec2; 2]; 2]) {
     for (vertex, [from, to]) in touched.into_iter().zip(tangents) {
         plan.line(Role::Evidence, from, to);
-        plan.dot(Role::Evidence, corner(vertex), 2.5);
+        plan.dot(Role::Evidence, vertex, 2.5);
     }
     plan.dot(Role::Occluder, e, 3.0);
     plan.plate(e + Vec2::new(8.0, 0.0) * plan.unit, NAME_PT, Font::Bold, "e");
+}
+
+/// Figure 8: the regions between the extended outline and their codes.
+pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
+    let target = the_box();
+    let (projected, wide) = figure_8();
+    let mut plan = Plan::new(Aabb { min: wide.min.as_vec2(), max: wide.max.as_vec2() }, COLUMN_PT);
+    let corner = |i: u8| projected.flat(target.corner(i as usize)).as_vec2();
+    let e = Vec2::new(0.36, -0.05);
+    let [Some(touched), _] =
+        tangent_corners::<Solid>(projected.from, projected.edge_to(e.as_dvec2()), &target)
+    else {
+        unreachable!("the edge's projection lies beside the box")
+    };
+    let tangents = touched.map(|v| [e, corner(v) + (corner(v) - e) * 0.2]);
+    draw_codes(&mut plan, &coded_cells(&projected, &target, &wide), &tangents);
+    let outline = outline_seen_from(projected.from, &target);
+    draw_outline(&mut plan, &outline, corner);
+    draw_tangents(&mut plan, e, touched.map(corner), tangents);
     let code = sides_of_outline(projected.from, projected.edge_to(e.as_dvec2()), &target);
     let content = panels(
         COLUMN_PT,
@@ -494,19 +524,15 @@ mod tests {
 
     #[test]
     fn tangent_planes_touch_the_box_and_part_or_join_it_with_the_occluder() {
-        let target = bounds([-0.9, -0.8, -4.6], [0.8, 0.8, -3.0]);
-        let points = [[-1.3, -1.1, 0.0], [1.3, -1.1, 0.0], [1.3, 1.1, 0.0], [-1.3, 1.1, 0.0]].map(Vec3::from);
-        let blockers = Blockers::<Solid>::new(&points, &[vec![0, 1, 2, 3]]);
-        for [supporting, separating] in
-            blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0)).into_iter().flatten()
-        {
+        let (target, planes) = planes_of_polygon();
+        for [supporting, separating] in planes.into_iter().flatten() {
             let least_and_most = |t: &Tangent<Vec3>, of: &[Vec3]| {
                 let d = of.iter().map(|p| t.normal.dot(*p - t.edge[0]));
                 d.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], h| [a.min(h), b.max(h)])
             };
             let corners: Vec<Vec3> = target.corners().collect();
             for plane in [&supporting, &separating] {
-                let [low, high] = least_and_most(plane, &points);
+                let [low, high] = least_and_most(plane, &POLYGON);
                 assert!(low > -1e-5 && high > 0.1, "the occluder is inside: {low} {high}");
                 assert!(
                     plane.normal.dot(plane.vertex - plane.edge[0]).abs() < 1e-5,

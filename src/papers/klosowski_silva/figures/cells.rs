@@ -1,5 +1,7 @@
 //! Figures 3 and 9 in flatland: how space is divided, and who is whose neighbor.
 
+use std::sync::Arc;
+
 use glam::{Vec2, vec2};
 
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
@@ -29,41 +31,58 @@ fn segments(scene: &Scene<Flat>, role: Role, plan: &mut Plan) {
     }
 }
 
+/// The tessellations of Figure 3.
+struct Divided {
+    scene: Arc<Scene<Flat>>,
+    boxes: BoxCells<Vec2>,
+    simplices: SimplexCells<Flat>,
+}
+
+impl Divided {
+    fn new() -> Result<Self, SceneError> {
+        let scene = example("bottleneck")?;
+        let boxes = quadtree(&scene, LEAF_SHARE);
+        let simplices = SimplexCells::<Flat>::of_centers(&boxes, SEED, &|| false)
+            .unwrap_or_else(|| unreachable!("nobody cancels a figure"));
+        Ok(Self { scene, boxes, simplices })
+    }
+    /// A plan of the region with the scene's segments.
+    fn plan(&self, role: Role) -> Plan {
+        let region = self.boxes.region();
+        let air = Vec2::splat(region.size().x * 0.01);
+        let frame = Aabb { min: region.min - air, max: region.max + air };
+        let mut plan = Plan::new(frame, (TWO_COLUMNS_PT - 20.0) / 3.0);
+        segments(&self.scene, role, &mut plan);
+        plan
+    }
+    fn tree(&self) -> Plan {
+        let mut plan = self.plan(Role::Scene);
+        for cell in all(&self.boxes) {
+            let bounds = Tessellation::<Flat>::bounds(&self.boxes, cell);
+            plan.world.bounds(Layer::Nodes, Role::Visible, Subject::None, &bounds);
+        }
+        plan
+    }
+    fn triangles(&self) -> Plan {
+        let mut plan = self.plan(Role::Scene);
+        for cell in all(&self.simplices) {
+            let edges = Tessellation::<Flat>::edges(&self.simplices, cell);
+            let corners: Vec<Vec2> = edges.iter().map(|e| e[0]).collect();
+            plan.world.outline(Layer::Nodes, Role::Visible, Subject::None, corners);
+        }
+        // After the corners of the region.
+        for &at in &self.simplices.tables().0[4..] {
+            plan.world.push(Layer::Emphasis, Role::Ink, Subject::None, Mark::Dot { at, radius_pt: 1.7 });
+        }
+        plan
+    }
+}
+
 /// Figure 3.
 pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
-    let scene = example("bottleneck")?;
-    let boxes = quadtree(&scene, LEAF_SHARE);
-    let simplices = SimplexCells::<Flat>::of_centers(&boxes, SEED, &|| false)
-        .unwrap_or_else(|| unreachable!("nobody cancels a figure"));
-    let region = boxes.region();
-    let air = Vec2::splat(region.size().x * 0.01);
-    let plan =
-        || Plan::new(Aabb { min: region.min - air, max: region.max + air }, (TWO_COLUMNS_PT - 20.0) / 3.0);
-
-    let mut input = plan();
-    segments(&scene, Role::Ink, &mut input);
-
-    let mut tree = plan();
-    segments(&scene, Role::Scene, &mut tree);
-    for cell in all(&boxes) {
-        tree.world.bounds(
-            Layer::Nodes,
-            Role::Visible,
-            Subject::None,
-            &Tessellation::<Flat>::bounds(&boxes, cell),
-        );
-    }
-
-    let mut triangles = plan();
-    segments(&scene, Role::Scene, &mut triangles);
-    for cell in all(&simplices) {
-        let corners: Vec<Vec2> = Tessellation::<Flat>::edges(&simplices, cell).iter().map(|e| e[0]).collect();
-        triangles.world.outline(Layer::Nodes, Role::Visible, Subject::None, corners);
-    }
-    // After the corners of the region.
-    for &at in &simplices.tables().0[4..] {
-        triangles.world.push(Layer::Emphasis, Role::Ink, Subject::None, Mark::Dot { at, radius_pt: 1.7 });
-    }
+    let divided = Divided::new()?;
+    let (input, tree, triangles) = (divided.plan(Role::Ink), divided.tree(), divided.triangles());
+    let Divided { scene, boxes, simplices } = divided;
     let leaves = Tessellation::<Flat>::count(&boxes);
     let content = panels(
         TWO_COLUMNS_PT,
@@ -191,6 +210,16 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_triangles_are_as_many_as_their_vertices_allow() {
+        let Divided { boxes, simplices, .. } = Divided::new().expect("a scene");
+        let leaves = Tessellation::<Flat>::count(&boxes);
+        let vertices = simplices.tables().0.len();
+        assert_eq!(vertices, leaves + 4, "the centers of the leaves and the corners of the region");
+        // Euler: n points, of which h are on the hull, have 2n − 2 − h triangles; the hull is the region.
+        assert_eq!(simplices.count(), 2 * vertices - 2 - 4);
+    }
 
     #[test]
     fn neighbors_know_each_other_across_levels() {

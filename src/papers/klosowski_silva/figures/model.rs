@@ -9,7 +9,7 @@ use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure::tools::{TWO_COLUMNS_PT, Tint, entry, page, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{CellId, PrimId, Solid, View};
-use crate::index::tessellation::{Fineness, SimplexCells, Tessellation, vertex_octree};
+use crate::index::tessellation::{BoxCells, Fineness, SimplexCells, Tessellation, vertex_octree};
 use crate::raster::{render, shade};
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, load};
 
@@ -60,6 +60,43 @@ fn cells(car: &Scene<Solid>, cells: &dyn Tessellation<Solid>) -> Drawing<Vec3> {
     world
 }
 
+/// The car, and over it the cells and the centers of leaves.
+fn four_panels(
+    tint: Tint,
+    car: &Scene<Solid>,
+    observer: &View<Solid>,
+    boxes: &BoxCells<Vec3>,
+    simplices: &SimplexCells<Solid>,
+) -> Drawing {
+    let octree = cells(car, boxes);
+    let triangulation = cells(car, simplices);
+    let mut centers = Drawing::default();
+    let least = boxes.region().size().x * LEAF_SHARE;
+    // After the corners of the region: centers near the cut.
+    for &at in
+        simplices.tables().0[8..].iter().filter(|p| (p.z - car.bounds().center().z).abs() < least * 0.5)
+    {
+        centers.push(Layer::Emphasis, Role::Ink, Subject::None, Mark::Dot { at, radius_pt: 1.6 });
+    }
+    let (leaves, tetrahedra) = (Tessellation::<Solid>::count(boxes), simplices.count());
+    panels(
+        TWO_COLUMNS_PT,
+        2,
+        &[
+            panel(
+                tint,
+                car,
+                observer,
+                Drawing::default(),
+                format!("(a) a car of {} triangles", car.live().len()),
+            ),
+            panel(tint, car, observer, octree, format!("(b) octree: {leaves} leaves")),
+            panel(tint, car, observer, centers, "(c) centers of leaves, near the cut".into()),
+            panel(tint, car, observer, triangulation, format!("(d) {tetrahedra} tetrahedra")),
+        ],
+    )
+}
+
 /// Figure 3 in space.
 pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
     let car = car()?;
@@ -72,31 +109,7 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
     // So far away that the picture is almost a plan.
     let observer = view(bounds.center() + Vec3::Z * 60.0, bounds.center(), 2.5, [480, 264]);
 
-    let octree = cells(&car, &boxes);
-    let triangulation = cells(&car, &simplices);
-    let mut centers = Drawing::default();
-    let least = boxes.region().size().x * LEAF_SHARE;
-    // After the corners of the region: centers near the cut.
-    for &at in simplices.tables().0[8..].iter().filter(|p| (p.z - bounds.center().z).abs() < least * 0.5) {
-        centers.push(Layer::Emphasis, Role::Ink, Subject::None, Mark::Dot { at, radius_pt: 1.6 });
-    }
-    let (leaves, tetrahedra) = (Tessellation::<Solid>::count(&boxes), simplices.count());
-    let content = panels(
-        TWO_COLUMNS_PT,
-        2,
-        &[
-            panel(
-                tint,
-                &car,
-                &observer,
-                Drawing::default(),
-                format!("(a) a car of {} triangles", car.live().len()),
-            ),
-            panel(tint, &car, &observer, octree, format!("(b) octree: {leaves} leaves")),
-            panel(tint, &car, &observer, centers, "(c) centers of leaves, near the cut".into()),
-            panel(tint, &car, &observer, triangulation, format!("(d) {tetrahedra} tetrahedra")),
-        ],
-    );
+    let content = four_panels(tint, &car, &observer, &boxes, &simplices);
     let legend = vec![
         entry(Role::Visible, Swatch::Line, "cells where they are cut"),
         entry(Role::Ink, Swatch::Dot, "center of a leaf, moved at random"),

@@ -115,6 +115,41 @@ const ARROW_PT: f32 = 52.0;
 /// Width of the picture over its height, at least.
 const WIDER: f32 = 1.8;
 
+/// The middle of a triangle.
+fn center(film: &dyn Film<Flat>, cell: NodeId) -> Vec2 {
+    corners(film, cell).iter().sum::<Vec2>() / 3.0
+}
+
+/// Draws the side that a cell shares with A, the ray of its test, and the vectors of its arithmetic.
+fn draw_transfer(plan: &mut Plan, film: &dyn Film<Flat>, transfer: &Transfer, name: char) {
+    let at = film.view().eye.position;
+    let to = transfer.to();
+    let center = center(film, to);
+    let [p, q] = shared(film, transfer.from(), to);
+    plan.world.line(Layer::Emphasis, Role::Current, Subject::None, [p, q]);
+    // The ray of the test, from the center to the Eye.
+    plan.world.line(
+        Layer::Evidence,
+        if transfer.is_star_shaped() { Role::Eye } else { Role::Hidden },
+        Subject::None,
+        [center, at],
+    );
+    let from = (p + q) * 0.5;
+    let tip = |vector: &str, length_pt: f32| from + transfer.vector(vector) * length_pt * plan.unit;
+    let [normal, sight] = ["normal", "view_direction"].map(|v| [tip(v, ARROW_PT), tip(v, ARROW_PT + 9.0)]);
+    for ([end, label], role, text) in
+        [(normal, Role::Evidence, format!("n({name})")), (sight, Role::Eye, "v".to_owned())]
+    {
+        plan.world.push(Layer::Emphasis, role, Subject::None, Mark::Arrow(from, end));
+        plan.plate(label, LABEL_PT, Font::Bold, &text);
+    }
+    plan.dot(Role::Ink, center, 2.5);
+    // The name on the side away from the arrows.
+    let aside = (center - from).perp().normalize() * 11.0 * plan.unit;
+    let away = aside.dot((normal[0] + sight[0]) * 0.5 - center) < 0.0;
+    plan.plate(center + if away { aside } else { -aside }, NAME_PT, Font::Bold, &name.to_string());
+}
+
 fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
     let (at, scene) = (film.view().eye.position, film.scene());
     let mut plan = Plan::new(frame(film, pair), TWO_COLUMNS_PT);
@@ -123,7 +158,6 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
         plan.world.outline(Layer::Ground, Role::Faint, Subject::Node(id), cell(id));
     }
     let a = pair[0].from();
-    let center = |n: NodeId| cell(n).iter().sum::<Vec2>() / 3.0;
     plan.world.push(Layer::Areas, Role::Visible, Subject::Node(a), Mark::Area(cell(a)));
     for transfer in pair {
         plan.world.push(
@@ -142,35 +176,11 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
         );
     }
     for (transfer, name) in pair.iter().zip(['B', 'C']) {
-        let to = transfer.to();
-        let [p, q] = shared(film, a, to);
-        plan.world.line(Layer::Emphasis, Role::Current, Subject::None, [p, q]);
-        // The ray of the test, from the center to the Eye.
-        plan.world.line(
-            Layer::Evidence,
-            if transfer.is_star_shaped() { Role::Eye } else { Role::Hidden },
-            Subject::None,
-            [center(to), at],
-        );
-        let from = (p + q) * 0.5;
-        let tip = |vector: &str, length_pt: f32| from + transfer.vector(vector) * length_pt * plan.unit;
-        let [normal, sight] =
-            ["normal", "view_direction"].map(|v| [tip(v, ARROW_PT), tip(v, ARROW_PT + 9.0)]);
-        for ([end, label], role, text) in
-            [(normal, Role::Evidence, format!("n({name})")), (sight, Role::Eye, "v".to_owned())]
-        {
-            plan.world.push(Layer::Emphasis, role, Subject::None, Mark::Arrow(from, end));
-            plan.plate(label, LABEL_PT, Font::Bold, &text);
-        }
-        plan.dot(Role::Ink, center(to), 2.5);
-        // The name on the side away from the arrows.
-        let aside = (center(to) - from).perp().normalize() * 11.0 * plan.unit;
-        let away = aside.dot((normal[0] + sight[0]) * 0.5 - center(to)) < 0.0;
-        plan.plate(center(to) + if away { aside } else { -aside }, NAME_PT, Font::Bold, &name.to_string());
+        draw_transfer(&mut plan, film, transfer, name);
     }
-    plan.plate(center(a), NAME_PT, Font::Bold, "A");
+    plan.plate(center(film, a), NAME_PT, Font::Bold, "A");
     // Where the ray of B leaves the picture.
-    let (start, frame) = (center(pair[0].to()), plan.frame);
+    let (start, frame) = (center(film, pair[0].to()), plan.frame);
     let is_inside = |t: f32| (start.lerp(at, t) - frame.center()).abs().cmple(frame.size() * 0.5).all();
     let leaves =
         (0..1000).map(|k| k as f32 / 1000.0).take_while(|&t| is_inside(t)).last().unwrap_or_default();
@@ -231,7 +241,7 @@ mod tests {
             // The picture's normal is that of the shared side, away from A; its view direction goes to the
             // center.
             let [p, q] = shared(&*film, t.from(), t.to());
-            let center = |n: NodeId| corners(&*film, n).iter().sum::<Vec2>() / 3.0;
+            let center = |cell: NodeId| center(&*film, cell);
             assert!(normal.dot(q - p).abs() < 1e-4 && normal.dot(center(t.to()) - center(t.from())) > 0.0);
             assert!((v - (center(t.to()) - eye).normalize()).length() < 1e-4);
         }
