@@ -9,6 +9,7 @@ use crate::figure::tools::{Tint, WIDTH_PT, airy, entry, eye, film, flat_panel, p
 use crate::figure::{Look, Panel, Paper, Picture, Swatch, observer_above, panels, world};
 use crate::geometry::{Flat, NodeId, Solid, View};
 use crate::method::{Film, Value, Verdict};
+use crate::papers::keys::{CENTROID, FRUSTUM, Z_BUFFER};
 use crate::papers::paper::Figure;
 use crate::raster;
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, example, load};
@@ -59,7 +60,7 @@ const STREET: &str = "street";
 
 fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example(STREET)?;
-    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let tree = film.hierarchy();
     let panel = |level: u32| {
         let mut drawing = Drawing::default();
@@ -106,7 +107,7 @@ fn step_of(film: &dyn Film<Flat>, result: &str) -> usize {
 
 fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example(STREET)?;
-    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let look = Look { nodes: false, ..Look::default() };
     let panel = |result: &str| flat_panel(&*film, step_of(&*film, result), &look, result.to_owned());
     let content = panels(WIDTH_PT, 3, &["outside", "partial", "inside"].map(panel));
@@ -119,7 +120,7 @@ fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
 
 fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
-    let film = film(&scene, &eye(&scene, 0), "frustum", &[]);
+    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let all = film.events().len();
     let panel = |quarter: usize| {
         let step = all * quarter / 4;
@@ -151,7 +152,7 @@ fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
         let label = format!("{method}: {} of {} drawn", counts.of(Verdict::Visible), scene.live().len());
         flat_panel(&*film, film.events().len(), &look, label)
     };
-    let content = panels(WIDTH_PT, 3, &["z-buffer", "frustum", "centroid"].map(panel));
+    let content = panels(WIDTH_PT, 3, &[Z_BUFFER, FRUSTUM, CENTROID].map(panel));
     let caption = "The three baselines with their default parameters on the same view. The z-buffer draws \
                    everything; view-frustum culling drops what is outside; centroid ordering draws what is \
                    nearest until its budget of 10 % is spent, and leaves out the rest, visible or not.";
@@ -169,7 +170,7 @@ fn frustum_space(_: Tint) -> Result<Drawing, SceneError> {
     let scene = office(2500)?;
     let mut view = scene.paths()[0].views[0];
     view.eye.far = scene.bounds().diagonal() * 0.5;
-    let film = film(&scene, &view, "frustum", &[]);
+    let film = film(&scene, &view, FRUSTUM, &[]);
     let stamps = Stamps::new(&*film);
     let observer = observer_above(&scene, 4.0 / 3.0);
     let picture = |step: usize, look: &Look| Picture::Space(world(&*film, &stamps, step, look), observer);
@@ -238,4 +239,28 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
         scene.live().len()
     );
     Ok(page(Paper::TwoColumns, "The truth: an item buffer", legend(&content), caption, &content))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_baseline_draws_what_the_caption_says() {
+        let scene = example("freedoom_e1m1").expect("a scene");
+        let all = scene.live().len();
+        let [everything, in_view, nearest] = [Z_BUFFER, FRUSTUM, CENTROID].map(|method| {
+            let film = film(&scene, &eye(&scene, 0), method, &[]);
+            Stamps::new(&*film).counts(film.events().len()).of(Verdict::Visible)
+        });
+        assert!(everything == all && in_view < all && nearest.abs_diff(all / 10) <= 1, "{in_view} {nearest}");
+    }
+
+    #[test]
+    fn each_result_of_a_test_is_found() {
+        let scene = example(STREET).expect("a scene");
+        let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
+        let steps = ["outside", "partial", "inside"].map(|result| step_of(&*film, result));
+        assert!(steps.iter().all(|step| *step < film.events().len()), "{steps:?}");
+    }
 }

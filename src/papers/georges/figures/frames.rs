@@ -19,13 +19,19 @@ use crate::trace::Stamps;
 
 /// The picture of the method that shows the machine, by number.
 const TIMELINE: usize = 3;
+/// Processors of the machine.
+const PROCESSORS: &str = "4";
+
+/// A frame of the game level, after some frames of the same view.
+fn level(scene: &Arc<Scene<Flat>>, coherence: &str, frames: usize) -> Arc<dyn Film<Flat>> {
+    let view = View { width: 512, ..eye(scene, 0) };
+    after(scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
+}
 
 pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
-    let view = View { width: 512, ..eye(&scene, 0) };
     let panel = |coherence: &str, frames: usize| {
-        let film =
-            after::<Flat>(&scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames);
+        let film = level(&scene, coherence, frames);
         let end = film.events().len();
         let counts = Stamps::new(&*film).counts(end);
         let label = format!(
@@ -57,23 +63,24 @@ fn after<S: Methods>(
     run.record(view, usize::MAX).film
 }
 
+/// What the units of the simulated machine do in a second frame.
+fn timeline(scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
+    let view = View { width: 512, height: 384, ..scene.paths()[0].views[0] };
+    let pairs = [
+        ("processors", PROCESSORS),
+        ("renderers", "4"),
+        ("distribution", distribution),
+        ("leaf-primitives", "64"),
+    ];
+    let film = after(scene, &view, &pairs, 1);
+    film.picture(film.events().len(), TIMELINE, DepthScale::default())
+}
+
 pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
     let scene = office()?;
-    let view = View { width: 512, height: 384, ..scene.paths()[0].views[0] };
     let mut parts = Vec::new();
     for distribution in ["structure", "primitive", "hybrid"] {
-        let film = after::<Solid>(
-            &scene,
-            &view,
-            &[
-                ("processors", "4"),
-                ("renderers", "4"),
-                ("distribution", distribution),
-                ("leaf-primitives", "64"),
-            ],
-            1,
-        );
-        let mut picture = film.picture(film.events().len(), TIMELINE, DepthScale::default());
+        let mut picture = timeline(&scene, distribution);
         picture.text(
             Layer::Labels,
             Role::Ink,
@@ -100,4 +107,40 @@ pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
         caption,
         &below(parts),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Mark;
+
+    #[test]
+    fn coherence_draws_what_cubes_before_would_have_hidden() {
+        let scene = example("freedoom_e1m1").expect("a scene");
+        let drawn = |coherence, frames| {
+            let film = level(&scene, coherence, frames);
+            let counts = Stamps::new(&*film).counts(film.events().len());
+            let all = [Verdict::Visible, Verdict::Hidden, Verdict::Outside].map(|v| counts.of(v));
+            assert_eq!(all.iter().sum::<usize>(), scene.live().len(), "every segment is decided");
+            all[0]
+        };
+        assert!(drawn("true", 1) > drawn("false", 0));
+    }
+
+    #[test]
+    fn dealt_by_structure_a_processor_is_idle_that_is_not_in_the_hybrid() {
+        let scene = office().expect("a scene");
+        let idlest = |distribution| {
+            let picture = timeline(&scene, distribution);
+            let shares = picture.items.iter().filter_map(|item| match &item.mark {
+                Mark::Text { text, .. } => text.strip_suffix(" %")?.parse::<u32>().ok(),
+                _ => None,
+            });
+            // The renderers follow the processors.
+            let processors: Vec<u32> = shares.take(PROCESSORS.parse().expect("a number")).collect();
+            assert_eq!(processors.len().to_string(), PROCESSORS);
+            processors.into_iter().min().expect("processors")
+        };
+        assert!(idlest("structure") < 10 && idlest("hybrid") > 40);
+    }
 }

@@ -8,7 +8,7 @@ use crate::drawing::{Drawing, Mark, Role};
 use crate::figure::page::{below, legend};
 use crate::figure::tools::{Tint, WIDTH_PT, entry, eye, film, flat_panel, page};
 use crate::figure::{Entry, Look, Paper, Swatch, panels};
-use crate::geometry::{PixelRect, Solid, View};
+use crate::geometry::{Flat, PixelRect, Solid, View};
 use crate::method::Film;
 use crate::papers::keys::HIERARCHICAL_Z;
 use crate::raster::DepthScale;
@@ -50,11 +50,16 @@ fn trimmed(mut content: Drawing) -> Drawing {
     content
 }
 
+/// The faces of Figure 2, as pixels, and the depth of their nearest point.
+const FACES: [PixelRect; 2] =
+    [PixelRect { x0: 0, x1: 1, y0: 0, y1: 2 }, PixelRect { x0: 0, x1: 2, y0: 0, y1: 1 }];
+const NEAREST: f32 = 6.0;
+
 pub fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
     let (scene, view) = figure_1()?;
     let mut parts = Vec::new();
-    for pixels in [PixelRect { x0: 0, x1: 1, y0: 0, y1: 2 }, PixelRect { x0: 0, x1: 2, y0: 0, y1: 1 }] {
-        let (picture, _) = pyramid_picture(&scene, &view, Some((pixels, 6.0)), DepthScale::Linear);
+    for pixels in FACES {
+        let (picture, _) = pyramid_picture(&scene, &view, Some((pixels, NEAREST)), DepthScale::Linear);
         parts.push(picture);
     }
     let caption = "A face whose nearest point is at depth 6 is asked for. Above it covers the left column of \
@@ -108,10 +113,14 @@ pub fn office_stack(_: Tint) -> Result<Drawing, SceneError> {
     Ok(page(Paper::TwoColumns, "The z-pyramid over the image", cells(), caption, &content))
 }
 
-pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
+fn street_film() -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("street")?;
     let view = View { width: 64, ..eye(&scene, 0) };
-    let film = film(&scene, &view, HIERARCHICAL_Z, &[("leaf-primitives", "4")]);
+    Ok(film(&scene, &view, HIERARCHICAL_Z, &[("leaf-primitives", "4")]))
+}
+
+pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
+    let film = street_film()?;
     let step = hidden_query(&*film, 12);
     let world = panels(
         WIDTH_PT,
@@ -129,4 +138,40 @@ pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
         caption,
         &below(vec![world, strips]),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Space;
+    use crate::method::Verdict;
+    use crate::trace::{Stamps, State};
+
+    #[test]
+    fn the_first_face_of_figure_2_is_hidden_and_the_second_is_not() {
+        let (scene, view) = figure_1().expect("a scene");
+        let is_hidden =
+            |pixels| pyramid_picture(&scene, &view, Some((pixels, NEAREST)), DepthScale::Linear).1;
+        assert_eq!(FACES.map(is_hidden), [true, false]);
+    }
+
+    /// The step of the figure is followed by a node that is hidden.
+    fn is_followed_by_a_hidden_node<S: Space>(film: &dyn Film<S>, most: u64) {
+        let step = hidden_query(film, most);
+        let stamps = Stamps::new(film);
+        let hidden = |step: usize| stamps.counts(step).of(Verdict::Hidden);
+        let later = (step..film.events().len()).find(|&at| hidden(at + 1) > hidden(step));
+        let node = |at: usize, node| stamps.node(node, at) == State::Decided(Verdict::Hidden);
+        let newly = |at: usize| {
+            let all = (0..film.hierarchy().node_count() as u32).map(crate::geometry::NodeId);
+            all.filter(|&n| node(at + 1, n) && !node(step, n)).count()
+        };
+        assert!(later.is_some_and(|at| newly(at) >= 1), "step {step}");
+    }
+
+    #[test]
+    fn the_queries_that_are_shown_hide_a_cube() {
+        is_followed_by_a_hidden_node(&*office_film().expect("a scene"), 40);
+        is_followed_by_a_hidden_node(&*street_film().expect("a scene"), 12);
+    }
 }

@@ -60,6 +60,16 @@ fn cells(car: &Scene<Solid>, cells: &dyn Tessellation<Solid>) -> Drawing<Vec3> {
     world
 }
 
+/// The octree over the car's vertices, and the tetrahedra between the centers of its leaves.
+fn divided(car: &Scene<Solid>) -> (BoxCells<Vec3>, SimplexCells<Solid>) {
+    let never = || false;
+    let cancelled = || -> ! { unreachable!("nobody cancels a figure") };
+    let boxes = vertex_octree(car, Fineness { leaf_share: LEAF_SHARE, ..Fineness::default() }, never)
+        .unwrap_or_else(|| cancelled());
+    let simplices = SimplexCells::<Solid>::of_centers(&boxes, SEED, &never).unwrap_or_else(|| cancelled());
+    (boxes, simplices)
+}
+
 /// The car, and over it the cells and the centers of leaves.
 fn four_panels(
     tint: Tint,
@@ -100,11 +110,7 @@ fn four_panels(
 /// Figure 3 in space.
 pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
     let car = car()?;
-    let never = || false;
-    let cancelled = || -> ! { unreachable!("nobody cancels a figure") };
-    let boxes = vertex_octree(&car, Fineness { leaf_share: LEAF_SHARE, ..Fineness::default() }, never)
-        .unwrap_or_else(|| cancelled());
-    let simplices = SimplexCells::<Solid>::of_centers(&boxes, SEED, &never).unwrap_or_else(|| cancelled());
+    let (boxes, simplices) = divided(&car);
     let bounds = car.bounds();
     // So far away that the picture is almost a plan.
     let observer = view(bounds.center() + Vec3::Z * 60.0, bounds.center(), 2.5, [480, 264]);
@@ -121,4 +127,19 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
                    tetrahedra are the cells (d): small ones in the body, large ones around it. Tetrahedra \
                    are cut in triangles and quadrangles. Scene generate:cars, one car.";
     Ok(page(Paper::TwoColumns, "An occupancy-based tessellation of space", legend, caption, &content))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaves_and_the_corners_of_the_region_are_the_vertices() {
+        let (boxes, simplices) = divided(&car().expect("a scene"));
+        let (leaves, vertices) = (Tessellation::<Solid>::count(&boxes), simplices.tables().0.len());
+        assert_eq!(vertices, leaves + 8);
+        // Between points in space are about 6.7 tetrahedra a point, fewer at the hull.
+        let each = simplices.count() as f32 / vertices as f32;
+        assert!((5.0..7.0).contains(&each), "{each}");
+    }
 }
