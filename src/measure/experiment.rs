@@ -132,7 +132,7 @@ impl Experiment {
                 AnyScene::Flat(scene) => (self.sweep.flat)(scene, &setup, &part)?,
                 AnyScene::Solid(scene) => (self.sweep.solid)(scene, &setup, &part)?,
             };
-            // Rows are told apart by the scene's name.
+            // A scene's name distinguishes its rows.
             if measured.iter().any(|m: &Measured| m.name == about.name) {
                 about.name += &format!(", {}", grouped(about.prims as f64, 0));
                 let at = table.columns.iter().position(|c| c.key == SCENE.key);

@@ -3,7 +3,7 @@
 use crate::geometry::{Flat, NodeId, ObjectId, PrimId};
 use crate::method::{Field, Film, Value};
 
-/// A test of a box against an occluder, as the film tells it.
+/// A test of a box against an occluder, as the film records it.
 pub struct Test {
     pub node: Option<NodeId>,
     pub object: Option<ObjectId>,

@@ -43,7 +43,7 @@ pub const SWEEP: Sweep = Sweep {
 /// The ends of the ranges that the paper states for both models: nodes, and percent of those in the frustum.
 const PAPER: [[f64; 2]; 2] = [[27.0, 35.0], [30.0, 40.0]];
 
-/// Nodes whose box is not outside the frustum, whoever asks.
+/// Nodes whose box is not outside the frustum, whether or not the method came to them.
 fn in_frustum<S: World>(run: &dyn Run<S>, view: &View<S>) -> usize {
     let (frustum, tree) = (view.frustum(), run.hierarchy());
     let inside = |n: &u32| {

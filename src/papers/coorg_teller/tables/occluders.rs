@@ -142,7 +142,7 @@ fn paper() -> Vec<Vec<Cell>> {
 fn plots(table: &Table) -> Vec<Plot> {
     let scenes = by_scene(table);
     let named = |row: usize, name: &str| table.rows[row].contains(&Cell::Text(name.into()));
-    // Up to three scenes are told apart; more repeat.
+    // Roles for three scenes; with more they repeat.
     let roles =
         [(Role::Visible, Role::Partial), (Role::Eye, Role::Evidence), (Role::Occluder, Role::Outside)];
     let line = |rows: &[usize], parameter: &str, x: &str, y: &str| -> Vec<(f64, f64)> {

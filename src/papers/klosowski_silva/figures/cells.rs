@@ -135,7 +135,7 @@ fn family(scene: &Scene<Flat>) -> Option<Family> {
 }
 
 /// A cell, its neighbors, and an arrow to each through the side that they share.
-fn around(scene: &Scene<Flat>, family: &Family, cell: CellId, frame: Aabb<Vec2>, label: &str) -> Panel {
+fn neighborhood(scene: &Scene<Flat>, family: &Family, cell: CellId, frame: Aabb<Vec2>, label: &str) -> Panel {
     let boxes = &family.boxes;
     let bounds = |c: CellId| Tessellation::<Flat>::bounds(boxes, c);
     let corners = |c: CellId| [0, 1, 3, 2].map(|k| bounds(c).corner(k)).to_vec();
@@ -183,14 +183,20 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
         TWO_COLUMNS_PT,
         2,
         &[
-            around(
+            neighborhood(
                 &scene,
                 &family,
                 family.a,
                 frame,
                 &format!("A has {} neighbors, among them I and J", counts[0]),
             ),
-            around(&scene, &family, family.i, frame, &format!("I has {} neighbors, among them A", counts[1])),
+            neighborhood(
+                &scene,
+                &family,
+                family.i,
+                frame,
+                &format!("I has {} neighbors, among them A", counts[1]),
+            ),
         ],
     );
     let legend = vec![

@@ -64,7 +64,7 @@ impl Moment {
     }
 }
 
-/// Operands and result of a transfer, as its note tells them.
+/// Operands and result of a transfer, as its note records them.
 #[derive(Clone, Debug)]
 pub struct Transfer {
     fields: Vec<Field>,

@@ -43,7 +43,7 @@ const WAYS: [Way; 3] = [DELAUNAY, OCTREE, KD_TREE];
 /// Names of the stages begin like this.
 const STAGES: [&str; 3] = ["dividing", "triangulating", "assigning"];
 
-/// Listens to what a work tells, and notes when each stage begins.
+/// Passes the reports of a work on, and records when each stage begins.
 struct Stages<'a> {
     whole: &'a dyn Progress,
     watch: Stopwatch,
@@ -192,7 +192,7 @@ mod tests {
     use crate::scene::Quiet;
 
     #[test]
-    fn stages_are_told_apart_by_their_names() {
+    fn stages_are_distinguished_by_their_names() {
         let stages = Stages::new(&Quiet);
         for (what, count) in [("dividing space", 2), ("triangulating", 1), ("assigning", 3), ("sorting", 1)] {
             (0..count).for_each(|_| stages.report(0.5, what));
