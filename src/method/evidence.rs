@@ -69,7 +69,8 @@ impl<S: Space> Tested<S> {
             _ => "The box".into(),
         }
     }
-    fn result(&self) -> &'static str {
+    /// Whether it is `outside`, `inside` or `partial`.
+    pub fn result(&self) -> &'static str {
         match (self.outside, self.cutting) {
             (true, _) => "outside",
             (false, 0) => "inside",

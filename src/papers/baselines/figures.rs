@@ -3,12 +3,13 @@
 
 use std::sync::Arc;
 
+use crate::culling::baseline::{Evidence, Frustum};
 use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
 use crate::figure::page::legend;
 use crate::figure::tools::{Tint, WIDTH_PT, airy, entry, eye, film, flat_panel, page};
 use crate::figure::{Look, Panel, Paper, Picture, Swatch, observer_above, panels, world};
 use crate::geometry::{Flat, NodeId, Solid, View};
-use crate::method::{Film, Value, Verdict};
+use crate::method::{Film, Verdict, notes};
 use crate::papers::keys::{CENTROID, FRUSTUM, Z_BUFFER};
 use crate::papers::paper::Figure;
 use crate::raster;
@@ -86,22 +87,18 @@ fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
     Ok(page(Paper::TwoColumns, "kD-tree, level by level", legend, caption, &content))
 }
 
-/// The step right after the test with this result whose box is the largest that fits well into the picture.
+/// The step right after the test of a node with this result whose box is the largest that fits well into the
+/// picture.
 fn step_of(film: &dyn Film<Flat>, result: &str) -> usize {
     let all = film.scene().bounds().diagonal();
-    let size_of = |at: usize| {
-        let (kind, fields) = film.fields(at);
-        let has_result =
-            fields.iter().any(|f| f.name == "result" && f.value == Value::Word(result.to_owned()));
-        let node = fields.iter().find_map(|f| match f.value {
-            Value::Integer(n) if f.name == "node" => Some(NodeId(n as u32)),
-            _ => None,
-        })?;
+    let size_of = |note: &Evidence<Flat>| {
+        let Evidence::Tested(test) = note else { return None };
+        let Subject::Node(node) = test.subject() else { return None };
         let bounds = film.hierarchy().bounds(node);
         let area = bounds.size().x * bounds.size().y;
-        (kind == "NodeClassified" && has_result && bounds.diagonal() < 0.45 * all).then_some(area)
+        (test.result() == result && bounds.diagonal() < 0.45 * all).then_some(area)
     };
-    let sizes = (0..film.events().len()).filter_map(|at| Some((at, size_of(at)?)));
+    let sizes = notes::<Flat, Frustum>(film).filter_map(|(at, note)| Some((at, size_of(note)?)));
     sizes.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(film.events().len(), |(at, _)| at + 1)
 }
 

@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::notes::{Test, chosen, tests};
 use super::setting::draw_tangent;
-use crate::culling::anatomy::Blockers;
+use crate::culling::anatomy::{Blockers, Occlusion};
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::tools::{
     COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page, ready,
@@ -34,11 +34,11 @@ fn is_deepest(film: &dyn Film<Flat>, all: &[Test], node: NodeId) -> bool {
     !film.hierarchy().children(node).any(|c| all.iter().any(|t| t.node == Some(NodeId(c))))
 }
 
-fn class_role(occlusion: &str) -> Role {
+fn class_role(occlusion: Occlusion) -> Role {
     match occlusion {
-        "full" => Role::Hidden,
-        "none" => Role::Visible,
-        _ => Role::Partial,
+        Occlusion::Full => Role::Hidden,
+        Occlusion::None => Role::Visible,
+        Occlusion::Partial => Role::Partial,
     }
 }
 
@@ -72,7 +72,7 @@ fn named_nodes(films: &[Arc<dyn Film<Flat>>; 2], frame: usize) -> [Option<NodeId
         let size = film.hierarchy().bounds(*n).size();
         size.x * size.y
     };
-    let is = |frame: usize, node: NodeId, what: &str| {
+    let is = |frame: usize, node: NodeId, what: Occlusion| {
         all[frame].iter().any(|t| t.node == Some(node) && t.occlusion == what)
     };
     let deepest =
@@ -81,9 +81,9 @@ fn named_nodes(films: &[Arc<dyn Film<Flat>>; 2], frame: usize) -> [Option<NodeId
         deepest().filter(|n| what(*n)).max_by(|a, b| area(a).total_cmp(&area(b)).then(b.cmp(a)))
     };
     [
-        largest(&|n| is(frame, n, "full")),
-        largest(&|n| is(frame, n, "none")),
-        largest(&|n| (0..2).all(|i| is(i, n, "partial"))),
+        largest(&|n| is(frame, n, Occlusion::Full)),
+        largest(&|n| is(frame, n, Occlusion::None)),
+        largest(&|n| (0..2).all(|i| is(i, n, Occlusion::Partial))),
     ]
 }
 
@@ -103,7 +103,7 @@ fn fill_deepest(plan: &mut Plan, film: &dyn Film<Flat>, all: &[Test], role: impl
 fn classes(films: &[Arc<dyn Film<Flat>>; 2], i: usize) -> Panel {
     let (film, all) = (&*films[i], tests(&*films[i]));
     let mut plan = Plan::new(frame_10(), PANEL_PT);
-    fill_deepest(&mut plan, film, &all, |test| class_role(&test.occlusion));
+    fill_deepest(&mut plan, film, &all, |test| class_role(test.occlusion));
     for (k, node) in named_nodes(films, i).into_iter().enumerate() {
         let Some(node) = node else { continue };
         let at = film.hierarchy().bounds(node).center();
@@ -163,7 +163,7 @@ fn bounds_of(scene: &Scene<Flat>, object: ObjectId) -> Aabb<Vec2> {
 fn draw_details(plan: &mut Plan, film: &dyn Film<Flat>) -> usize {
     let scene = film.scene();
     let mut culled = 0;
-    for test in tests(film).iter().filter(|t| t.occlusion == "full") {
+    for test in tests(film).iter().filter(|t| t.occlusion == Occlusion::Full) {
         let Some(object) = test.object else { continue };
         let ends: Vec<Vec2> = scene.prim_points(test.occluder).collect();
         let one = Blockers::<Flat>::new(&ends, &[vec![0, 1]]);
@@ -264,7 +264,7 @@ mod checks {
         assert_eq!(["D1", "D2", "D3"].map(|d| state(&without, d)), [visible; 3]);
         let near = tests(&*with)
             .iter()
-            .filter(|t| t.object.is_some() && t.occlusion == "full")
+            .filter(|t| t.object.is_some() && t.occlusion == Occlusion::Full)
             .map(|t| t.occluder)
             .collect::<Vec<_>>();
         assert!(

@@ -1,46 +1,43 @@
 //! What the figures read of the method's notes.
 
+use crate::culling::anatomy::Occlusion;
+use crate::culling::large_occluders::{Evidence, LargeOccluders, Owner};
 use crate::geometry::{Flat, NodeId, ObjectId, PrimId};
-use crate::method::{Field, Film, Value};
+use crate::method::{Film, notes};
 
-/// A test of a box against an occluder, as the film records it.
+/// A test of a box against an occluder.
 pub struct Test {
+    /// Whose box, if a node's.
     pub node: Option<NodeId>,
+    /// Whose box, if a detail object's.
     pub object: Option<ObjectId>,
+    /// The occluder, by its first primitive.
     pub occluder: PrimId,
-    pub occlusion: String,
+    /// What of the box it hides.
+    pub occlusion: Occlusion,
+    /// Whether its planes were kept from an earlier frame.
     pub reused: bool,
 }
 
 /// The tests of a frame, in order.
 pub fn tests(film: &dyn Film<Flat>) -> Vec<Test> {
-    let test = |at: usize| {
-        let (kind, fields) = film.fields(at);
-        let value = |name: &str| fields.iter().find(|f: &&Field| f.name == name).map(|f| f.value.clone());
-        let id = |name: &str| if let Some(Value::Integer(n)) = value(name) { Some(n as u32) } else { None };
-        (kind == "OcclusionTested").then(|| Test {
-            node: id("node").map(NodeId),
-            object: id("object").map(ObjectId),
-            occluder: PrimId(id("occluder_prim").unwrap_or_default()),
-            occlusion: if let Some(Value::Word(w)) = value("occlusion") { w } else { String::new() },
-            reused: value("reused") == Some(Value::Switch(true)),
-        })
+    let test = |(_, note): (usize, &Evidence<Flat>)| {
+        let Evidence::Related(test) = note else { return None };
+        let (node, object) = match test.owner {
+            Owner::Node(node) => (Some(node), None),
+            Owner::Object(object) => (None, Some(object)),
+        };
+        let (occluder, occlusion, reused) = (test.name, test.occlusion, test.reused);
+        Some(Test { node, object, occluder, occlusion, reused })
     };
-    (0..film.events().len()).filter_map(test).collect()
+    notes::<Flat, LargeOccluders>(film).filter_map(test).collect()
 }
 
 /// The occluders chosen for the eye.
 pub fn chosen(film: &dyn Film<Flat>) -> Vec<PrimId> {
-    let prim = |at: usize| {
-        let (kind, fields) = film.fields(at);
-        let id = fields.iter().find_map(|f| {
-            if let (&"prim", Value::Integer(n)) = (&f.name, &f.value) {
-                Some(PrimId(*n as u32))
-            } else {
-                None
-            }
-        });
-        if kind == "OccluderChosen" { id } else { None }
+    let prim = |(_, note): (usize, &Evidence<Flat>)| match note {
+        Evidence::Chosen(occluder) => Some(occluder.name),
+        _ => None,
     };
-    (0..film.events().len()).filter_map(prim).collect()
+    notes::<Flat, LargeOccluders>(film).filter_map(prim).collect()
 }

@@ -1,21 +1,17 @@
 //! What the figures read of the method's notes.
 
-use crate::geometry::Space;
-use crate::method::{Event, Film, Value};
+use crate::culling::depth::Faces;
+use crate::culling::hierarchical_z::{Evidence, HierarchicalZ};
+use crate::method::{Film, notes};
 
-/// The step at which the answer for a hidden node is given that read many cells, but no more than fit a
-/// picture; its node.
-pub fn hidden_query<S: Space>(film: &dyn Film<S>, most: u64) -> usize {
-    let reads = |at: usize| {
-        let (kind, fields) = film.fields(at);
-        let is_hidden = fields.iter().any(|f| f.name == "hidden" && f.value == Value::Switch(true));
-        let reads = fields.iter().find_map(|f| {
-            if let ("cells_read", Value::Integer(n)) = (f.name, &f.value) { Some(*n) } else { None }
-        });
-        (kind == "ObscurationTested" && is_hidden).then_some(reads?).filter(|n| *n <= most)
+/// The step before the answer for a hidden node that read many cells, but no more than fit a picture: its
+/// last read is right before it. The end of the film if there is none.
+pub fn hidden_query<S: Faces>(film: &dyn Film<S>, most: u32) -> usize {
+    let reads = |note: &Evidence<S>| match note {
+        Evidence::Answered(n) if n.answer.is_hidden && n.answer.reads <= most => Some(n.answer.reads),
+        _ => None,
     };
-    let noted = (0..film.events().len()).filter(|&at| matches!(film.events()[at], Event::Noted(_)));
-    let best = noted.filter_map(|at| Some((reads(at)?, at))).max_by_key(|(n, at)| (*n, usize::MAX - at));
-    // The last read is right before the answer.
+    let answers = notes::<S, HierarchicalZ>(film).filter_map(|(at, note)| Some((reads(note)?, at)));
+    let best = answers.max_by_key(|(reads, at)| (*reads, usize::MAX - at));
     best.map_or(film.events().len(), |(_, at)| at)
 }

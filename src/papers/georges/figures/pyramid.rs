@@ -143,9 +143,8 @@ pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Space;
-    use crate::method::Verdict;
-    use crate::trace::{Stamps, State};
+    use crate::culling::depth::Faces;
+    use crate::method::{Event, Verdict};
 
     #[test]
     fn the_first_face_of_figure_2_is_hidden_and_the_second_is_not() {
@@ -155,18 +154,14 @@ mod tests {
         assert_eq!(FACES.map(is_hidden), [true, false]);
     }
 
-    /// The step of the figure is followed by a node that is hidden.
-    fn is_followed_by_a_hidden_node<S: Space>(film: &dyn Film<S>, most: u64) {
+    /// The note at the step of a figure is the answer that hides the node decided next.
+    fn is_followed_by_a_hidden_node<S: Faces>(film: &dyn Film<S>, most: u32) {
         let step = hidden_query(film, most);
-        let stamps = Stamps::new(film);
-        let hidden = |step: usize| stamps.counts(step).of(Verdict::Hidden);
-        let later = (step..film.events().len()).find(|&at| hidden(at + 1) > hidden(step));
-        let node = |at: usize, node| stamps.node(node, at) == State::Decided(Verdict::Hidden);
-        let newly = |at: usize| {
-            let all = (0..film.hierarchy().node_count() as u32).map(crate::geometry::NodeId);
-            all.filter(|&n| node(at + 1, n) && !node(step, n)).count()
-        };
-        assert!(later.is_some_and(|at| newly(at) >= 1), "step {step}");
+        let decided = (step..film.events().len())
+            .find(|&at| matches!(film.events()[at], Event::DecidedNode(_, Verdict::Hidden)));
+        let decided = decided.expect("a node is hidden");
+        assert_eq!(film.evidence_of(decided), Some(step));
+        assert_eq!(film.subject(decided), film.subject(step));
     }
 
     #[test]

@@ -51,13 +51,8 @@ fn pair(film: &dyn Film<Flat>) -> Option<[Transfer; 2]> {
     for group in transfers(film).iter().filter(|g| g.len() == 2) {
         for (b, c) in [(0, 1), (1, 0)] {
             let (b, c) = (&group[b], &group[c]);
-            let less = b.number("alignment") > c.number("alignment") && c.number("alignment") > 0.0;
-            if !(b.is_star_shaped()
-                && !c.is_star_shaped()
-                && less
-                && b.number("from_solidity") > 0.05
-                && b.number("held") > 0.0)
-            {
+            let less = b.note.along > c.note.along && c.note.along > 0.0;
+            if !(b.note.star_shaped && !c.note.star_shaped && less && b.note.of_a > 0.05 && b.note.held > 0) {
                 continue;
             }
             let pair = [b.clone(), c.clone()];
@@ -66,9 +61,8 @@ fn pair(film: &dyn Film<Flat>) -> Option<[Transfer; 2]> {
                 .iter()
                 .map(|&n| area(&corners(film, n)))
                 .fold(f32::INFINITY, f32::min);
-            let score = least / (size.x * size.y)
-                * near(b.number("alignment"), 0.87)
-                * near(c.number("alignment"), 0.45);
+            let score =
+                least / (size.x * size.y) * near(b.note.along.into(), 0.87) * near(c.note.along.into(), 0.45);
             if best.as_ref().is_none_or(|(most, _)| score > *most) {
                 best = Some((score, pair));
             }
@@ -86,16 +80,16 @@ fn shared(film: &dyn Film<Flat>, a: NodeId, b: NodeId) -> [Vec2; 2] {
 
 /// The arithmetic of a transfer, in one line or two.
 fn arithmetic(transfer: &Transfer, name: char) -> Vec<String> {
-    let n = |key: &str| transfer.number(key);
+    let n = &transfer.note;
     let sum = format!(
-        "ρ({name}) = |A| / ρ_max + (v · n({name})) ρ(A) = {:.0} / {:.0} + {:.2} × {:.2} = {:.2}",
-        n("held"),
-        n("rho_max"),
-        n("alignment"),
-        n("from_solidity"),
-        n("transferred")
+        "ρ({name}) = |A| / ρ_max + (v · n({name})) ρ(A) = {} / {} + {:.2} × {:.2} = {:.2}",
+        n.held,
+        n.most,
+        n.along,
+        n.of_a,
+        n.sum()
     );
-    let star = if transfer.is_star_shaped() {
+    let star = if n.star_shaped {
         format!(
             "     The ray from the center of {name} to the Eye leaves through the side that it shares with \
              A: star-shaped, no penalty."
@@ -104,7 +98,7 @@ fn arithmetic(transfer: &Transfer, name: char) -> Vec<String> {
         format!(
             "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, \
              with the penalty of 1 = {:.2}.",
-            n("solidity")
+            n.solidity
         )
     };
     vec![sum, star]
@@ -130,13 +124,14 @@ fn draw_transfer(plan: &mut Plan, film: &dyn Film<Flat>, transfer: &Transfer, na
     // The ray of the test, from the center to the Eye.
     plan.world.line(
         Layer::Evidence,
-        if transfer.is_star_shaped() { Role::Eye } else { Role::Hidden },
+        if transfer.note.star_shaped { Role::Eye } else { Role::Hidden },
         Subject::None,
         [center, at],
     );
     let from = (p + q) * 0.5;
-    let tip = |vector: &str, length_pt: f32| from + transfer.vector(vector) * length_pt * plan.unit;
-    let [normal, sight] = ["normal", "view_direction"].map(|v| [tip(v, ARROW_PT), tip(v, ARROW_PT + 9.0)]);
+    let tip = |vector: Vec2, length_pt: f32| from + vector * length_pt * plan.unit;
+    let [normal, sight] = [transfer.note.normal, transfer.note.sight]
+        .map(|vector| [tip(vector, ARROW_PT), tip(vector, ARROW_PT + 9.0)]);
     for ([end, label], role, text) in
         [(normal, Role::Evidence, format!("n({name})")), (sight, Role::Eye, "v".to_owned())]
     {
@@ -231,13 +226,13 @@ mod tests {
         let pair = pair(&*film).expect("such a pair");
         let eye = film.view().eye.position;
         for t in &pair {
-            let n = |key: &str| t.number(key);
-            let sum = n("held") / n("rho_max") + n("alignment") * n("from_solidity");
-            assert!((sum - n("transferred")).abs() < 1e-5);
-            let penalty = if t.is_star_shaped() { 0.0 } else { 1.0 };
-            assert!((sum + penalty - n("solidity")).abs() < 1e-5);
-            let (v, normal) = (t.vector("view_direction"), t.vector("normal"));
-            assert!((f64::from(v.dot(normal)) - n("alignment")).abs() < 1e-5);
+            let n = &t.note;
+            let sum = n.held as f32 / n.most as f32 + n.along * n.of_a;
+            assert!((sum - n.sum()).abs() < 1e-5);
+            let penalty = if n.star_shaped { 0.0 } else { 1.0 };
+            assert!((sum + penalty - n.solidity).abs() < 1e-5);
+            let (v, normal) = (n.sight, n.normal);
+            assert!((v.dot(normal) - n.along).abs() < 1e-5);
             // The picture's normal is that of the shared side, away from A; its view direction goes to the
             // center.
             let [p, q] = shared(&*film, t.from(), t.to());

@@ -83,7 +83,7 @@ fn moment(film: &dyn Film<Flat>, letter: char, cells: usize) -> Panel {
     let area = |plan: &mut Plan, role: Role, id: NodeId| {
         plan.world.push(Layer::Areas, role, Subject::Node(id), Mark::Area(corners(film, id)));
     };
-    for (&id, &solidity) in &moment.front {
+    for &(id, solidity) in &moment.front {
         area(&mut plan, Role::Undecided, id);
         (0..shade(solidity)).for_each(|_| area(&mut plan, Role::Scene, id));
     }
@@ -98,7 +98,7 @@ fn moment(film: &dyn Film<Flat>, letter: char, cells: usize) -> Panel {
         plan.world.outline(Layer::Emphasis, Role::Current, Subject::Node(last), corners(film, last));
     }
     let ranks = moment.projected.iter().enumerate().map(|(i, &id)| (id, (i + 1).to_string(), Font::Bold));
-    let solidities = moment.front.iter().map(|(&id, s)| (id, format!("{s:.2}"), Font::Regular));
+    let solidities = moment.front.iter().map(|&(id, s)| (id, format!("{s:.2}"), Font::Regular));
     for (id, text, font) in ranks.chain(solidities) {
         write(&mut plan, &corners(film, id), &text, font);
     }
@@ -190,8 +190,9 @@ mod tests {
             let (before, after) = (Moment::after(&*film, cells), Moment::after(&*film, cells + 1));
             assert_eq!((before.projected.len(), after.projected.len()), (cells, cells + 1));
             let next = after.projected[cells];
-            let least = before.front.values().copied().fold(f32::INFINITY, f32::min);
-            assert_eq!(before.front[&next], least, "cell {cells}");
+            let (least, solidity) = before.front[0];
+            assert!(before.front.iter().all(|(_, other)| solidity <= *other));
+            assert_eq!(next, least, "cell {cells}");
             assert!(after.left <= before.left);
         }
     }
@@ -202,7 +203,7 @@ mod tests {
         let late = Moment::after(&*film, MOMENTS[3]);
         assert_eq!(late.projected.len(), MOMENTS[3], "the budget lasts");
         let behind = late.projected.iter().any(|&id| film.hierarchy().bounds(id).min.y > 2.0);
-        let waiting = late.front.keys().any(|&id| film.hierarchy().bounds(id).max.y < 1.5);
+        let waiting = late.front.iter().any(|&(id, _)| film.hierarchy().bounds(id).max.y < 1.5);
         assert!(behind && waiting, "the front is beyond the gap, and cells before it wait");
     }
 
