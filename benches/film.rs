@@ -18,7 +18,7 @@ fn main() {
         panic!("the generator makes a scene of space");
     };
     let view = framing_view::<Solid>(&scene.bounds(), 1024, 1024);
-    let settings = Settings([("backface-culling".to_owned(), "true".to_owned())].into());
+    let settings = Settings::of(&[("backface-culling", "true")]);
     let mut run = Solid::method("frustum")
         .expect("a method")
         .ready(&scene, &settings, &Quiet)

@@ -115,7 +115,7 @@ fn frames(
 
 /// The two-pass form on several threads against itself on one.
 fn threads(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>]) {
-    let settings = Settings([("form".to_owned(), "two-pass".to_owned())].into());
+    let settings = Settings::of(&[("form", "two-pass")]);
     let run = |threads: usize| {
         let mut occluders = Obscurer::new(scene, &settings, &Quiet).expect("fine").expect("built");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");

@@ -53,7 +53,7 @@ fn largest(scene: &Scene<Solid>) -> Vec<Vec<u32>> {
 }
 
 fn run(scene: &std::sync::Arc<Scene<Solid>>, method: &str, pairs: &[(&str, &str)]) -> Box<dyn Run<Solid>> {
-    let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let settings = Settings::of(pairs);
     Solid::method(method)
         .expect("a method")
         .ready(scene, &settings, &Quiet)

@@ -16,6 +16,7 @@
 //! | 5 | [`truth`] | exact visibility, error measures, the checker of certificates |
 //! | 6 | [`figure`] | a step as a drawing |
 //! | 6 | [`measure`] | clocks: timing and comparison |
+//! | 7 | [`papers`] | the papers: their figures and tables, made anew |
 //! | 7 | [`render`] | readers of drawings: SVG, PDF, PNG, screen |
 //! | 8 | [`app`] | the explorer's state and commands |
 //! | 9 | `views` | the explorer's panels (feature `gui`) |
@@ -30,6 +31,7 @@ pub mod geometry;
 pub mod index;
 pub mod measure;
 pub mod method;
+pub mod papers;
 pub mod raster;
 pub mod render;
 pub mod scene;

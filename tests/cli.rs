@@ -444,6 +444,41 @@ fn figures_are_written_the_same_each_time() {
 }
 
 #[test]
+fn former_names_of_figures_work_and_say_the_new_one() {
+    let here = folder("former");
+    let output = cullscope(&here, &["figure", "large-occluders-4"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert_eq!(said, "note: figure `large-occluders-4` is called `coorg-teller-figure-4` now\n");
+    assert!(here.join("coorg-teller-figure-4.svg").exists() && !here.join("large-occluders-4.svg").exists());
+    let output = cullscope(&here, &["figure", "coorg-teller-figure-4"]);
+    assert!(output.status.success() && output.stderr.is_empty());
+}
+
+#[test]
+fn a_paper_lists_its_figures_and_tables() {
+    let here = folder("contents");
+    let said = done(&here, &["paper", "coorg-teller"]);
+    let mut lines = said.lines();
+    assert!(lines.next().is_some_and(|l| l.starts_with("Coorg and Teller. Real-Time Occlusion Culling")));
+    assert_eq!(lines.next(), Some("https://doi.org/10.1145/253284.253312"));
+    let names: Vec<&str> =
+        lines.filter(|l| l.starts_with("  ")).filter_map(|l| l.split_whitespace().next()).collect();
+    assert_eq!(names.len(), 11 + 5);
+    assert!(names.contains(&"coorg-teller-figure-12") && names.contains(&"coorg-teller-table-3"), "{said}");
+    // Every name that a list shows is shown by one paper.
+    let listed = done(&here, &["figure", "--list"]) + &done(&here, &["paper", "--list"]);
+    let papers = ["baselines", "coorg-teller", "georges", "klosowski-silva"];
+    let shown: Vec<String> = papers.iter().map(|key| done(&here, &["paper", key])).collect();
+    for name in listed.lines().filter_map(|l| l.split_whitespace().next()) {
+        let count = shown.iter().filter(|text| text.contains(&format!("  {name} "))).count();
+        assert_eq!(count, 1, "{name}");
+    }
+    assert!(refused(&here, &["paper", "georges-figure-1"], 2).contains("cullscope figure georges-figure-1"));
+    assert!(refused(&here, &["figure", "georges-box"], 2).contains("cullscope paper georges-box"));
+}
+
+#[test]
 fn words_that_are_off_have_status_2_and_a_hint() {
     let here = folder("words");
     let hinted: [(&[&str], &str); 8] = [

@@ -319,9 +319,7 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         let key = entry.card().key;
         let (mut unseen, mut culled) = (0, 0);
         for scene in scenes {
-            for settings in
-                [Settings::default(), Settings([("backface-culling".to_owned(), "true".to_owned())].into())]
-            {
+            for settings in [Settings::default(), Settings::of(&[("backface-culling", "true")])] {
                 let one_sided = !settings.0.is_empty();
                 let mut run = ready(*entry, scene, &settings);
                 let mut truth = Truth::new(scene, one_sided, 1, [1.0; 3]);

@@ -52,7 +52,7 @@ fn look<S: Methods + Drawable>(
     views: &[View<S>],
 ) -> Sum {
     let entry = S::method(method).expect("a method");
-    let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let settings = Settings::of(pairs);
     let mut run = entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled");
     let mut truth = Truth::new(scene, false, 1, WHITE);
     let mut target = Target::default();

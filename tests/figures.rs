@@ -1,4 +1,4 @@
-//! The built-in figures: made, the same each time, and equal to the files in screenshots/figures.
+//! The figures of the papers: made, the same each time, and equal to the files in screenshots/figures.
 //!
 //! `UPDATE_FIGURES=1 cargo test --test figures` writes the files anew; with `FIGURES_OUT=folder` the
 //! figures are also left there as PNG, to be looked at.
@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use cullscope::figure::BUILTIN;
+use cullscope::papers::{figure, figures};
 use cullscope::render::{PngSize, SvgOptions, Theme, pdf, png, svg};
 
 fn folder() -> PathBuf {
@@ -16,7 +16,7 @@ fn folder() -> PathBuf {
 #[test]
 fn figures_are_what_is_shown_in_the_documentation() {
     let tint = |role| Theme::Print.flat_linear(role);
-    for figure in BUILTIN {
+    for figure in figures() {
         let drawing = figure.drawing(&tint).unwrap_or_else(|e| panic!("{}: {e}", figure.name));
         let text = svg(&drawing, Theme::Print, &SvgOptions::default());
         let path = folder().join(figure.name).with_extension("svg");
@@ -41,21 +41,17 @@ fn figures_are_what_is_shown_in_the_documentation() {
 }
 
 #[test]
-fn every_file_in_the_folder_is_a_built_in_figure() {
+fn every_file_in_the_folder_is_a_figure() {
     for entry in fs::read_dir(folder()).expect("screenshots/figures").map(|e| e.expect("an entry").path()) {
         let stem = entry.file_stem().expect("a name").to_string_lossy().into_owned();
-        assert!(
-            BUILTIN.iter().any(|f| f.name == stem),
-            "{} is no figure any more: delete it",
-            entry.display()
-        );
+        assert!(figures().any(|f| f.name == stem), "{} is no figure any more: delete it", entry.display());
     }
 }
 
 #[test]
 fn figures_are_the_same_bytes_each_time_in_every_format() {
     let tint = |role| Theme::Print.flat_linear(role);
-    let figure = &BUILTIN[1];
+    let figure = figure("baselines-frustum-tests").expect("a figure");
     let files = || {
         let drawing = figure.drawing(&tint).expect("a figure");
         let svg = svg(&drawing, Theme::Print, &SvgOptions::default()).into_bytes();
@@ -71,7 +67,7 @@ fn figures_are_the_same_bytes_each_time_in_every_format() {
 #[test]
 fn every_figure_has_a_title_a_caption_and_ink() {
     let tint = |role| Theme::Print.flat_linear(role);
-    for figure in BUILTIN {
+    for figure in figures() {
         let drawing = figure.drawing(&tint).expect("a figure");
         assert!(!drawing.title.is_empty() && drawing.description.len() > 60, "{}", figure.name);
         assert!(drawing.items.len() > 10 && drawing.size_pt.min_element() > 100.0, "{}", figure.name);

@@ -27,6 +27,7 @@ const ROOMS: &[(&str, u8)] = &[
     ("truth", 5),
     ("figure", 6),
     ("measure", 6),
+    ("papers", 7),
     ("render", 7),
     ("app", 8),
     ("views", 9),
@@ -266,6 +267,25 @@ fn methods_are_strangers_to_each_other() {
             }
         }
     }
+    report(&wrong);
+}
+
+#[test]
+fn figures_know_no_clock_and_tables_draw_no_worlds() {
+    let (mut wrong, mut parts) = (Vec::new(), Vec::new());
+    for (path, text) in sources("src/papers") {
+        // A paper's part: the folder or file in its folder.
+        let part = path.iter().nth(3).and_then(|n| n.to_str()).unwrap_or("").trim_end_matches(".rs");
+        let forbidden = match part {
+            "figures" => "measure",
+            "tables" => "figure",
+            _ => continue,
+        };
+        let used = rooms_used(&code(&text)).into_iter().filter(|(_, room)| room == forbidden);
+        wrong.extend(used.map(|(line, room)| format!("{}:{line}: {part} use `{room}`", path.display())));
+        parts.push(forbidden);
+    }
+    assert!(parts.contains(&"measure") && parts.contains(&"figure"), "no paper has figures and tables");
     report(&wrong);
 }
 

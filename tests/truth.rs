@@ -72,7 +72,7 @@ fn film<S: Methods>(
     method: &str,
     settings: &[(&str, &str)],
 ) -> Arc<dyn Film<S>> {
-    let settings = Settings(settings.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let settings = Settings::of(settings);
     let entry = S::method(method).expect("a method");
     entry
         .ready(scene, &settings, &Quiet)

@@ -2,8 +2,9 @@
 
 use crate::drawing::Drawing;
 use crate::figure::chart;
-use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::measure::{ExperimentError, Report, Setup};
 use crate::method::Settings;
+use crate::papers;
 use crate::scene::{AnyScene, LoadOptions, Part, Progress, load};
 
 /// Frames in each scene: few enough to wait for.
@@ -31,7 +32,7 @@ pub struct Measured {
 
 /// Names and titles of all tables, for lists.
 pub fn tables() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    EXPERIMENTS.iter().map(|e| (e.name, e.title, e.summary))
+    papers::tables().map(|t| (t.name, t.title, t.summary))
 }
 
 /// Runs on the worker.
@@ -41,7 +42,7 @@ pub(super) fn measure(
     settings: Settings,
     progress: &dyn Progress,
 ) -> Result<Measured, String> {
-    let experiment = Experiment::named(name).ok_or_else(|| format!("there is no table `{name}`"))?;
+    let experiment = papers::table(name).ok_or_else(|| format!("there is no table `{name}`"))?;
     let mut start = 0.0;
     let mut scenes: Vec<AnyScene> = scene.into_iter().collect();
     if scenes.is_empty() {
@@ -54,7 +55,7 @@ pub(super) fn measure(
     }
     let setup = Setup { frames: FRAMES, settings, ..Setup::default() };
     let rest = Part { whole: progress, start, length: 1.0 - start };
-    let report = experiment.run(&scenes, &setup, &rest).map_err(|e: PaperError| e.to_string())?;
+    let report = experiment.run(&scenes, &setup, &rest).map_err(|e: ExperimentError| e.to_string())?;
     let chart = chart(report.title, &report.plots, &report.caption());
     Ok(Measured { report, chart })
 }

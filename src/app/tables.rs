@@ -8,8 +8,8 @@ use super::session::write_file;
 use super::shown::Theme;
 use super::state::State;
 use super::worker::Job;
-use crate::measure::paper::Experiment;
 use crate::method::Settings;
+use crate::papers;
 use crate::render;
 
 impl State {
@@ -18,7 +18,7 @@ impl State {
             Tables::Measure(name) => {
                 let scene = self.stage.as_ref().map(|stage| stage.scene());
                 // The parameters that are set are taken over if they are those of its method.
-                let is_its = Experiment::named(name).is_some_and(|e| e.method == self.method);
+                let is_its = papers::table(name).is_some_and(|e| e.method == self.method);
                 let settings = if is_its { self.settings.clone() } else { Settings::default() };
                 self.worker.ask("Measuring", Job::Measure { name, scene, settings });
             }

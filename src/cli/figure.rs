@@ -1,4 +1,4 @@
-//! `cullscope figure`: the built-in figures as files.
+//! `cullscope figure`: the papers' figures as files.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -8,13 +8,13 @@ use std::path::PathBuf;
 use super::error::reason;
 use super::progress::Bar;
 use super::{CliError, output, suggest};
-use crate::figure::{BUILTIN, Builtin};
+use crate::papers::{self, Figure};
 use crate::render::{self, Format, Theme};
 use crate::scene::Progress;
 
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  cullscope figure frustum-steps --format svg,pdf --theme print --out figures\n  \
+    after_help = "Example:\n  cullscope figure coorg-teller-figure-4 --format svg,pdf --out figures\n  \
                   cullscope figure --list\n  cullscope figure --all"
 )]
 pub(super) struct Args {
@@ -48,9 +48,9 @@ enum Colors {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.list {
         let mut text = String::new();
-        for figure in BUILTIN {
+        for figure in papers::figures() {
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{:<20} {}", figure.name, figure.summary);
+            let _ = writeln!(text, "{:<28} {}", figure.name, figure.summary);
         }
         return output::print(text.as_bytes());
     }
@@ -81,20 +81,28 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     Ok(())
 }
 
-fn chosen(args: &Args) -> Result<Vec<&'static Builtin>, CliError> {
-    let known: Vec<&str> = BUILTIN.iter().map(|f| f.name).collect();
+fn chosen(args: &Args) -> Result<Vec<&'static Figure>, CliError> {
+    let known: Vec<&str> = papers::figures().map(|f| f.name).collect();
     if args.all {
-        return Ok(BUILTIN.iter().collect());
+        return Ok(papers::figures().collect());
     }
     if args.names.is_empty() {
         return Err(CliError::words("figure", "no figure is named")
             .with_help(format!("give a NAME or --all; figures: {}", known.join(", "))));
     }
     let find = |name: &String| {
-        BUILTIN.iter().find(|f| f.name == name).ok_or_else(|| {
-            CliError::words(name.as_str(), "there is no such figure")
-                .with_help(suggest::help(name, &known, "figures"))
-        })
+        let missing = || {
+            let help = match papers::table(name) {
+                Some(table) => format!("it is a table: `cullscope paper {}` measures it", table.name),
+                None => suggest::help(name, &known, "figures"),
+            };
+            CliError::words(name.as_str(), "there is no such figure").with_help(help)
+        };
+        let figure = papers::figure(name).ok_or_else(missing)?;
+        if figure.name != name {
+            output::say(&format!("note: figure `{name}` is called `{}` now", figure.name));
+        }
+        Ok(figure)
     };
     args.names.iter().map(find).collect()
 }

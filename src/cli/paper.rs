@@ -10,7 +10,8 @@ use super::methods::{json_text, settings};
 use super::progress::Bar;
 use super::{CliError, output, scene, suggest};
 use crate::figure::chart;
-use crate::measure::paper::{EXPERIMENTS, Experiment, PaperError, Report, Setup};
+use crate::measure::{Experiment, ExperimentError, Report, Setup};
+use crate::papers::{self, PAPERS, Paper};
 use crate::raster::Target;
 use crate::render::{self, RenderError, Theme};
 use crate::scene::{AnyScene, LoadOptions, Part};
@@ -18,12 +19,12 @@ use crate::scene::{AnyScene, LoadOptions, Part};
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  cullscope paper coorg-teller-table-1\n  cullscope paper coorg-teller-table-3 \
-                  --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n\nA \
-                  file for each format but text, which is printed. Times are wall clock on one thread; \
+                  --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n  \
+                  cullscope paper coorg-teller\n\nA file for each format but text, which is printed. Times are wall clock on one thread; \
                   measure with a release build."
 )]
 pub(super) struct Args {
-    /// Which tables; --list names them
+    /// Which tables; --list names them. The key of a paper lists its figures and tables instead
     #[arg(value_name = "NAME", conflicts_with_all = ["all", "list"])]
     names: Vec<String>,
     /// All of them
@@ -88,11 +89,16 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.list {
         let mut text = String::new();
-        for experiment in EXPERIMENTS {
+        for experiment in papers::tables() {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{:<28} {}", experiment.name, experiment.summary);
         }
         return output::print(text.as_bytes());
+    }
+    if let [key] = &args.names[..]
+        && let Some(paper) = PAPERS.iter().find(|paper| paper.key == key)
+    {
+        return output::print(contents(paper).as_bytes());
     }
     let experiments = chosen(args)?;
     let setup = Setup {
@@ -131,10 +137,34 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     Ok(())
 }
 
-fn explained(error: PaperError) -> CliError {
+/// A paper: what it is, its figures, its tables.
+fn contents(paper: &Paper) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    for source in paper.sources() {
+        let _ = writeln!(text, "{}", source.title);
+        if !source.doi.is_empty() {
+            let _ = writeln!(text, "https://doi.org/{}", source.doi);
+        }
+    }
+    let _ = writeln!(text, "methods: {}", paper.methods.join(", "));
+    let figures = paper.figures.iter().map(|f| (f.name, f.summary)).collect();
+    let tables = paper.tables.iter().map(|t| (t.name, t.summary)).collect();
+    let lists: [(&str, Vec<(&str, &str)>); 2] = [("figures", figures), ("tables", tables)];
+    for (what, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+        let _ = writeln!(text, "\n{what}:");
+        for (name, summary) in list {
+            let _ = writeln!(text, "  {name:<32} {summary}");
+        }
+    }
+    text
+}
+
+fn explained(error: ExperimentError) -> CliError {
     match error {
-        PaperError::Setting(error) => error.into(),
-        PaperError::Cancelled => CliError::Interrupted,
+        ExperimentError::Setting(error) => error.into(),
+        ExperimentError::Cancelled => CliError::Interrupted,
+        error @ ExperimentError::UnknownMethod(_) => CliError::work("paper", error.to_string()),
     }
 }
 
@@ -171,20 +201,27 @@ fn write(report: &Report, format: Format, folder: &Path, recipe: &str) -> Result
 }
 
 fn chosen(args: &Args) -> Result<Vec<&'static Experiment>, CliError> {
-    let known: Vec<&str> = EXPERIMENTS.iter().map(|e| e.name).collect();
+    let known: Vec<&str> = papers::tables().map(|t| t.name).collect();
     if args.all {
-        return Ok(EXPERIMENTS.iter().collect());
+        return Ok(papers::tables().collect());
     }
     if args.names.is_empty() {
-        return Err(CliError::words("paper", "no table is named")
-            .with_help(format!("give a NAME or --all; tables: {}", known.join(", "))));
+        let keys: Vec<&str> = PAPERS.iter().map(|paper| paper.key).collect();
+        return Err(CliError::words("paper", "no table is named").with_help(format!(
+            "give a NAME or --all; tables: {}; papers: {}",
+            known.join(", "),
+            keys.join(", ")
+        )));
     }
     let find = |name: &String| {
         let missing = || {
-            CliError::words(name.as_str(), "there is no such table")
-                .with_help(suggest::help(name, &known, "tables"))
+            let help = match papers::figure(name) {
+                Some(figure) => format!("it is a figure: `cullscope figure {}` makes it", figure.name),
+                None => suggest::help(name, &known, "tables"),
+            };
+            CliError::words(name.as_str(), "there is no such table").with_help(help)
         };
-        Experiment::named(name).ok_or_else(missing)
+        papers::table(name).ok_or_else(missing)
     };
     args.names.iter().map(find).collect()
 }

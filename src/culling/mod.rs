@@ -4,11 +4,11 @@
 //! nothing and sees no state, so the function that runs at full speed is the one that is stepped.
 //! To add a method: make a folder, implement [`Method`], add a `mod` line and a line in each list below.
 
-mod baseline;
-mod depth;
-mod hierarchical_z;
-mod large_occluders;
-mod layered_projection;
+pub(crate) mod baseline;
+pub(crate) mod depth;
+pub(crate) mod hierarchical_z;
+pub(crate) mod large_occluders;
+pub(crate) mod layered_projection;
 
 pub use hierarchical_z::anatomy as obscuration;
 pub use large_occluders::anatomy;

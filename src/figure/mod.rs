@@ -4,19 +4,15 @@
 //! [`Sheet`] and [`project`] put it on paper. [`pick()`] finds what lies under the pointer.
 
 pub mod axis;
-mod builtin;
 mod chart;
 mod clip;
-mod coorg_teller;
-mod georges;
-mod klosowski_silva;
 mod look;
 pub mod page;
 mod panels;
 mod pick;
 mod place;
+pub mod tools;
 
-pub use builtin::{BUILTIN, Builtin, Tint};
 pub use chart::chart;
 pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};

@@ -321,6 +321,18 @@ fn swatch(entry: &Entry, min: Vec2, max: Vec2, to: &mut Drawing) {
     to.push(Layer::Legend, entry.role, Subject::None, mark);
 }
 
+/// Drawings below each other.
+pub fn below(parts: Vec<Drawing>) -> Drawing {
+    let mut all = Drawing::default();
+    for part in parts {
+        let by = vec2(0.0, all.size_pt.y);
+        let moved = part.items.into_iter().map(|item| Item { mark: item.mark.mapped(|p| p + by), ..item });
+        all.items.extend(moved);
+        all.size_pt = vec2(all.size_pt.x.max(part.size_pt.x), by.y + part.size_pt.y);
+    }
+    all
+}
+
 /// The words of a role in a legend; nothing for what needs no explanation.
 pub fn label(role: Role) -> Option<&'static str> {
     Some(match role {

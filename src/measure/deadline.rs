@@ -2,9 +2,10 @@
 //! Section 3, <https://doi.org/10.1109/2945.856993>: "time-critical").
 //!
 //! The method reports what it drew every few hundred primitives; that is rasterized at once, and the frame
-//! ends when another piece as slow as the slowest so far would miss the deadline. What is drawn then depends on the machine, so a film is recorded with the number of primitives that the timed
-//! frame drew: it shows that frame, on any machine. [`Paced`] gives a run whose budget is a time this
-//! behavior; [`frame_within`] is one such frame.
+//! ends when another piece as slow as the slowest so far would miss the deadline. What is drawn then depends
+//! on the machine, so a film is recorded with the number of primitives that the timed frame drew: it shows
+//! that frame, on any machine. [`Paced`] gives a run whose budget is a time this behavior; [`frame_within`]
+//! is one such frame.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -182,7 +183,7 @@ mod tests {
         pairs: &[(&str, &str)],
         scene: &Arc<Scene<S>>,
     ) -> Box<dyn Run<S>> {
-        let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+        let settings = Settings::of(pairs);
         S::method(method)
             .expect("listed")
             .ready(scene, &settings, &Quiet)

@@ -79,7 +79,7 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// The value below which a share of an ascending list lies, interpolated; 0 for an empty one.
-pub(super) fn quantile(ascending: &[f64], share: f64) -> f64 {
+pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     let Some(last) = ascending.len().checked_sub(1) else { return 0.0 };
     let at = share * last as f64;
     let (low, high) = (ascending[at.floor() as usize], ascending[at.ceil() as usize]);

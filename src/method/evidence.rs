@@ -76,7 +76,8 @@ impl<S: Space> Tested<S> {
             _ => "The box".into(),
         }
     }
-    fn result(&self) -> &'static str {
+    /// Whether it is `outside`, `inside` or `partial`.
+    pub fn result(&self) -> &'static str {
         match self.found {
             Found::Outside(_) => "outside",
             Found::Inside => "inside",

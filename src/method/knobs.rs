@@ -120,6 +120,10 @@ impl FromStr for Budget {
 pub struct Settings(pub BTreeMap<String, String>);
 
 impl Settings {
+    /// Settings from pairs of a key and its value.
+    pub fn of(pairs: &[(&str, &str)]) -> Self {
+        Self(pairs.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect())
+    }
     /// Adds `key=value`.
     ///
     /// # Errors

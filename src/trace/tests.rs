@@ -16,7 +16,7 @@ fn film<S: Methods>(method: &str, seed: u64, n: u32, settings: &[(&str, &str)]) 
     view.eye.position = scene.bounds().center();
     view.eye.target = view.eye.position + ahead;
     view.eye.near = 0.1;
-    let settings = Settings(settings.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let settings = Settings::of(settings);
     let entry = S::method(method).expect("a method");
     let mut run = entry.ready(&scene, &settings, &Quiet).expect("good settings").expect("not cancelled");
     run.record(&view, usize::MAX).film

@@ -115,9 +115,7 @@ impl Truth {
         image: &Target,
     ) -> Judgement {
         let visible = self.look(scene, view);
-        let mut kept = vec![false; scene.prim_count()];
-        drawn.iter().for_each(|p| kept[p.at()] = true);
-        let missed = visible.iter().copied().filter(|p| !kept[p.at()]).collect();
+        let missed = missing(&visible, drawn, scene.prim_count());
         let wrong_items = self.all.wrong_pixels(image);
         let (mut wrong_pixels, mut flip) = (0, 0.0);
         if wrong_items > 0 {
@@ -129,6 +127,13 @@ impl Truth {
         let pixels = view.width as usize * view.height as usize;
         Judgement { visible, missed, drawn: drawn.len(), pixels, wrong_pixels, wrong_items, flip_mean: flip }
     }
+}
+
+/// Those of the visible primitives of a scene of `prim_count` that were not drawn, in the order of `visible`.
+pub fn missing(visible: &[PrimId], drawn: &[PrimId], prim_count: usize) -> Vec<PrimId> {
+    let mut kept = vec![false; prim_count];
+    drawn.iter().for_each(|p| kept[p.at()] = true);
+    visible.iter().copied().filter(|p| !kept[p.at()]).collect()
 }
 
 fn turns_away<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> bool {

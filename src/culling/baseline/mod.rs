@@ -9,5 +9,6 @@ mod tests;
 mod z_buffer;
 
 pub use centroid::Centroid;
+pub use explain::Evidence;
 pub use frustum::Frustum;
 pub use z_buffer::ZBuffer;

@@ -7,7 +7,7 @@ use crate::scene::{Quiet, Scene, framing_view, samples};
 use std::sync::Arc;
 
 fn settings(pairs: &[(&str, &str)]) -> Settings {
-    Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
+    Settings::of(pairs)
 }
 
 /// An eye inside the scene that turns with `k`.

@@ -23,7 +23,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use self::explain::{Answered, Asked, Check, Evidence, Rasterized};
+pub use self::explain::Evidence;
+use self::explain::{Answered, Asked, Check, Rasterized};
 use self::simulation::{ALLOCATIONS, DISTRIBUTIONS, Lists, Machine, Simulation};
 use crate::culling::depth::{
     Answer, Buffer, FaceImage, Faces, Held, Listener, Nobody, Query, footprint, project_sphere,

@@ -30,7 +30,7 @@ pub enum Evidence<S: Shape> {
 #[derive(Clone, Copy, Debug)]
 pub struct Chosen {
     pub occluder: u32,
-    name: PrimId,
+    pub name: PrimId,
     rank: u32,
     area_angle: f32,
     leaf: u32,
@@ -56,15 +56,15 @@ impl Chosen {
 /// A box was classified against an occluder.
 #[derive(Clone, Copy, Debug)]
 pub struct Related {
-    owner: Owner,
+    pub owner: Owner,
     occluder: u32,
-    name: PrimId,
+    pub name: PrimId,
     side: i8,
-    occlusion: Occlusion,
+    pub occlusion: Occlusion,
     inside: u64,
     edges: u8,
     /// The planes were kept from an earlier frame.
-    reused: bool,
+    pub reused: bool,
     /// Distances of the box's nearest and farthest corner behind the occluder, and of the eye before it.
     behind: [f64; 2],
     height: f64,

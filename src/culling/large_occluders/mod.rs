@@ -29,9 +29,11 @@ mod tests;
 use std::ops::Range;
 use std::sync::Arc;
 
-use self::explain::{Chosen, Evidence, Joined, Related};
+pub use self::explain::Evidence;
+use self::explain::{Chosen, Joined, Related};
 use self::joint::{Candidate, jointly};
-use self::memory::{Memory, Owner};
+use self::memory::Memory;
+pub use self::memory::Owner;
 use self::occluders::Occluders;
 use self::relation::{Margin, Occlusion, Relation};
 use self::selection::{Selection, largest_from, leaf_at};

@@ -323,7 +323,7 @@ fn only_convex_connected_outlines_hide_jointly() {
 }
 
 fn run<S: Methods>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
-    let settings = Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    let settings = Settings::of(pairs);
     S::method("large-occluders")
         .expect("listed")
         .ready(scene, &settings, &Quiet)
@@ -383,7 +383,7 @@ fn planes_kept_from_frame_to_frame_change_nothing() {
 fn a_saved_selection_is_the_one_that_was_made_and_fits_nothing_else() {
     let scene = solid("generate:building?polygons=1500");
     let entry = Solid::method("large-occluders").expect("listed");
-    let settings = |k: &str| Settings([("occluders".to_owned(), k.to_owned())].into());
+    let settings = |k: &str| Settings::of(&[("occluders", k)]);
     let mut made = run(&scene, &[("occluders", "16")]);
     let saved = made.hierarchy().save().expect("there is something to save");
     let mut restored =

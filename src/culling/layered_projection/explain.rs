@@ -94,7 +94,7 @@ impl Origin {
 
 impl<V> Transferred<V> {
     /// ρ(B) before the penalty.
-    fn sum(&self) -> f32 {
+    pub fn sum(&self) -> f32 {
         self.share + self.along * self.of_a
     }
 }

@@ -31,9 +31,10 @@ mod walk;
 
 use std::sync::Arc;
 
-use self::explain::Evidence;
-use self::front::Front;
+pub use self::explain::{Evidence, Transferred};
+pub use self::front::Front;
 use self::index::Index;
+pub use self::index::node_of;
 use self::walk::Walk;
 use crate::culling::depth::Faces;
 use crate::drawing::Drawing;

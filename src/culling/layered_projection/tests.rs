@@ -22,7 +22,7 @@ impl<S: Methods + Drawable + Cellular> World for S {}
 const KINDS: [&str; 3] = ["octree", "delaunay", "kd-tree"];
 
 fn settings(pairs: &[(&str, &str)]) -> Settings {
-    Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
+    Settings::of(pairs)
 }
 fn run<S: World>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
     S::method("layered-projection")

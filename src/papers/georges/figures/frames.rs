@@ -1,0 +1,146 @@
+//! Whole frames: the cubes of a quadtree by state, and the schedule of the simulated machine.
+
+use std::sync::Arc;
+
+use glam::vec2;
+
+use super::pyramid::office;
+use crate::culling::Methods;
+use crate::drawing::{Anchor, Drawing, Layer, Role};
+use crate::figure::page::{below, legend};
+use crate::figure::tools::{Tint, WIDTH_PT, eye, flat_panel, page, ready};
+use crate::figure::{Look, Paper, panels};
+use crate::geometry::{Flat, Solid, View};
+use crate::method::{Film, Verdict};
+use crate::papers::keys::HIERARCHICAL_Z;
+use crate::raster::DepthScale;
+use crate::scene::{Scene, SceneError, example};
+use crate::trace::Stamps;
+
+/// The picture of the method that shows the machine, by number.
+const TIMELINE: usize = 3;
+/// Processors of the machine.
+const PROCESSORS: &str = "4";
+
+/// A frame of the game level, after some frames of the same view.
+fn level(scene: &Arc<Scene<Flat>>, coherence: &str, frames: usize) -> Arc<dyn Film<Flat>> {
+    let view = View { width: 512, ..eye(scene, 0) };
+    after(scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
+}
+
+pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = example("freedoom_e1m1")?;
+    let panel = |coherence: &str, frames: usize| {
+        let film = level(&scene, coherence, frames);
+        let end = film.events().len();
+        let counts = Stamps::new(&*film).counts(end);
+        let label = format!(
+            "{} drawn, {} hidden, {} outside",
+            counts.of(Verdict::Visible),
+            counts.of(Verdict::Hidden),
+            counts.of(Verdict::Outside)
+        );
+        flat_panel(&*film, end, &Look { evidence: false, ..Look::default() }, label)
+    };
+    let content = panels(WIDTH_PT, 2, &[panel("false", 0), panel("true", 1)]);
+    let caption = "A game level from above after a whole frame. Left without coherence: cubes are visited \
+                   front to back and asked one by one. Right the second frame with coherence: the cubes that \
+                   were visible are drawn first, without being asked, and the rest is asked against an image \
+                   that is almost complete; some segments are drawn that the cubes before them would have \
+                   hidden.";
+    Ok(page(Paper::TwoColumns, "A quadtree's cubes by state", legend(&content), caption, &content))
+}
+
+/// The film of a frame after some frames of the same view.
+fn after<S: Methods>(
+    scene: &Arc<Scene<S>>,
+    view: &View<S>,
+    pairs: &[(&str, &str)],
+    frames: usize,
+) -> Arc<dyn Film<S>> {
+    let mut run = ready(scene, HIERARCHICAL_Z, pairs);
+    (0..frames).for_each(|_| _ = run.cull(view));
+    run.record(view, usize::MAX).film
+}
+
+/// What the units of the simulated machine do in a second frame.
+fn timeline(scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
+    let view = View { width: 512, height: 384, ..scene.paths()[0].views[0] };
+    let pairs = [
+        ("processors", PROCESSORS),
+        ("renderers", "4"),
+        ("distribution", distribution),
+        ("leaf-primitives", "64"),
+    ];
+    let film = after(scene, &view, &pairs, 1);
+    film.picture(film.events().len(), TIMELINE, DepthScale::default())
+}
+
+pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
+    let scene = office()?;
+    let mut parts = Vec::new();
+    for distribution in ["structure", "primitive", "hybrid"] {
+        let mut picture = timeline(&scene, distribution);
+        picture.text(
+            Layer::Labels,
+            Role::Ink,
+            vec2(0.0, 9.0),
+            8.5,
+            Anchor::Start,
+            format!("distribute by {distribution}"),
+        );
+        if distribution != "hybrid" {
+            picture.items.retain(|i| i.layer != Layer::Legend);
+            picture.size_pt.y -= 24.0;
+        }
+        parts.push(picture);
+    }
+    let caption = "A second frame of an office on a simulated machine of four processors and four renderers. \
+                   By structure, whole parts of the scene go to one processor, and some sit idle; by \
+                   primitive, every processor asks for every structure; hybrid, structures are dealt finely, \
+                   so that near ones go to different processors. At the right the share of the frame in \
+                   which a unit works.";
+    Ok(page(
+        Paper::TwoColumns,
+        "Georges 1995, Section 4.1: three ways to distribute structures",
+        vec![],
+        caption,
+        &below(parts),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Mark;
+
+    #[test]
+    fn coherence_draws_what_cubes_before_would_have_hidden() {
+        let scene = example("freedoom_e1m1").expect("a scene");
+        let drawn = |coherence, frames| {
+            let film = level(&scene, coherence, frames);
+            let counts = Stamps::new(&*film).counts(film.events().len());
+            let all = [Verdict::Visible, Verdict::Hidden, Verdict::Outside].map(|v| counts.of(v));
+            assert_eq!(all.iter().sum::<usize>(), scene.live().len(), "every segment is decided");
+            all[0]
+        };
+        assert!(drawn("true", 1) > drawn("false", 0));
+    }
+
+    #[test]
+    fn dealt_by_structure_a_processor_is_idle_that_is_not_in_the_hybrid() {
+        let scene = office().expect("a scene");
+        let idlest = |distribution| {
+            let picture = timeline(&scene, distribution);
+            let shares = picture.items.iter().filter_map(|item| match &item.mark {
+                Mark::Text { text, .. } => text.strip_suffix(" %")?.parse::<u32>().ok(),
+                _ => None,
+            });
+            // The renderers follow the processors.
+            let processors: Vec<u32> = shares.take(PROCESSORS.parse().expect("a number")).collect();
+            assert_eq!(processors.len().to_string(), PROCESSORS);
+            processors.into_iter().min().expect("processors")
+        };
+        assert!(idlest("structure") < 10 && idlest("hybrid") > 40);
+    }
+}

@@ -1,0 +1,145 @@
+//! Klosowski and Silva, Section 5: how much of the visible set a budget finds, how many pixels are wrong, how
+//! long a frame and the preprocess take; and what the paper claims without numbers: that the visible set is
+//! stable.
+//!
+//! Exactness is measured at every frame: the visible set is that of the item buffer (Section 4.4). Cost:
+//! O(frames · ways) images of the scene.
+
+mod comparison;
+mod deadline;
+mod extensions;
+mod frames;
+mod overhead;
+mod preprocess;
+mod stability;
+mod table_1;
+mod ways;
+
+use crate::measure::Experiment;
+use crate::measure::harness::FRAME_TIMES;
+use crate::papers::keys::LAYERED_PROJECTION;
+
+/// What the paper's large models are likened to.
+const LARGE: &[&str] = &["generate:city?polygons=500000", "generate:cars"];
+/// How what is found was measured.
+const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each \
+                       frame the share of it that was drawn, then the mean over the frames. A pixel is wrong \
+                       if its color differs from the exact image's.";
+
+/// The tables.
+pub const TABLES: &[Experiment] = &[
+    Experiment {
+        name: "klosowski-silva-table-1",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Table 1: visible coverage ratio",
+        summary: "Share of the visible triangles that a budget finds, by cells and by centroid, and the \
+                  worst frame's wrong pixels",
+        notes: &[
+            COVERED,
+            "The paper's most wrong pixels are stated without a budget; they are shown at the largest.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &table_1::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-frames",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Figures 10 and 11: what budgets find, frame by frame",
+        summary: "Visible triangles found and time of a frame at budgets of 1, 2, 5 and 10 percent, frame by \
+                  frame",
+        notes: &[
+            COVERED,
+            FRAME_TIMES,
+            "The paper's frames are 4 times faster at 5 percent (City) and 10 times at 1 percent (5 Car \
+             Body/Engine) than with everything drawn.",
+        ],
+        varies: &["budget"],
+        sweep: &frames::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-comparison",
+        method: LAYERED_PROJECTION,
+        scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
+        title: "Klosowski and Silva 2000, Figures 12 and 15: cells and centroid compared",
+        summary: "Visible triangles found, wrong pixels and time of a frame by Delaunay, octree, kD-tree and \
+                  centroid, frame by frame",
+        notes: &[
+            COVERED,
+            FRAME_TIMES,
+            "The paper's centroid order has 7 to 40 percent of the pixels wrong; its Delaunay cells find \
+             over 90 percent.",
+        ],
+        varies: &["tessellation"],
+        sweep: &comparison::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-stability",
+        method: LAYERED_PROJECTION,
+        scenes: &["generate:city?polygons=500000", "generate:seminar-room"],
+        title: "Klosowski and Silva 2000, Section 7: is the visible set stable?",
+        summary: "What pops between views a step apart: triangles and pixels that change though the exact \
+                  image does not",
+        notes: &[
+            "Between two views a walker's step apart (4.7 cm), means over the pairs. A triangle pops that is \
+             visible in both views and drawn in one of them; a pixel pops that shows the same triangle in \
+             both exact images and is right in one view and wrong in the other. A set changes by its share \
+             of those that are in either view's set and not in both. The paper says that nothing major pops, \
+             without figures.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &stability::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-preprocess",
+        method: LAYERED_PROJECTION,
+        scenes: &["generate:city?polygons=500000", "generate:cars", "generate:city?polygons=1000000"],
+        title: "Klosowski and Silva 2000, Section 5.1: preprocess",
+        summary: "Time of the preprocess by stage, cells, references a triangle, and memory",
+        notes: &[
+            "Medians of three builds in turn, one thread. A reference takes 4 bytes; cells are all the rest \
+             of the index, neighbors and normals included; the scene is all that we keep of it. Overhead: \
+             cells and references against the scene; in the paper, against its triangles.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &preprocess::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-overhead",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Section 5.2.3: overhead over view-frustum culling",
+        summary: "Time of the traversal beside view-frustum culling, by cells and budget, alone and as a \
+                  share of a frame",
+        notes: &[
+            FRAME_TIMES,
+            "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all \
+             that was kept is drawn. At 100 percent all that is in view is drawn, triangle by triangle.",
+        ],
+        varies: &["tessellation", "budget"],
+        sweep: &overhead::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-extensions",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Section 6: extensions",
+        summary: "What each extension finds and costs: other solidities, several seeds, a wanted quality, \
+                  queries for the rest",
+        notes: &[COVERED, "With a quality or queries the budget is where they begin."],
+        varies: &["budget", "transfer", "update", "occupancy", "seeds", "quality", "queries"],
+        sweep: &extensions::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-deadline",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Section 3: time-critical frames",
+        summary: "How long frames take that end at a deadline, on an idle and on a loaded machine, and how \
+                  far they overshoot",
+        notes: &["Loaded: two more busy threads for each core. A frame is culled and drawn on one thread."],
+        varies: &["budget"],
+        sweep: &deadline::SWEEP,
+    },
+];

@@ -1,0 +1,392 @@
+//! The papers: names, words, and the tables on small scenes against numbers made by hand.
+
+use super::*;
+use crate::culling::Methods;
+use crate::drawing::{Mark, metrics};
+use crate::geometry::{Flat, Solid, ViewPath};
+use crate::measure::{Cell, ExperimentError, Report, Setup, harness};
+use crate::method::Settings;
+use crate::scene::{AnyScene, LoadOptions, Progress, Quiet, example, load};
+use std::collections::BTreeSet;
+
+fn small(source: &str) -> AnyScene {
+    load(source, &LoadOptions::default(), &Quiet).expect("a generated scene")
+}
+
+fn setup(frames: usize) -> Setup {
+    Setup { frames, check_every: 2, size_px: Some([128, 96]), ..Setup::default() }
+}
+
+fn run(name: &str, scene: &AnyScene, setup: &Setup) -> Report {
+    let report =
+        table(name).expect("a name").run(std::slice::from_ref(scene), setup, &Quiet).expect("a report");
+    for row in 0..report.table.rows.len() {
+        assert_eq!(report.table.rows[row].len(), report.table.columns.len());
+        if let Some(missed) = report.table.number(row, "missed_triangles") {
+            assert_eq!(missed, 0.0, "{name}: row {row}");
+            assert!(report.table.number(row, "checked_views").expect("a number") >= 1.0);
+        }
+    }
+    assert!(report.plots.iter().all(|p| p.series.iter().any(|s| !s.points.is_empty())), "{name}");
+    report
+}
+
+#[test]
+fn table_1_is_what_the_draw_lists_say() {
+    let scene = small("generate:building?polygons=6000");
+    let AnyScene::Solid(solid) = &scene else { panic!("a building is in space") };
+    let report = run("coorg-teller-table-1", &scene, &setup(12));
+    let path: &ViewPath<Solid> = solid.paths().iter().find(|p| p.name == "figure 8").expect("its path");
+    let n = path.views.len();
+    let at = |k: usize| path.views[k % n].eye.position;
+    let length: f32 = (0..n).map(|k| at(k).distance(at(k + 1))).sum();
+    let mut views = path.walked(length / 12.0, 12).views;
+    views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
+    let mut percent = Vec::new();
+    for key in ["frustum", "large-occluders"] {
+        let entry = Solid::method(key).expect("a method");
+        let mut run = entry.ready(solid, &Settings::default(), &Quiet).expect("fine").expect("not cancelled");
+        let shares = views.iter().map(|v| run.cull(v).prims.len() as f64 / solid.live().len() as f64);
+        percent.push(100.0 * shares.sum::<f64>() / 12.0);
+    }
+    let ours = ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
+    assert!(
+        (ours[0] - percent[0]).abs() < 1e-9 && (ours[1] - percent[1]).abs() < 1e-9,
+        "{ours:?} for {percent:?}"
+    );
+    assert!(ours[0] > ours[1] && ours[1] > 0.0 && ours[0] < 100.0, "{ours:?}");
+    let ratio = report.table.number(0, "reduction_ratio").expect("a number");
+    assert!((ratio - percent[0] / percent[1]).abs() < 1e-9);
+    // The paper's rows, as printed there.
+    let paper = [1, 2].map(|r| {
+        ["polygons", "frustum_percent", "occlusion_percent"]
+            .map(|k| report.table.number(r, k).expect("a number"))
+    });
+    assert_eq!(paper, [[134_832.0, 19.7, 2.6], [108_841.0, 36.9, 5.6]]);
+}
+
+/// Measures a table on a small city, and checks its form and its number of rows.
+fn city(name: &str, rows: usize) -> Report {
+    let scene = small("generate:city?polygons=4000");
+    let report = run(name, &scene, &Setup { check_every: 5, ..setup(10) });
+    assert_eq!(report.table.rows.len(), rows, "{name}");
+    assert!(report.text().contains(report.title) && report.caption().contains("backface-culling false"));
+    assert_eq!(report.json()["rows"].as_array().map(Vec::len), Some(rows));
+    report
+}
+
+impl Report {
+    /// The number in a row under a column, which is there.
+    fn at(&self, row: usize, key: &str) -> f64 {
+        let number = self.table.number(row, key);
+        number.unwrap_or_else(|| panic!("{}: row {row} has no {key}", self.name))
+    }
+    /// The numbers under some columns.
+    fn row<const N: usize>(&self, row: usize, keys: [&str; N]) -> [f64; N] {
+        keys.map(|key| self.at(row, key))
+    }
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * a.abs().max(b.abs()).max(1.0)
+}
+
+#[test]
+fn coorg_teller_table_2_adds_up_and_quotes_the_paper() {
+    let report = city("coorg-teller-table-2", 5);
+    let [cull, draw, total] = report.row(0, ["frustum_cull_ms", "frustum_draw_ms", "frustum_total_ms"]);
+    assert!(near(cull + draw, total) && total > 0.0);
+    assert!(near(report.at(0, "speedup_ratio"), total / report.at(0, "occlusion_total_ms")));
+    assert_eq!(report.at(1, "speedup_ratio"), 95.0 / 37.0);
+}
+
+#[test]
+fn coorg_teller_table_3_is_relative_to_walking() {
+    let report = city("coorg-teller-table-3", 7);
+    assert_eq!(report.at(2, "cull_ratio"), 1.0);
+    assert!(near(report.at(6, "cull_ratio"), report.at(6, "cull_ms") / report.at(2, "cull_ms")));
+    assert_eq!(report.at(6, "paper_soda_ms"), 56.0);
+}
+
+#[test]
+fn coorg_teller_nodes_are_fewer_at_each_step() {
+    let report = city("coorg-teller-nodes", 2);
+    let keys = ["tested_nodes", "entered_nodes", "in_frustum_nodes", "tree_nodes"];
+    let [tested, entered, in_frustum, all] = report.row(0, keys);
+    assert!(1.0 <= tested && tested <= entered && tested <= in_frustum && in_frustum <= all);
+    assert!(near(report.at(0, "tested_percent"), 100.0 * tested / in_frustum));
+    assert_eq!(report.row(1, ["tested_low_percent", "tested_high_percent"]), [30.0, 40.0]);
+}
+
+#[test]
+fn coorg_teller_occluders_cull_more_when_they_are_more() {
+    let report = city("coorg-teller-occluders", 16);
+    let key = "occlusion_percent";
+    assert!(report.at(6, key) < report.at(0, key), "64 occluders cull more than one");
+    assert!(report.at(0, "active_occluders") <= 1.0);
+    assert!(report.at(7, key) <= report.at(13, key), "a lower marginal gain takes more occluders");
+}
+
+#[test]
+fn georges_box_hides_the_objects_behind_it() {
+    let scene = small("generate:box-and-objects?polygons=6000");
+    let report = run("georges-box", &scene, &Setup { check_every: 5, ..setup(10) });
+    let keys = ["culled_drawn", "all_drawn", "gain_ratio", "culled_fps", "frustum_fps"];
+    let [sight, behind] = [0, 1].map(|row| report.row(row, keys));
+    assert!(behind[0] * 10.0 < sight[0], "{behind:?} behind the box, {sight:?} in sight");
+    assert!(sight[0] <= sight[1] && sight[1] == behind[1]);
+    assert!(near(sight[2], sight[3] / sight[4]));
+    assert_eq!([2, 3].map(|row| report.at(row, "culled_fps")), [2.5, 60.0]);
+}
+
+#[test]
+fn georges_flight_draws_less_than_is_in_the_frustum() {
+    let report = city("georges-flight", 3);
+    let [frustum, culled] = report.row(0, ["frustum_drawn", "culled_drawn"]);
+    assert!(culled < 0.8 * frustum && culled > 0.0, "{culled} of {frustum}");
+    let [frustum, culled, gain] = report.row(0, ["frustum_ms", "culled_ms", "gain_percent"]);
+    assert!(near(gain, 100.0 * (frustum / culled - 1.0)));
+}
+
+#[test]
+fn georges_aliasing_ends_where_the_image_is_fine() {
+    let report = city("georges-aliasing", 6);
+    let lost = [0, 1, 5].map(|row| report.at(row, "lost_triangles"));
+    assert!(lost[0] > lost[1] && lost[1] >= lost[2], "{lost:?}");
+    assert!(report.at(0, "lost_area_percent") > 0.0);
+}
+
+#[test]
+fn klosowski_silva_table_1_finds_more_with_more() {
+    let report = city("klosowski-silva-table-1", 5);
+    let found = ["found_1_percent", "found_2_percent", "found_5_percent", "found_10_percent"];
+    let wrong = ["worst_1_percent", "worst_2_percent", "worst_5_percent", "worst_10_percent"];
+    for row in 0..3 {
+        let (found, wrong) = (report.row(row, found), report.row(row, wrong));
+        assert!(found.is_sorted() && found[0] > 10.0 && found[3] <= 100.0, "{found:?}");
+        assert!(wrong[3] < wrong[0], "{wrong:?}");
+    }
+    assert_eq!(report.row(3, found), [51.0, 66.0, 80.0, 90.0]);
+    assert_eq!(report.at(4, "worst_10_percent"), 12.0);
+}
+
+#[test]
+fn klosowski_silva_frames_have_their_mean_first() {
+    let report = city("klosowski-silva-frames", 11);
+    let keys = ["found_1_triangles", "found_10_triangles", "visible_triangles"];
+    let [one, ten, visible] = report.row(0, keys);
+    assert!(one < ten && ten < visible, "{one} {ten} {visible}");
+    for key in keys.into_iter().chain(["centroid_10_triangles", "budget_5_ms"]) {
+        let mean = (1..11).map(|row| report.at(row, key)).sum::<f64>() / 10.0;
+        assert!(near(mean, report.at(0, key)), "{key}");
+    }
+}
+
+#[test]
+fn klosowski_silva_comparison_sums_its_frames_up() {
+    let report = city("klosowski-silva-comparison", 54);
+    for order in 0..4 {
+        let (mean, worst) = (2 * order, 2 * order + 1);
+        let frames = 8 + 10 * order..18 + 10 * order;
+        let found = frames.clone().map(|row| report.at(row, "found_percent"));
+        assert_eq!(found.fold(f64::INFINITY, f64::min), report.at(worst, "found_percent"));
+        assert!(report.at(mean, "wrong_percent") < report.at(worst, "wrong_percent"));
+        for row in frames {
+            let [cull, draw, total] = report.row(row, ["cull_ms", "draw_ms", "total_ms"]);
+            assert!(near(cull + draw, total));
+        }
+    }
+    // The paper's means and worst frames: Delaunay, octree, centroid.
+    assert_eq!([48, 50, 52].map(|row| report.at(row, "found_percent")), [90.0, 64.0, 30.0]);
+    assert_eq!([49, 51, 53].map(|row| report.at(row, "wrong_percent")), [4.0, 9.0, 40.0]);
+}
+
+#[test]
+fn klosowski_silva_stability_knows_one_exact_set() {
+    let report = city("klosowski-silva-stability", 12);
+    let exact = report.at(0, "exact_change_percent");
+    assert!(exact > 0.0 && exact < 50.0, "{exact}");
+    for row in 0..12 {
+        assert_eq!(
+            report.at(row, "exact_change_percent"),
+            exact,
+            "the exact set knows no order and no budget"
+        );
+        let [mean, worst] = report.row(row, ["popped_pixels_percent", "worst_pixels_percent"]);
+        assert!(mean <= worst && worst <= 100.0);
+    }
+}
+
+#[test]
+fn klosowski_silva_preprocess_triangulates_for_delaunay_only() {
+    let report = city("klosowski-silva-preprocess", 5);
+    let stages = ["dividing_ms", "triangulating_ms", "assigning_ms", "total_ms"];
+    let rows = [0, 1, 2].map(|row| report.row(row, stages));
+    assert!(rows[0][1] > 0.0 && rows[1][1] == 0.0 && rows[2][1] == 0.0, "{rows:?}");
+    for (row, [dividing, triangulating, assigning, total]) in rows.into_iter().enumerate() {
+        // Medians of three builds, each by itself.
+        assert!(dividing.max(triangulating).max(assigning) <= total, "{total}");
+        assert!(report.at(row, "references_ratio") >= 1.0, "every triangle is in a cell");
+        let keys = ["cells_mb", "references_mb", "scene_mb", "overhead_percent"];
+        let [cells, references, scene, overhead] = report.row(row, keys);
+        assert!(near(overhead, 100.0 * (cells + references) / scene));
+    }
+    assert_eq!(report.at(3, "total_ms"), 70_000.0);
+}
+
+#[test]
+fn klosowski_silva_overhead_is_over_frustum_culling() {
+    let report = city("klosowski-silva-overhead", 16);
+    for row in 1..16 {
+        let [cull, draw, share, over] =
+            report.row(row, ["cull_ms", "draw_ms", "cull_share_percent", "overhead_ms"]);
+        assert!(near(share, 100.0 * cull / (cull + draw)) && near(over, cull - report.at(0, "cull_ms")));
+    }
+    let drawn = |row: usize| report.at(row, "drawn_triangles");
+    for first in [1, 6, 11] {
+        assert!((first..first + 4).all(|row| drawn(row) < drawn(row + 1)), "a budget is used");
+        assert!(drawn(first + 4) <= drawn(0), "nothing outside the view is drawn");
+    }
+}
+
+#[test]
+fn klosowski_silva_extensions_keep_what_they_promise() {
+    let report = city("klosowski-silva-extensions", 18);
+    let names: Vec<&Cell> = report.table.rows.iter().map(|row| &row[2]).collect();
+    let row = |form: &str, budget: usize| {
+        let at = names.iter().position(|name| **name == form.into()).expect("a form");
+        at + budget * 9
+    };
+    for budget in 0..2 {
+        let queries = row("queries for the rest", budget);
+        assert_eq!(report.row(queries, ["found_percent", "wrong_worst_percent"]), [100.0, 0.0]);
+        assert!(report.at(row("quality 99 %", budget), "found_percent") >= 99.0);
+        // Other solidities draw as much, in another order.
+        let drawn = ["as it is", "latest update"].map(|form| report.at(row(form, budget), "drawn_triangles"));
+        assert_eq!(drawn[0], drawn[1]);
+    }
+}
+
+#[test]
+fn klosowski_silva_deadline_has_late_frames_only_where_they_overshoot() {
+    let report = city("klosowski-silva-deadline", 8);
+    for row in 0..8 {
+        let keys = ["median_ms", "p99_ms", "worst_ms", "late_percent", "deadline_ms"];
+        let [median, p99, worst, late, deadline] = report.row(row, keys);
+        assert!(median <= p99 && p99 <= worst, "{median} {p99} {worst}");
+        assert_eq!(late > 0.0, worst > deadline);
+        assert_eq!(late > 0.0, report.table.number(row, "overshoot_ms").is_some());
+    }
+}
+
+#[test]
+fn names_begin_with_their_papers_key_and_are_taken_once() {
+    let mut names = BTreeSet::new();
+    let mut once = |name: &'static str| assert!(names.insert(name), "{name} is taken twice");
+    for paper in PAPERS {
+        once(paper.key);
+        let named = paper.figures.iter().map(|f| f.name).chain(paper.tables.iter().map(|t| t.name));
+        for name in named {
+            assert!(name.strip_prefix(paper.key).is_some_and(|rest| rest.starts_with('-')), "{name}");
+            once(name);
+        }
+        paper.figures.iter().filter_map(|f| f.former).for_each(&mut once);
+    }
+    let [now, before] = ["coorg-teller-figure-4", "large-occluders-4"].map(|n| figure(n).expect("a figure"));
+    assert!(now.name == "coorg-teller-figure-4" && before.name == now.name);
+}
+
+#[test]
+fn papers_are_about_methods_that_exist() {
+    for key in PAPERS.iter().flat_map(|paper| paper.methods) {
+        assert!(Flat::method(key).is_some() && Solid::method(key).is_some(), "{key}");
+    }
+    for paper in PAPERS {
+        assert!(paper.tables.iter().all(|table| paper.methods.contains(&table.method)), "{}", paper.key);
+        assert!(paper.sources().iter().all(|source| !source.title.is_empty()), "{}", paper.key);
+    }
+    let doi = |key: &str| PAPERS.iter().find(|p| p.key == key).expect("a paper").sources()[0].doi;
+    assert_eq!(doi("coorg-teller"), "10.1145/253284.253312");
+}
+
+#[test]
+fn an_unknown_method_is_an_error() {
+    let sweep = table("coorg-teller-table-1").expect("a table").sweep;
+    let experiment = Experiment {
+        name: "",
+        title: "",
+        summary: "",
+        method: "large-occluder",
+        scenes: &[],
+        notes: &[],
+        varies: &[],
+        sweep,
+    };
+    let error = experiment.check(&Settings::default()).expect_err("no such method");
+    assert!(matches!(&error, ExperimentError::UnknownMethod(key) if key == "large-occluder"), "{error}");
+}
+
+#[test]
+fn no_text_of_a_figure_sticks_out_or_is_too_small() {
+    for figure in figures() {
+        let (name, page) = (figure.name, figure.drawing(&|_| [0.0; 3]).expect("a figure"));
+        for item in &page.items {
+            let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
+            let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);
+            assert!(low.x >= 0.0 && high.x <= page.size_pt.x && high.y <= page.size_pt.y, "{name}: {text}");
+            assert!(*size_pt > 5.0, "{name}: {text} has {size_pt} pt");
+        }
+    }
+}
+
+#[test]
+fn flatland_has_tables_too() {
+    let scene = AnyScene::Flat(example("freedoom_e1m1").expect("a built-in scene"));
+    let report = run("coorg-teller-table-1", &scene, &setup(6));
+    let [frustum, occlusion] =
+        ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
+    assert!(frustum >= occlusion && occlusion > 0.0);
+}
+
+#[test]
+fn stretches_begin_at_the_same_places_whatever_the_speed() {
+    let AnyScene::Solid(scene) = small("generate:building?polygons=3000") else {
+        panic!("a building is in space")
+    };
+    let walk = harness::Walk::new(&scene, &setup(16));
+    let begins =
+        |step: f32| walk.stretches(step).iter().map(|s| s.frames[0].eye.position).collect::<Vec<_>>();
+    let (slow, fast) = (begins(0.01), begins(0.1));
+    assert_eq!((slow.len(), fast.len()), (8, 8));
+    assert!(slow.iter().zip(&fast).all(|(a, b)| a.distance(*b) < 0.25), "{slow:?} {fast:?}");
+    let all = walk.stretches(1e4);
+    assert!(all.len() == 1 && all[0].frames.len() == 1);
+    // The step is the one that was asked for, and the frames together are what was asked for.
+    let frames = &walk.stretches(0.05)[3].frames;
+    assert!((frames[0].eye.position.distance(frames[1].eye.position) - 0.05).abs() < 5e-3);
+    assert_eq!(walk.stretches(0.05).iter().map(|s| s.frames.len()).sum::<usize>(), 16);
+}
+
+#[test]
+fn wrong_parameters_and_cancelling_are_errors() {
+    struct Stop;
+    impl Progress for Stop {
+        fn report(&self, _: f32, _: &'static str) {}
+        fn cancelled(&self) -> bool {
+            true
+        }
+    }
+    let scene = [small("generate:building?polygons=3000")];
+    for experiment in tables() {
+        assert!(
+            matches!(experiment.run(&scene, &setup(4), &Stop), Err(ExperimentError::Cancelled)),
+            "{}",
+            experiment.name
+        );
+        let settings = Settings::of(&[("occluder", "3")]);
+        assert!(matches!(
+            experiment.run(&scene, &Setup { settings, ..setup(4) }, &Quiet),
+            Err(ExperimentError::Setting(_))
+        ));
+    }
+}
