@@ -35,7 +35,7 @@ pub trait Reel: Send + Sync {
     /// the verdict. `None` if `at` is no decision, or rests on none.
     fn evidence_of(&self, at: usize) -> Option<usize>;
     /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
-    /// Lines of pseudocode, queueing and leaving a node change nothing about that.
+    /// Lines of pseudocode, queueing and leaving the node that was decided change nothing about that.
     fn evidence_at(&self, step: usize) -> Option<usize>;
     /// The kind and the operands of event `at`, for traces and the inspector.
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
@@ -277,8 +277,14 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
     }
     fn evidence_at(&self, step: usize) -> Option<usize> {
         let events = &self.recorder.events[..step.min(self.recorder.events.len())];
-        let at =
-            events.iter().rposition(|e| !matches!(e, Event::Line(_) | Event::Left(_) | Event::Queued(..)))?;
+        let mut left = 0;
+        let mut passes = |event: &&Event| {
+            left += usize::from(matches!(event, Event::Left(_)));
+            // The second node that is left is another one than was decided.
+            matches!(event, Event::Line(_) | Event::Queued(..))
+                || matches!(event, Event::Left(_)) && left == 1
+        };
+        let at = events.len().checked_sub(1 + events.iter().rev().take_while(&mut passes).count())?;
         match events[at] {
             Event::Noted(_) => Some(at),
             Event::DecidedNode(..) | Event::DecidedPrim(..) => self.evidence_of(at),

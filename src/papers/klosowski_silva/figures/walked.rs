@@ -83,7 +83,10 @@ fn moment(film: &dyn Film<Flat>, letter: char, cells: usize) -> Panel {
     let area = |plan: &mut Plan, role: Role, id: NodeId| {
         plan.world.push(Layer::Areas, role, Subject::Node(id), Mark::Area(corners(film, id)));
     };
-    for &(id, solidity) in &moment.front {
+    // By id, so that a cell is drawn at the same place among the others in all four panels.
+    let mut front = moment.front.clone();
+    front.sort_unstable_by_key(|(id, _)| *id);
+    for &(id, solidity) in &front {
         area(&mut plan, Role::Undecided, id);
         (0..shade(solidity)).for_each(|_| area(&mut plan, Role::Scene, id));
     }
@@ -98,7 +101,7 @@ fn moment(film: &dyn Film<Flat>, letter: char, cells: usize) -> Panel {
         plan.world.outline(Layer::Emphasis, Role::Current, Subject::Node(last), corners(film, last));
     }
     let ranks = moment.projected.iter().enumerate().map(|(i, &id)| (id, (i + 1).to_string(), Font::Bold));
-    let solidities = moment.front.iter().map(|&(id, s)| (id, format!("{s:.2}"), Font::Regular));
+    let solidities = front.iter().map(|&(id, s)| (id, format!("{s:.2}"), Font::Regular));
     for (id, text, font) in ranks.chain(solidities) {
         write(&mut plan, &corners(film, id), &text, font);
     }
