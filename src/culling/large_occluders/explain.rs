@@ -1,11 +1,12 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
+use super::LargeOccluders;
+use super::index::Index;
 use super::joint::{Candidate, Members};
 use super::memory::Owner;
 use super::occluders::Occluders;
-use super::relation::{Classified, Decisive, Margin, Occlusion, Planes, Relation, Sight};
+use super::relation::{Classified, Decisive, EyeSide, Margin, Occlusion, Planes, Relation};
 use super::space::{Point, Shape, corner};
-use super::{Index, LargeOccluders};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, short};
@@ -79,7 +80,7 @@ impl Related {
         occluders: &Occluders<S>,
         owner: Owner,
         relation: &Relation<S>,
-        sight: &Sight<S>,
+        eye_side: &EyeSide<S>,
         seen: Classified,
         depth: f64,
         margin: Margin,
@@ -95,8 +96,8 @@ impl Related {
             edges: relation.planes.len() as u8,
             reused,
             behind: relation.behind,
-            height: sight.height,
-            decisive: relation.decisive(sight, seen, depth, margin),
+            height: eye_side.height,
+            decisive: relation.decisive(eye_side, seen, depth, margin),
         }
     }
     fn result(&self) -> &'static str {
