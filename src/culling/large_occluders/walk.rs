@@ -146,9 +146,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let mut cutting = 0;
         if planes != 0 {
             let test = self.frustum.test(&node.bounds, planes);
-            self.watch.note(move || {
-                Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test))
-            });
+            self.watch
+                .note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
             match test {
                 FrustumTest::Outside(_) => {
                     // What is kept for it and below stays: "so that they can be reused later".
@@ -354,9 +353,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     fn is_outside(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, planes: u8) -> bool {
         let test = self.frustum.test(bounds, planes);
-        self.watch.note(move || {
-            Evidence::Tested(Tested::of(Subject::Object(object), bounds, planes, test))
-        });
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Object(object), bounds, planes, test)));
         matches!(test, FrustumTest::Outside(_))
     }
 

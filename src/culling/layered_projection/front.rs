@@ -140,7 +140,7 @@ impl Front {
         self.heap.iter().filter(|entry| self.is_current(entry))
     }
     /// How many cells wait. O(entries of the heap).
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.waiting().count()
     }
     /// The first `most` cells in the order in which they will be taken if none is put in again.
@@ -214,7 +214,7 @@ mod tests {
                     .min_by(|a, b| list[*a].1.total_cmp(&list[*b].1))
                     .map(|at| list.remove(at));
                 let first: Vec<_> = front.first(3).iter().map(|q| (q.cell, q.solidity)).collect();
-                assert_eq!(front.len(), list.len() + usize::from(want.is_some()));
+                assert_eq!(front.count(), list.len() + usize::from(want.is_some()));
                 assert_eq!(first.first().copied(), want);
                 assert_eq!(
                     first,

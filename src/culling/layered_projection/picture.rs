@@ -29,7 +29,7 @@ pub fn picture<S: Cellular>(front: &Front, notes: &[Evidence<S>], which: usize) 
 /// The front in the order in which it will be taken if nothing is put in again, and what was taken last.
 fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
     let mut to = Drawing::default();
-    let (queue, count) = (front.first(ROWS), front.len());
+    let (queue, count) = (front.first(ROWS), front.count());
     heading(&mut to, 0.0, format!("The front, least solid first: {count} cells"));
     heading(&mut to, 300.0, format!("Projected, the latest first: {}", front.projected().len()));
     // On the left the queue; bars are relative to the longest one shown.
