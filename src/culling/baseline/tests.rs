@@ -231,7 +231,7 @@ fn has_evidence<S: Methods>(method: &str, pairs: &[(&str, &str)]) {
         assert_eq!(film.claim(evidence).is_some(), verdict == Verdict::Outside, "{place}");
         decided += 1;
     }
-    assert!(decided > 20, "{method}: {decided}");
+    assert!(decided > 10, "{method}: {decided}");
 }
 
 #[test]
