@@ -112,6 +112,7 @@ impl Related {
         let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
         let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
+        // By what decided: the occluder's own plane first, then the plane of the decisive edge, then the margin.
         let d = self.decisive;
         let why = match self.occlusion {
             Occlusion::None if self.behind[1] <= 0.0 => {
@@ -184,6 +185,7 @@ impl Joined {
                 *to = candidate.occluder;
             }
             joined.count += 1;
+            // Edges whose plane the eye is outside of: they passed since another member has them too.
             joined.shared += (occluders.keys(candidate.occluder).len() as u32)
                 .saturating_sub(candidate.seen.inside.count_ones());
         }
@@ -385,6 +387,7 @@ fn outline<S: Shape>(index: &Index<S>, id: u32, layer: Layer, role: Role, to: &m
 fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
     let bounds = index.bounds_of(note.owner);
     let eye = view.eye.position;
+    // Past the farthest corner, so that the lines frame the whole box.
     let reach = bounds.corners().map(|c| (c - eye).length()).fold(0.0, f32::max);
     for &id in note.members() {
         for corner in index.occluders.outline(id) {
@@ -414,6 +417,7 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
             &bounds,
             to,
         );
+        // In space both planes of every edge would cover the picture.
         if S::Vector::AXES == 2 && note.occlusion != Occlusion::Full {
             draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
         }

@@ -98,6 +98,7 @@ impl<S: Shape> Memory<S> {
         direction: u32,
         choose: impl FnOnce(&mut Vec<(u32, f32)>),
     ) -> usize {
+        // Chosen again only when the object is seen from another direction: a walk past it asks a few times.
         let slot = &mut self.near[object.at()];
         if slot.as_ref().is_none_or(|n| n.0 != direction) {
             choose(&mut self.list);
@@ -146,6 +147,7 @@ impl<S: Shape> Memory<S> {
     }
     /// Keeps a relation in place of one for the other side; returns where it is.
     pub fn keep(&mut self, owner: Owner, relation: Relation<S>) -> usize {
+        // A mark at the node says that `forget_below` of an ancestor has something to do here.
         let kept = match owner {
             Owner::Node(n) => {
                 self.below[n.at()] = true;

@@ -147,6 +147,7 @@ impl<S: Shape> Blockers<S> {
         let side = |id: u32| {
             if EyeSide::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 }
         };
+        // Box by box, so that [`Blockers::check`] can take them apart again.
         let all = boxes.iter().flat_map(|b| (0..self.len() as u32).map(move |id| (b, id)));
         let relations = all.map(|(b, id)| Relation::new(&self.occluders, id, side(id), b, false)).collect();
         let depth = |b: &Aabb<S::Vector>| {

@@ -425,6 +425,7 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
 /// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid
 /// first, as far as labels do not meet when the whole scene is shown.
 fn labels<S: Cellular>(front: &Front, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
+    // In world units: zooming in makes room, and the labels stay those of the whole picture.
     let apart = scene.bounds().diagonal() * LABELS_APART;
     let numbered = front.projected().iter().enumerate().rev().take(NUMBERED);
     let projected = numbered.map(|(at, &cell)| (cell, format!("#{}", at + 1)));
@@ -492,6 +493,7 @@ fn draw_transfer<S: Cellular>(
     outline(index, n.a, Layer::Emphasis, Role::Partial, to);
     outline(index, n.b, Layer::Emphasis, Role::Current, to);
     let (a, b) = (cells.center(n.a), cells.center(n.b));
+    // As long as shows in the cell and does not reach the next one.
     let length = 0.4 * cells.bounds(n.b).diagonal();
     let subject = Subject::Node(node_of(n.b));
     // Both unit vectors from the center of A at one length, so that v · n is read off the angle.
