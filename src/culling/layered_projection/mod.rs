@@ -267,7 +267,7 @@ fn extension_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
 }
 
 impl<S: Cellular + Faces> State<S, LayeredProjection> for Front {
-    // A copy takes up to 28 bytes a cell, a note with its events over 100. So with 100,000 cells (the paper's
+    // A copy takes up to 28 bytes a cell, a note with its events about 100. So with 100,000 cells (the paper's
     // largest scene has 60,000, Section 5.1) all keyframes together take less memory than the film, however
     // long it is; `tests` holds it to that. Replaying this many notes takes some milliseconds, so that
     // seeking stays within one displayed frame.

@@ -470,7 +470,7 @@ fn has_evidence<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, verdicts: &
         &[("budget", "100%"), ("seeds", "5"), ("backface-culling", "true")],
     ];
     for pairs in extensions {
-        let mut run = run(scene, &[&[("tessellation", kind)], pairs].concat());
+        let mut run = run(scene, &[pairs, &[("tessellation", kind)]].concat());
         for view in views(scene) {
             let film = run.record(&view, usize::MAX).film;
             for at in 0..film.events().len() {
