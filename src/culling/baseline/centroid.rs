@@ -73,12 +73,8 @@ impl<S: Space> Method<S> for Centroid {
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let budget = Knob {
-            name: "budget",
-            unit: "primitives",
-            meaning: "how many primitives are drawn: a number, or a share of the scene such as 10%",
-            source: "Klosowski and Silva 2000, Section 4.5",
-        };
+        let meaning = "how many primitives are drawn: a number, or a share of the scene such as 10%";
+        let budget = Knob::new("budget", "primitives", meaning, "Klosowski and Silva 2000, Section 4.5");
         knobs.budget(budget, false, &mut params.budget);
         backface_knob(knobs, &mut params.backface_culling);
     }
@@ -102,7 +98,10 @@ impl<S: Space> Method<S> for Centroid {
         watch.event(Event::FrameBegan);
         watch.stage("order");
         let mut queue = in_view(scene, view, params, watch);
+        // All of it, as in the paper, though a selection of the budget's nearest would do: its cost is part of
+        // what is compared. The id breaks ties, so that the order is the same everywhere.
         queue.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        // Of the scene's primitives, not of those in view: so budgets mean the same from view to view.
         let budget = params.budget.of(scene.live().len());
         watch.stage("draw");
         for (rank, &(squared, prim)) in queue.iter().enumerate() {
@@ -138,6 +137,8 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
 ) -> Vec<(f32, PrimId)> {
     let (frustum, eye) = (view.frustum(), view.eye.position);
     let mut queue = Vec::with_capacity(scene.live().len());
+    // "All three algorithms perform view-frustum and backface culling" (Section 5): what is not in view would
+    // spend the budget for nothing.
     for &prim in scene.live() {
         watch.event(Event::Line(line::IN_VIEW));
         let bounds = scene.prim_bounds(prim);
@@ -151,6 +152,7 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
         } else {
             watch.event(Event::Line(line::PUT));
+            // Squared, which sorts alike and rounds less.
             let toward = middle(scene, prim) - eye;
             queue.push((toward.dot(toward), prim));
         }

@@ -81,12 +81,9 @@ impl<S: Space> Method<S> for Frustum {
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let height = Knob {
-            name: "tree-height",
-            unit: "levels",
-            meaning: "levels of the kD-tree; 8 gives 255 nodes",
-            source: "Coorg and Teller 1997, Section 4",
-        };
+        let (meaning, source) =
+            ("levels of the kD-tree; 8 gives 255 nodes", "Coorg and Teller 1997, Section 4");
+        let height = Knob::new("tree-height", "levels", meaning, source);
         knobs.integer(height, 1..=24, &mut params.tree_height);
         backface_knob(knobs, &mut params.backface_culling);
     }
@@ -138,6 +135,7 @@ struct Walk<'a, S: Space, O> {
 }
 
 impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
+    /// Visible of the pseudocode: a node, and the planes that cut all nodes above it.
     fn visible(&mut self, id: NodeId, planes: u8) {
         let index = self.index;
         let node = &index.nodes()[id.at()];
@@ -145,6 +143,8 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         self.watch.event(Event::Line(line::TEST));
         let test = self.frustum.test(&node.bounds, planes);
         self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
+        // Lines 2 to 8. A node inside all planes is drawn whole, without a test below it; so is a leaf, since
+        // a test for each primitive would cost about what drawing it costs.
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
                 self.watch.event(Event::Line(line::OUTSIDE));
@@ -167,6 +167,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
     }
 
     fn gather(&mut self, id: NodeId) {
+        // The primitives below a node lie in one piece: without back-face culling none is looked at.
         let prims = self.index.prims_below(id);
         if !self.backface_culling {
             self.out.prims.extend_from_slice(prims);

@@ -1,6 +1,6 @@
 //! `z-buffer`: everything is drawn and the depth buffer decides.
 //!
-//! Catmull 1974 (the z-buffer). Nothing is culled but, if asked, back faces. It is the reference for
+//! Catmull 1974 (the z-buffer). Nothing is culled but, by a parameter, back faces. It is the reference for
 //! images and the upper end of every chart's cost. Cost: O(n).
 
 use std::sync::Arc;
@@ -79,6 +79,7 @@ impl<S: Space> Method<S> for ZBuffer {
         let Frame { scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
         watch.stage("draw");
+        // Without a test there is no evidence: what is drawn is drawn because it is there.
         for &prim in scene.live() {
             if params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
                 watch.event(Event::Line(line::SKIP));

@@ -1,11 +1,12 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
+use super::LargeOccluders;
+use super::index::Index;
 use super::joint::{Candidate, Members};
 use super::memory::Owner;
 use super::occluders::Occluders;
-use super::relation::{Classified, Decisive, Margin, Occlusion, Planes, Relation, Sight};
+use super::relation::{Classified, Decisive, EyeSide, Margin, Occlusion, Planes, Relation};
 use super::space::{Point, Shape, corner};
-use super::{Index, LargeOccluders};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, short};
@@ -79,7 +80,7 @@ impl Related {
         occluders: &Occluders<S>,
         owner: Owner,
         relation: &Relation<S>,
-        sight: &Sight<S>,
+        eye_side: &EyeSide<S>,
         seen: Classified,
         depth: f64,
         margin: Margin,
@@ -95,8 +96,8 @@ impl Related {
             edges: relation.planes.len() as u8,
             reused,
             behind: relation.behind,
-            height: sight.height,
-            decisive: relation.decisive(sight, seen, depth, margin),
+            height: eye_side.height,
+            decisive: relation.decisive(eye_side, seen, depth, margin),
         }
     }
     fn result(&self) -> &'static str {
@@ -111,6 +112,7 @@ impl Related {
         let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
         let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
+        // By what decided: the occluder's own plane first, then the plane of the decisive edge, then the margin.
         let d = self.decisive;
         let why = match self.occlusion {
             Occlusion::None if self.behind[1] <= 0.0 => {
@@ -183,6 +185,7 @@ impl Joined {
                 *to = candidate.occluder;
             }
             joined.count += 1;
+            // Edges whose plane the eye is outside of: they passed since another member has them too.
             joined.shared += (occluders.keys(candidate.occluder).len() as u32)
                 .saturating_sub(candidate.seen.inside.count_ones());
         }
@@ -384,6 +387,7 @@ fn outline<S: Shape>(index: &Index<S>, id: u32, layer: Layer, role: Role, to: &m
 fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
     let bounds = index.bounds_of(note.owner);
     let eye = view.eye.position;
+    // Past the farthest corner, so that the lines frame the whole box.
     let reach = bounds.corners().map(|c| (c - eye).length()).fold(0.0, f32::max);
     for &id in note.members() {
         for corner in index.occluders.outline(id) {
@@ -413,6 +417,7 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
             &bounds,
             to,
         );
+        // In space both planes of every edge would cover the picture.
         if S::Vector::AXES == 2 && note.occlusion != Occlusion::Full {
             draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
         }

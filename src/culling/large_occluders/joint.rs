@@ -45,6 +45,7 @@ pub fn jointly<S: Shape>(
     candidates: &[Candidate],
     scratch: &mut Scratch,
 ) -> Members {
+    // Only what lies wholly behind an occluder's plane can be hidden by it together with others.
     let mut alive: Members = 0;
     for (i, candidate) in candidates.iter().enumerate() {
         alive |= u64::from(candidate.seen.behind) << i;
@@ -52,12 +53,15 @@ pub fn jointly<S: Shape>(
     scratch.count.resize(occluders.key_count(), [0; 2]);
     scratch.passed.resize(occluders.key_count(), [0; 2]);
     loop {
+        // 1. How many of those left have each edge, in either sense.
         let before = alive;
         for candidate in living(candidates, before) {
             for &(key, sense) in occluders.keys(candidate.occluder) {
                 scratch.count[key as usize][sense_seen(candidate, sense)] += 1;
             }
         }
+        // 2. Strike out who has a failed edge that none of the others cancels: the k-th of one sense is paired
+        // with the k-th of the other.
         for (i, candidate) in candidates.iter().enumerate().filter(|(i, _)| before >> i & 1 == 1) {
             for (edge, &(key, sense)) in occluders.keys(candidate.occluder).iter().enumerate() {
                 let sense = sense_seen(candidate, sense);
@@ -69,6 +73,7 @@ pub fn jointly<S: Shape>(
                 }
             }
         }
+        // 3. Clear what was counted, and nothing else: the tables are as long as the scene has edges.
         for candidate in living(candidates, before) {
             for &(key, _) in occluders.keys(candidate.occluder) {
                 (scratch.count[key as usize], scratch.passed[key as usize]) = ([0; 2], [0; 2]);

@@ -5,14 +5,14 @@
 //! At most [`KEPT`] relations a node are kept, so memory is bounded by the tree and not by the length of a
 //! walk.
 
-use super::relation::{Relation, Sight};
+use super::relation::{EyeSide, Relation};
 use super::space::Shape;
 use crate::geometry::{NodeId, ObjectId};
 use crate::index::KdTree;
 use crate::method::Verdict;
 
-/// Relations that one node or object keeps at most, twice the largest set of active occluders: one set for
-/// the way a walker looks and one for where it looked before.
+/// Relations that one node or object keeps at most: twice the largest set of active occluders, so that a
+/// viewer who turns back finds the set of the direction before still there.
 const KEPT: usize = 128;
 
 /// See the module. Made for one scene and its parameters.
@@ -24,17 +24,17 @@ pub struct Memory<S: Shape> {
     below: Vec<bool>,
     /// The occluders in use, best first.
     pub active: Vec<u32>,
-    /// For each detail object the occluders near it in the direction that was asked for last.
+    /// For each detail object the occluders near it, for the latest direction.
     near: Vec<Option<(u32, Box<[u32]>)>>,
     list: Vec<(u32, f32)>,
-    /// How the eye of this frame sees each occluder it was asked about.
-    sights: Vec<Sight<S>>,
-    /// Whether it was asked in this frame, and the list of those that were.
+    /// How the eye of this frame sees each occluder that was looked up.
+    eye_sides: Vec<EyeSide<S>>,
+    /// Whether an occluder was looked up in this frame, and the list of those that were.
     fresh: Vec<bool>,
     seen: Vec<u32>,
     pub joint: super::joint::Scratch,
     /// Objects that keep relations, in no order that matters.
-    asked: Vec<ObjectId>,
+    keeping: Vec<ObjectId>,
     /// What this frame found out about each detail object.
     pub fates: Vec<Option<Verdict>>,
 }
@@ -48,11 +48,11 @@ impl<S: Shape> Default for Memory<S> {
             active: Vec::new(),
             near: Vec::new(),
             list: Vec::new(),
-            sights: Vec::new(),
+            eye_sides: Vec::new(),
             fresh: Vec::new(),
             seen: Vec::new(),
             joint: super::joint::Scratch::default(),
-            asked: Vec::new(),
+            keeping: Vec::new(),
             fates: Vec::new(),
         }
     }
@@ -66,67 +66,70 @@ pub enum Owner {
 }
 
 impl<S: Shape> Memory<S> {
-    /// Begins a frame: earlier sights are stale, relations are not.
+    /// Begins a frame: earlier eye_sides are stale, relations are not.
     pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize) {
         self.nodes.resize_with(nodes, Vec::new);
         self.below.resize(nodes, false);
         self.objects.resize_with(objects, Vec::new);
         self.near.resize(objects, None);
-        self.sights.resize_with(occluders, Sight::default);
+        self.eye_sides.resize_with(occluders, EyeSide::default);
         self.fresh.resize(occluders, false);
         self.seen.drain(..).for_each(|id| self.fresh[id as usize] = false);
         self.fates.resize(objects, None);
-        // Objects that the last frame did not ask about are out of the calculation.
+        // "Until the node is no longer involved in the visibility calculation" (Section 3), said of objects:
+        // those that the last frame did not decide keep nothing.
         let (fates, kept, near) = (&mut self.fates, &mut self.objects, &mut self.near);
-        self.asked.sort_unstable();
-        self.asked.dedup();
-        self.asked.retain(|object| {
-            let asked = fates[object.at()].take().is_some();
-            if !asked {
+        self.keeping.sort_unstable();
+        self.keeping.dedup();
+        self.keeping.retain(|object| {
+            let was_decided = fates[object.at()].take().is_some();
+            if !was_decided {
                 (kept[object.at()], near[object.at()]) = (Vec::new(), None);
             }
-            asked
+            was_decided
         });
         fates.fill(None);
     }
-    /// The occluders near a detail object for a direction, chosen by `choose` if another direction was asked
-    /// for last; how many.
+    /// Number of occluders near a detail object for a direction, chosen by `choose` if the latest direction
+    /// was another.
     pub fn near(
         &mut self,
         object: ObjectId,
         direction: u32,
         choose: impl FnOnce(&mut Vec<(u32, f32)>),
     ) -> usize {
+        // Chosen again only when the object is seen from another direction: a walk past it asks a few times.
         let slot = &mut self.near[object.at()];
         if slot.as_ref().is_none_or(|n| n.0 != direction) {
             choose(&mut self.list);
             *slot = Some((direction, self.list.iter().map(|l| l.0).collect()));
-            self.asked.push(object);
+            self.keeping.push(object);
         }
         slot.as_ref().map_or(0, |n| n.1.len())
     }
-    /// One of them.
+    /// One of the occluders near a detail object.
     pub fn near_to(&self, object: ObjectId, at: usize) -> u32 {
         self.near[object.at()].as_ref().map_or(0, |n| n.1[at])
     }
-    /// How the eye sees an occluder, found out by `look` at the first question of a frame.
+    /// How the eye sees an occluder, computed by `look` at the first lookup of a frame.
     #[inline]
-    pub fn sight(&mut self, id: u32, look: impl FnOnce(&mut Sight<S>)) -> &Sight<S> {
-        let sight = &mut self.sights[id as usize];
+    pub fn eye_side(&mut self, id: u32, look: impl FnOnce(&mut EyeSide<S>)) -> &EyeSide<S> {
+        let eye_side = &mut self.eye_sides[id as usize];
         if !std::mem::replace(&mut self.fresh[id as usize], true) {
-            look(sight);
+            look(eye_side);
             self.seen.push(id);
         }
-        sight
+        eye_side
     }
-    /// What [`Memory::sight`] found out.
+    /// What [`Memory::eye_side`] computed.
     #[inline]
-    pub fn sight_of(&self, id: u32) -> &Sight<S> {
-        &self.sights[id as usize]
+    pub fn eye_side_of(&self, id: u32) -> &EyeSide<S> {
+        &self.eye_sides[id as usize]
     }
     /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look
     /// first.
     pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {
+        // A set changes little from frame to frame, so a relation is mostly found at its place or just behind.
         let kept = self.of(owner);
         let fits = |r: &Relation<S>| r.occluder == occluder && r.side == side;
         let n = kept.len();
@@ -144,6 +147,7 @@ impl<S: Shape> Memory<S> {
     }
     /// Keeps a relation in place of one for the other side; returns where it is.
     pub fn keep(&mut self, owner: Owner, relation: Relation<S>) -> usize {
+        // A mark at the node says that `forget_below` of an ancestor has something to do here.
         let kept = match owner {
             Owner::Node(n) => {
                 self.below[n.at()] = true;
@@ -151,6 +155,7 @@ impl<S: Shape> Memory<S> {
             }
             Owner::Object(o) => &mut self.objects[o.at()],
         };
+        // The eye went to the other side: the planes there are others, and the old ones are of no use.
         if let Some(at) = kept.iter().position(|r| r.occluder == relation.occluder) {
             kept[at] = relation;
             return at;
@@ -168,6 +173,7 @@ impl<S: Shape> Memory<S> {
     }
     /// Forgets what is kept below a node (and not at it), since it was decided as a whole.
     pub fn forget_below(&mut self, tree: &KdTree<S::Vector>, node: NodeId) {
+        // Mostly nothing was kept: without this mark every hidden subtree would be walked in every frame.
         if !self.below[node.at()] {
             return;
         }

@@ -46,11 +46,13 @@ pub struct Occluders<S: Shape> {
 impl<S: Shape> Occluders<S> {
     /// Makes ready those faces that can hide anything: at most [`MAX_EDGES`] corners and some area.
     pub fn new(points: &[S::Vector], faces: &[Face]) -> Self {
+        // Rebuilt with fewer faces, the same ones come out alike: nothing depends on the others but numbers.
         let mut made =
             Self { all: Vec::new(), edges: Vec::new(), keys: Vec::new(), key_count: 0, prims: Vec::new() };
         let mut names: Vec<([u32; 2], u32)> = Vec::new();
         for (source, face) in faces.iter().enumerate().filter(|(_, f)| f.corners.len() <= MAX_EDGES) {
             let corners = corners_of::<S>(points, &face.corners);
+            // Without area there is no normal, and nothing to hide behind.
             let vector = S::area(&corners);
             let area = vector.length();
             if area.is_nan() || area <= 0.0 {
@@ -61,6 +63,7 @@ impl<S: Shape> Occluders<S> {
             let slab = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
             let center =
                 corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
+            // Tables beside each other, not a vector for each: testing reads edges of many occluders in a row.
             let (edge, prim) = (made.edges.len() as u32, made.prims.len() as u32);
             for i in 0..corners.len() {
                 let (name, sense) = S::edge_key(&face.corners, i);
@@ -81,6 +84,7 @@ impl<S: Shape> Occluders<S> {
                 prims,
             });
         }
+        // Equal corner pairs get equal numbers: whether two occluders share an edge is then a comparison.
         names.sort_unstable();
         for (i, (name, edge)) in names.iter().enumerate() {
             made.key_count += usize::from(i == 0 || names[i - 1].0 != *name);
@@ -155,6 +159,7 @@ impl<S: Shape> Occluders<S> {
     #[inline]
     pub fn heights(&self, id: u32, bounds: &Aabb<S::Vector>) -> [f64; 2] {
         let occluder = &self.all[id as usize];
+        // Axis by axis the lower and the higher end: two corners in place of all.
         let (mut low, mut high) = (0.0, 0.0);
         for axis in 0..S::Vector::AXES {
             let (n, o) = (occluder.normal.get(axis), occluder.anchor.get(axis));

@@ -118,7 +118,7 @@ pub enum Occlusion {
     Full,
 }
 
-/// What an eye is told about an occluder and a box.
+/// What an occluder does to a box, as seen from an eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Classified {
     pub occlusion: Occlusion,
@@ -143,7 +143,7 @@ pub struct Decisive {
 
 /// An occluder as the eye sees it in one frame.
 #[derive(Clone, Debug, Default)]
-pub struct Sight<S: Shape> {
+pub struct EyeSide<S: Shape> {
     /// 1: the eye is in front; −1: behind; 0: it cannot hide anything from here.
     pub side: i8,
     /// Distance of the eye from the occluder's slab, world units.
@@ -188,18 +188,19 @@ impl Margin {
     }
 }
 
-impl<S: Shape> Sight<S> {
+impl<S: Shape> EyeSide<S> {
     /// How `eye` sees an occluder.
     pub fn of(occluders: &Occluders<S>, id: u32, eye: S::Point, margin: Margin) -> Self {
-        let mut sight = Self::default();
-        sight.look(occluders, id, eye, margin);
-        sight
+        let mut eye_side = Self::default();
+        eye_side.look(occluders, id, eye, margin);
+        eye_side
     }
     /// Looks again, at an occluder of any kind.
     pub fn look(&mut self, occluders: &Occluders<S>, id: u32, eye: S::Point, margin: Margin) {
         let occluder = occluders.get(id);
         let at = occluder.normal.dot(eye - occluder.anchor);
         let [low, high] = occluder.slab;
+        // Within the slab the height is negative: the eye sees the occluder from its edge, if at all.
         let (side, height) = if at > high { (1, at - high) } else { (-1, low - at) };
         (self.side, self.height, self.reach) = (side, height, 0.0);
         self.edges.clear();
@@ -220,6 +221,8 @@ impl<S: Shape> Relation<S> {
     /// Computes the planes; `naive` looks at every corner of the box instead of the table.
     pub fn new(occluders: &Occluders<S>, id: u32, side: i8, bounds: &Aabb<S::Vector>, naive: bool) -> Self {
         let occluder = occluders.get(id);
+        // Distances behind the slab, not the plane: of a polygon that is planar only up to rounding, what lies
+        // within the slab is neither before nor behind it.
         let [low, high] = occluders.heights(id, bounds);
         let behind = if side > 0 {
             [occluder.slab[0] - high, occluder.slab[0] - low]
@@ -228,6 +231,7 @@ impl<S: Shape> Relation<S> {
         };
         let diagonal = (corner::<S>(bounds, (1 << Self::AXES) - 1) - corner::<S>(bounds, 0)).length();
         let mut relation = Self { occluder: id, side, behind, arm: 0.0, diagonal, planes: PlaneList::EMPTY };
+        // Wholly on the eye's side nothing of the box can be hidden, whatever the planes: none are made.
         if behind[1] > 0.0 {
             let edges = occluders.edges(id);
             for edge in edges {
@@ -248,6 +252,8 @@ impl<S: Shape> Relation<S> {
         touched: [u8; 2],
         bounds: &Aabb<S::Vector>,
     ) -> Planes<S::Vector> {
+        // Section 2.1: only planes through edges of the occluder and corners of the box. Those through its
+        // corners and edges of the box are left out, which leaves full occlusion exact.
         let side = f64::from(self.side);
         let arms = touched.map(|vertex| corner::<S>(bounds, vertex) - edge.from);
         let unit = |arm: S::Point| {
@@ -268,21 +274,24 @@ impl<S: Shape> Relation<S> {
     /// The classification from an eye. `thickness`: of the occluder's slab; `depth`: the greatest view depth
     /// of the box.
     #[inline]
-    pub fn classify(&self, sight: &Sight<S>, thickness: f64, depth: f64, margin: Margin) -> Classified {
+    pub fn classify(&self, eye_side: &EyeSide<S>, thickness: f64, depth: f64, margin: Margin) -> Classified {
         let mut found = Classified { occlusion: Occlusion::None, inside: 0, behind: false };
         if self.planes.is_empty() {
             return found;
         }
+        // s, `lateral` and the condition on depth of the module's margin.
         let [s, _] = self.behind;
         let lateral = margin.lateral * depth.max(0.0);
         found.behind = s > 0.0
-            && s >= lateral + DEPTH_ROUNDING * (sight.height + thickness + s)
-            && s * sight.height >= sight.reach * lateral;
+            && s >= lateral + DEPTH_ROUNDING * (eye_side.height + thickness + s)
+            && s * eye_side.height >= eye_side.reach * lateral;
         // What a lost tie between two tangent corners may turn a plane by, and what rounding may move it.
         let lateral = lateral + ROUNDING * self.arm * self.diagonal / s;
         let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
+        // Figure 2: outside one separating plane is region 1, inside all supporting ones region 3, the rest
+        // region 2.
         let mut inside = 0;
-        for (i, (planes, &(r, length, distance))) in self.planes.iter().zip(&sight.edges).enumerate() {
+        for (i, (planes, &(r, length, distance))) in self.planes.iter().zip(&eye_side.edges).enumerate() {
             let Planes::Tangent([supporting, separating]) = planes else { continue };
             let (reached, touched) =
                 (S::widened(supporting.normal).dot(r), S::widened(separating.normal).dot(r));
@@ -292,8 +301,10 @@ impl<S: Shape> Relation<S> {
                 found.behind = false;
                 return found;
             }
+            // s · distance ≥ |r| · lateral, with what rounding may add.
             inside |= u64::from(reached * s >= distance * lateral + blur * length) << i;
         }
+        // Joint occlusion argues with these bits, so they too count only behind the occluder's plane.
         found.inside = if found.behind { inside } else { 0 };
         let all = u64::MAX >> (64 - self.planes.len());
         found.occlusion = if found.inside == all { Occlusion::Full } else { Occlusion::Partial };
@@ -301,11 +312,12 @@ impl<S: Shape> Relation<S> {
     }
 
     /// The operands that decided; for explanations.
-    pub fn decisive(&self, sight: &Sight<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
+    pub fn decisive(&self, eye_side: &EyeSide<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
+        // The same sums as above, for the edge whose test had the least to spare: only explanations pay for it.
         let s = self.behind[0];
         let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
         let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
-        let tests = self.planes.iter().zip(&sight.edges).enumerate().filter_map(
+        let tests = self.planes.iter().zip(&eye_side.edges).enumerate().filter_map(
             |(i, (planes, &(r, length, distance)))| {
                 let Planes::Tangent([supporting, separating]) = planes else { return None };
                 let (plane, needed) = if seen.occlusion == Occlusion::None {

@@ -22,6 +22,7 @@ pub struct Key {
 
 /// Bytes of a selection.
 pub fn write(key: &Key, selection: &Selection) -> Vec<u8> {
+    // Area-angles by their bits, so that a restored selection is the same to the last of them.
     let (leaf_of, starts, lists) = selection.tables();
     let mut bytes = MAGIC.to_vec();
     bytes.extend(key.scene.as_bytes());
@@ -42,6 +43,8 @@ pub fn read(bytes: &[u8], key: &Key, nodes: usize, occluders: usize) -> Result<S
     let damaged = || "the file is damaged".to_owned();
     let Some((body, sum)) = bytes.split_last_chunk::<CHECKSUM>() else { return Err(damaged()) };
     let Some((magic, rest)) = body.split_first_chunk::<12>() else { return Err(damaged()) };
+    // The version first, so that an older file is not called damaged; then the sum, so that what follows may
+    // trust every length.
     if magic != MAGIC {
         return Err("it is no preprocess of large-occluders that this version reads".into());
     }

@@ -5,9 +5,9 @@ use super::front::Front;
 use super::index::{Index, cell_of, node_of};
 use crate::culling::depth::{Answer, Faces};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
-use crate::geometry::{CellId, Vector, View};
+use crate::geometry::{CellId, NodeId, PrimId, Vector, View};
 use crate::index::tessellation::Cellular;
-use crate::method::evidence::{Facing, Tested, axes, integer, label, number, short};
+use crate::method::evidence::{self, Facing, Tested, axes, integer, label, number, short};
 use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value};
 use crate::scene::Scene;
 
@@ -25,7 +25,9 @@ pub enum Evidence<S: Cellular> {
     /// A cell was projected.
     Projected(Projected),
     /// The budget is spent, and a cell's box was compared with the z-buffer.
-    Asked(Asked),
+    Queried(Queried),
+    /// The same of a primitive that no cell drew.
+    Compared(Compared),
     /// The budget is spent, and what the rest could still change was found.
     Bounded(Bounded),
     /// The traversal ended.
@@ -112,10 +114,20 @@ pub struct Projected {
 
 /// A cell that the budget left out was compared with what is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct Asked {
+pub struct Queried {
     pub cell: CellId,
     pub solidity: f32,
     pub answer: Answer,
+}
+
+/// A primitive that meets several cells, none of which was drawn, was compared with what is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Compared {
+    pub prim: PrimId,
+    /// Its nearest depth and the farthest that is drawn where it would show, `1/w`; `None` where the view
+    /// volume cuts it or it covers no pixel.
+    pub depths: Option<[f32; 2]>,
+    pub is_hidden: bool,
 }
 
 /// How much of the image the rest could still change.
@@ -136,24 +148,27 @@ pub struct Ended {
     pub spent: bool,
 }
 
-/// Projected cells that are numbered in a picture; the latest ones.
+/// Projected cells that are numbered in a picture, the latest ones: far more than fit at [`LABELS_APART`],
+/// since cells in one place take each other's room.
 const NUMBERED: usize = 64;
-/// The least distance of two labels, as a part of the scene's diagonal.
+/// The least distance of two labels, as a part of the scene's diagonal: at the width of a figure a number of
+/// three digits fits.
 const LABELS_APART: f32 = 0.06;
-/// Cells of the front that are outlined in space.
+/// Cells of the front that are outlined in space, where more would hide each other and the scene.
 const NEXT_IN_SPACE: usize = 24;
-/// Cells of the front that are labeled in a picture of flatland.
+/// Cells of the front that are tried as labels in a picture of flatland: at [`LABELS_APART`] about as many
+/// fit a square.
 const LABELED: usize = 200;
 
 impl<S: Cellular> Evidence<S> {
-    /// Changes the front as the run did.
+    /// Changes the front as the run did, which calls the same functions where it records these notes.
     pub fn apply(&self, front: &mut Front) {
         match self {
             Self::Seeded(n) => front.put(n.cell, 0.0, true),
             Self::Transferred(n) if n.keeps => {}
             Self::Transferred(n) => front.put(n.b, n.solidity, n.star_shaped),
             Self::Projected(n) => front.project(n.cell),
-            Self::Asked(n) if n.answer.is_hidden => front.leave_out(n.cell),
+            Self::Queried(n) if n.answer.is_hidden => front.leave_out(n.cell),
             _ => {}
         }
     }
@@ -174,12 +189,12 @@ impl<S: Cellular> Tallied for Evidence<S> {
                 tally.add("cells_projected", 1);
                 tally.add("empty_cells_projected", (n.held == 0).into());
             }
-            Self::Asked(n) => {
+            Self::Queried(n) => {
                 tally.add("cells_asked", 1);
                 tally.add("cells_hidden", n.answer.is_hidden.into());
             }
             Self::Bounded(_) => tally.add("bounds_found", 1),
-            Self::Ended(_) => {}
+            Self::Compared(_) | Self::Ended(_) => {}
         }
     }
 }
@@ -192,7 +207,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
             Self::Transferred(_) => "SolidityTransferred",
             Self::Projected(_) => "CellProjected",
-            Self::Asked(_) => "CellAsked",
+            Self::Queried(_) => "CellAsked",
+            Self::Compared(_) => "PrimCompared",
             Self::Bounded(_) => "DoubtBounded",
             Self::Ended(_) => "TraversalEnded",
         }
@@ -204,15 +220,24 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.subject(),
             Self::Transferred(n) => Subject::Node(node_of(n.b)),
             Self::Projected(n) => Subject::Node(node_of(n.cell)),
-            Self::Asked(n) => Subject::Node(node_of(n.cell)),
-            Self::Bounded(_) | Self::Ended(_) => Subject::None,
+            Self::Queried(n) => Subject::Node(node_of(n.cell)),
+            Self::Compared(n) => Subject::Prim(n.prim),
+            // About all cells, which are below the root.
+            Self::Bounded(_) | Self::Ended(_) => Subject::Node(NodeId(0)),
         }
     }
     fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
-            _ => None,
+            Self::Queried(n) => n.answer.is_hidden.then_some(Claim::Hidden),
+            Self::Compared(n) => n.is_hidden.then_some(Claim::Hidden),
+            // Solidity is a guess: it proves nothing.
+            Self::Seeded(_)
+            | Self::Transferred(_)
+            | Self::Projected(_)
+            | Self::Bounded(_)
+            | Self::Ended(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -249,7 +274,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("drawn", n.drawn),
                 integer("budget_left", n.left),
             ],
-            Self::Asked(n) => vec![
+            Self::Queried(n) => vec![
                 integer("node", node_of(n.cell).0),
                 number("solidity", n.solidity.into()),
                 number("nearest", n.answer.nearest.into()),
@@ -257,6 +282,14 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("reads", n.answer.reads),
                 switch("hidden", n.answer.is_hidden),
             ],
+            Self::Compared(n) => {
+                let depths = n.depths.map_or(Vec::new(), |d| d.map(f64::from).to_vec());
+                vec![
+                    integer("prim", n.prim.0),
+                    Field { name: "nearest_and_held", value: Value::List(depths) },
+                    switch("hidden", n.is_hidden),
+                ]
+            }
             Self::Bounded(n) => vec![
                 number("share", n.share.into()),
                 number("allowed", n.most.into()),
@@ -284,7 +317,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 n.held,
                 n.left
             ),
-            Self::Asked(n) => asked_sentence(n),
+            Self::Queried(n) => query_sentence(n),
+            Self::Compared(n) => comparison_sentence::<S>(n),
             Self::Bounded(n) => format!(
                 "After {} {prims}s what is left could still change {} % of the image; {} % are allowed: {}.",
                 n.drawn,
@@ -322,7 +356,19 @@ fn seed_sentence(n: &Seeded) -> String {
     }
 }
 
-fn asked_sentence(n: &Asked) -> String {
+fn comparison_sentence<S: Cellular>(n: &Compared) -> String {
+    let name = format!("The {} {}", S::PRIM, n.prim);
+    let end = if n.is_hidden { "it is hidden" } else { "it is drawn" };
+    match n.depths.map(|depths| depths.map(|depth| short(1.0 / depth))) {
+        Some([nearest, held]) => format!(
+            "{name} begins at depth {nearest}, and the farthest that is drawn where it would show is at \
+             {held}: {end}."
+        ),
+        None => format!("{name} is cut by the view volume or covers no pixel's center: {end}."),
+    }
+}
+
+fn query_sentence(n: &Queried) -> String {
     let node = node_of(n.cell);
     let depth = |v: f32| short(1.0 / v);
     match (n.answer.is_hidden, n.answer.decisive) {
@@ -349,6 +395,7 @@ fn asked_sentence(n: &Asked) -> String {
 
 fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let (a, b) = (node_of(n.a), node_of(n.b));
+    // The formula of line 1 with names, then with numbers.
     let part = if n.along == 1.0 { "ρ(A)" } else { "(v · n) ρ(A)" };
     let (name, share) = if n.share == n.held as f32 / n.most.max(1) as f32 {
         ("|A| / ρ_max", format!("{} / {}", n.held, n.most))
@@ -378,10 +425,12 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
 /// Numbers the latest projected cells and writes the solidities of the front, the latest and the least solid
 /// first, as far as labels do not meet when the whole scene is shown.
 fn labels<S: Cellular>(front: &Front, scene: &Scene<S>, index: &Index<S>, to: &mut Drawing<S::Vector>) {
+    // In world units: zooming in makes room, and the labels stay those of the whole picture.
     let apart = scene.bounds().diagonal() * LABELS_APART;
     let numbered = front.projected().iter().enumerate().rev().take(NUMBERED);
     let projected = numbered.map(|(at, &cell)| (cell, format!("#{}", at + 1)));
-    let front = front.in_order().into_iter().take(LABELED).map(|q| (q.cell, short(q.solidity)));
+    let front = front.first(LABELED).into_iter().map(|q| (q.cell, short(q.solidity)));
+    // First come, first served: the projected ones, which are few and certain, before the front.
     let mut taken: Vec<S::Vector> = Vec::new();
     for (cell, text) in projected.chain(front) {
         let at = index.cells.any().center(cell);
@@ -400,13 +449,14 @@ pub fn draw<S: Cellular + Faces>(
     to: &mut Drawing<S::Vector>,
 ) {
     let Frame { index, scene, view, .. } = *frame;
-    // In space the edges of many cells hide each other and the scene: those that are next say more.
+    // The front itself: in the plane all of it, in space what is next.
     let shown = if S::Vector::AXES == 2 { usize::MAX } else { NEXT_IN_SPACE };
-    let next = front.in_order().into_iter().take(shown);
+    let next = front.first(shown).into_iter();
     next.for_each(|queued| outline(index, queued.cell, Layer::Nodes, Role::Undecided, to));
     if S::Vector::AXES == 2 {
         labels(front, scene, index, to);
     }
+    // What the step is about, over it.
     match note {
         Some(Evidence::Tested(n)) => n.draw(view, to),
         Some(Evidence::Facing(n)) => n.draw(scene, view, to),
@@ -420,10 +470,11 @@ pub fn draw<S: Cellular + Faces>(
             );
         }
         Some(Evidence::Projected(n)) => outline(index, n.cell, Layer::Emphasis, Role::Current, to),
-        Some(Evidence::Asked(n)) => {
+        Some(Evidence::Queried(n)) => {
             let role = if n.answer.is_hidden { Role::Hidden } else { Role::Current };
             outline(index, n.cell, Layer::Emphasis, role, to);
         }
+        Some(Evidence::Compared(n)) => evidence::outline(scene, n.prim, to),
         Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),
         Some(Evidence::Bounded(_) | Evidence::Ended(_)) | None => {}
     }
@@ -438,15 +489,19 @@ fn draw_transfer<S: Cellular>(
     to: &mut Drawing<S::Vector>,
 ) {
     let cells = index.cells.any();
+    // The two cells: A, just projected, and B beside it.
     outline(index, n.a, Layer::Emphasis, Role::Partial, to);
     outline(index, n.b, Layer::Emphasis, Role::Current, to);
     let (a, b) = (cells.center(n.a), cells.center(n.b));
+    // As long as shows in the cell and does not reach the next one.
     let length = 0.4 * cells.bounds(n.b).diagonal();
     let subject = Subject::Node(node_of(n.b));
+    // Both unit vectors from the center of A at one length, so that v · n is read off the angle.
     to.push(Layer::Evidence, Role::Evidence, subject, Mark::Arrow(a, a + n.normal * length));
     label(to, a + n.normal * length, "n".into());
     to.push(Layer::Evidence, Role::Eye, subject, Mark::Arrow(a, a + n.sight * length));
     label(to, a + n.sight * length, "v".into());
+    // The test for the penalty: whether this ray leaves B through the face to A.
     to.line(
         Layer::Evidence,
         if n.star_shaped { Role::Faint } else { Role::Hidden },

@@ -2,7 +2,11 @@
 //!
 //! Klosowski and Silva 2000, Sections 3.2 and 4.2: a priority queue in which a cell that is put in again gets
 //! the new value and leaves its old place, and in which equal values leave in the order in which they were
-//! put in. Cost: O(log n).
+//! put in.
+//!
+//! A binary heap cannot remove from its middle, so a cell that is put in again leaves a stale entry behind,
+//! which is dropped when it comes to the top. Stale entries are no more than the faces that cells were
+//! reached by. Cost: O(log n) for a cell put in or taken out, amortized.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -11,16 +15,17 @@ use crate::geometry::CellId;
 
 /// What is known of a cell in this frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct State {
+struct Place {
     solidity: f32,
-    /// When it was last put in, from 1; 0 if never, [`PROJECTED`] once it was taken out.
+    /// When it was last put in, from 1; 0 if never, [`GONE`] once it left for good.
     turn: u32,
     is_star_shaped: bool,
 }
 
-const PROJECTED: u32 = u32::MAX;
+/// The turn of a cell that was projected or left out.
+const GONE: u32 = u32::MAX;
 
-/// An entry of the heap; stale if the cell was put in again later.
+/// An entry of the heap; stale if the cell was put in again later, or left.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     solidity: f32,
@@ -29,7 +34,8 @@ struct Entry {
 }
 
 impl Ord for Entry {
-    /// The heap's greatest is the least solid, and of equal ones the first.
+    /// The heap's greatest is the least solid. Ties leave first in, first out, by the time stamp of
+    /// Section 4.2.
     fn cmp(&self, other: &Self) -> Ordering {
         other.solidity.total_cmp(&self.solidity).then(other.turn.cmp(&self.turn))
     }
@@ -46,11 +52,13 @@ impl PartialEq for Entry {
 }
 impl Eq for Entry {}
 
-/// The queue of one frame, with what was taken from it.
+/// The queue of one frame, with what was taken from it. A run and its film change it by [`Front::put`],
+/// [`Front::project`] and [`Front::leave_out`] only.
 #[derive(Clone, Debug, Default)]
 pub struct Front {
+    /// The entry at the top is never stale.
     heap: BinaryHeap<Entry>,
-    cells: Vec<State>,
+    cells: Vec<Place>,
     turns: u32,
     projected: Vec<CellId>,
 }
@@ -72,65 +80,87 @@ pub struct Queued {
 }
 
 impl Front {
+    /// Bytes that a copy takes for each cell at most: its place, its number among the projected ones, and
+    /// an entry of the heap, of which there are fewer than cells while the front is a surface.
+    #[cfg(test)]
+    pub const BYTES_A_CELL: usize = size_of::<Place>() + size_of::<CellId>() + size_of::<Entry>();
+
     /// Empties it for so many cells.
     pub fn clear(&mut self, cells: usize) {
         self.heap.clear();
         self.cells.clear();
-        self.cells.resize(cells, State::default());
+        self.cells.resize(cells, Place::default());
         self.projected.clear();
         self.turns = 0;
     }
-    /// Whether a cell was taken out.
+    /// Whether a cell was projected, or left out for good.
     #[inline]
     pub fn is_projected(&self, cell: CellId) -> bool {
-        self.cells[cell.at()].turn == PROJECTED
+        self.cells[cell.at()].turn == GONE
     }
     /// The solidity of a cell in the queue.
     pub fn solidity(&self, cell: CellId) -> Option<f32> {
-        self.is_queued(cell).then(|| self.cells[cell.at()].solidity)
+        let place = self.cells[cell.at()];
+        (place.turn != 0 && place.turn != GONE).then_some(place.solidity)
     }
-    fn is_queued(&self, cell: CellId) -> bool {
-        !matches!(self.cells[cell.at()].turn, 0 | PROJECTED)
+    /// The cell of least solidity; it stays until it is projected or left out.
+    #[inline]
+    pub fn least(&self) -> Option<(CellId, f32)> {
+        self.heap.peek().map(|entry| (entry.cell, entry.solidity))
     }
-    /// Puts a cell in that was not taken out; replaces its earlier entry.
+    /// Puts a cell in that did not leave; replaces its earlier entry.
     #[inline]
     pub fn put(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
         self.turns += 1;
-        self.cells[cell.at()] = State { solidity, turn: self.turns, is_star_shaped };
+        self.cells[cell.at()] = Place { solidity, turn: self.turns, is_star_shaped };
         self.heap.push(Entry { solidity, turn: self.turns, cell });
+        self.drop_stale();
     }
-    /// Takes out the cell of least solidity.
-    #[inline]
-    pub fn take(&mut self) -> Option<(CellId, f32)> {
-        loop {
-            let entry = self.heap.pop()?;
-            if self.cells[entry.cell.at()].turn == entry.turn {
-                self.leave_out(entry.cell);
-                return Some((entry.cell, entry.solidity));
-            }
-        }
-    }
-    /// A cell that was taken out was projected.
+    /// Takes out a cell that is projected.
     pub fn project(&mut self, cell: CellId) {
         self.leave_out(cell);
         self.projected.push(cell);
     }
-    /// A cell is in the queue no longer.
+    /// Takes out a cell that is not projected.
     #[inline]
     pub fn leave_out(&mut self, cell: CellId) {
-        self.cells[cell.at()].turn = PROJECTED;
+        self.cells[cell.at()].turn = GONE;
+        self.drop_stale();
     }
-    /// The cells in the order in which they will be taken if none is put in again. O(cells).
-    pub fn in_order(&self) -> Vec<Queued> {
-        let cells = (0..self.cells.len() as u32).map(CellId).filter(|&c| self.is_queued(c));
-        let mut all: Vec<(u32, Queued)> = cells
-            .map(|cell| {
-                let State { solidity, turn, is_star_shaped } = self.cells[cell.at()];
-                (turn, Queued { cell, solidity, is_star_shaped })
-            })
-            .collect();
-        all.sort_by(|(turn, a), (later, b)| a.solidity.total_cmp(&b.solidity).then(turn.cmp(later)));
-        all.into_iter().map(|(_, queued)| queued).collect()
+    fn drop_stale(&mut self) {
+        while self.heap.peek().is_some_and(|entry| !self.is_current(entry)) {
+            self.heap.pop();
+        }
+    }
+    #[inline]
+    fn is_current(&self, entry: &Entry) -> bool {
+        self.cells[entry.cell.at()].turn == entry.turn
+    }
+    fn waiting(&self) -> impl Iterator<Item = &Entry> {
+        self.heap.iter().filter(|entry| self.is_current(entry))
+    }
+    /// How many cells wait. O(entries of the heap).
+    pub fn count(&self) -> usize {
+        self.waiting().count()
+    }
+    /// The first `most` cells in the order in which they will be taken if none is put in again.
+    /// O(entries of the heap + k log k) for k cells: drawn at every step of a film, it looks at no cell that
+    /// the front did not reach and sorts none that is not shown.
+    pub fn first(&self, most: usize) -> Vec<Queued> {
+        let mut entries: Vec<Entry> = self.waiting().copied().collect();
+        let later = |a: &Entry, b: &Entry| b.cmp(a);
+        if entries.len() > most {
+            entries.select_nth_unstable_by(most, later);
+            entries.truncate(most);
+        }
+        // No two entries have the same turn, so the order is total.
+        entries.sort_unstable_by(later);
+        let queued = |entry: Entry| Queued {
+            cell: entry.cell,
+            solidity: entry.solidity,
+            is_star_shaped: self.cells[entry.cell.at()].is_star_shaped,
+        };
+        entries.into_iter().map(queued).collect()
     }
     /// The cells that were projected, in order.
     pub fn projected(&self) -> &[CellId] {
@@ -144,6 +174,14 @@ mod tests {
     use rand_pcg::Pcg32;
     use rand_pcg::rand_core::Rng;
 
+    fn take(front: &mut Front) -> Option<(CellId, f32)> {
+        let least = front.least();
+        if let Some((cell, _)) = least {
+            front.project(cell);
+        }
+        least
+    }
+
     #[test]
     fn the_least_leaves_first_and_of_equal_ones_the_first() {
         let mut front = Front::default();
@@ -152,7 +190,7 @@ mod tests {
             front.put(CellId(cell), solidity, true);
         }
         assert_eq!((front.solidity(CellId(3)), front.solidity(CellId(4))), (Some(3.0), None));
-        let order: Vec<_> = std::iter::from_fn(|| front.take()).map(|(c, s)| (c.0, s)).collect();
+        let order: Vec<_> = std::iter::from_fn(|| take(&mut front)).map(|(c, s)| (c.0, s)).collect();
         assert_eq!(order, [(2, 1.0), (1, 1.0), (0, 2.0), (3, 3.0)], "cell 1 was put in again, behind 2");
         assert!(front.is_projected(CellId(1)) && !front.is_projected(CellId(4)));
     }
@@ -175,7 +213,14 @@ mod tests {
                 let want = (0..list.len())
                     .min_by(|a, b| list[*a].1.total_cmp(&list[*b].1))
                     .map(|at| list.remove(at));
-                assert_eq!(front.take(), want);
+                let first: Vec<_> = front.first(3).iter().map(|q| (q.cell, q.solidity)).collect();
+                assert_eq!(front.count(), list.len() + usize::from(want.is_some()));
+                assert_eq!(first.first().copied(), want);
+                assert_eq!(
+                    first,
+                    front.first(usize::MAX).iter().take(3).map(|q| (q.cell, q.solidity)).collect::<Vec<_>>()
+                );
+                assert_eq!(take(&mut front), want);
             }
         }
     }

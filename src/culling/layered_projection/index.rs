@@ -1,51 +1,21 @@
 //! What is built once: cells, which primitives meet which cell, and both as bytes.
 //!
-//! Klosowski and Silva 2000, Sections 3.1, 4.3 and 5.1. To the rest of the house it is a tree of two levels:
-//! the region, and below it the cells.
+//! Klosowski and Silva 2000, Sections 3.1, 4.3 and 5.1: 1. divide space into cells ([`super::cells`]);
+//! 2. assign to each cell the primitives that meet it, and find ρ_max, the most that meet any. Instead of
+//! marking every primitive that was drawn (Section 4.1), those that meet one cell alone are kept apart: only
+//! the others need a mark. To the rest of the house it is a tree of two levels: the region, and below it the
+//! cells.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::Params;
+use super::cells::Cells;
 use super::saved::{self, Key};
 use crate::geometry::{Aabb, CellId, NodeId, PrimId, Space};
 use crate::index::Hierarchy;
-use crate::index::tessellation::{
-    Assignment, BoxCells, Cellular, Fineness, SimplexCells, Tessellation, vertex_kd_tree, vertex_octree,
-};
+use crate::index::tessellation::{Assignment, Cellular, Tessellation};
 use crate::scene::{Part, Progress, Scene};
-
-/// Cells of either shape.
-#[derive(Clone, Debug)]
-pub enum Cells<S: Cellular> {
-    /// Of an octree or a kD-tree.
-    Boxes(BoxCells<S::Vector>),
-    /// Of a Delaunay triangulation.
-    Simplices(SimplexCells<S>),
-}
-
-impl<S: Cellular> Cells<S> {
-    /// Whatever they are.
-    pub fn any(&self) -> &dyn Tessellation<S> {
-        match self {
-            Self::Boxes(cells) => cells,
-            Self::Simplices(cells) => cells,
-        }
-    }
-    fn build(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
-        let fineness = Fineness { leaf_share: params.leaf_size as f32 / 100.0, ..Fineness::default() };
-        let cancelled = || progress.cancelled();
-        match params.tessellation {
-            Params::KD_TREE => vertex_kd_tree(scene, fineness, cancelled).map(Self::Boxes),
-            Params::DELAUNAY => {
-                let boxes = vertex_octree(scene, fineness, cancelled)?;
-                progress.report(0.5, "triangulating the cells' centers");
-                SimplexCells::of_centers(&boxes, params.seed, &cancelled).map(Self::Simplices)
-            }
-            _ => vertex_octree(scene, fineness, cancelled).map(Self::Boxes),
-        }
-    }
-}
 
 /// Cells and what is in them.
 #[derive(Clone, Debug)]
@@ -59,6 +29,7 @@ pub struct Index<S: Cellular> {
 impl<S: Cellular> Index<S> {
     /// Builds it. `None` when cancelled.
     pub fn build(scene: &Arc<Scene<S>>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+        // 1. and 2.: assigning takes the larger part of the time, so it gets the larger part of the bar.
         progress.report(0.0, "dividing space into cells");
         let cells = Cells::build(scene, params, &Part { whole: progress, start: 0.0, length: 0.3 })?;
         let assignment =
@@ -74,6 +45,7 @@ impl<S: Cellular> Index<S> {
         Ok(Self::of(scene, params, cells, assignment))
     }
     fn of(scene: &Arc<Scene<S>>, params: &Params, cells: Cells<S>, assignment: Assignment) -> Self {
+        // The root's box holds the scene and every cell, whichever reaches farther.
         let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
         let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
         Self { cells, assignment, key: Key::of(scene, params), bounds }

@@ -1,24 +1,30 @@
 //! `layered-projection`: draws what is most likely visible first, until a budget is spent.
 //!
 //! Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set Estimation", IEEE TVCG
-//! 6(2), 2000, <https://doi.org/10.1109/2945.856993>. Space is divided into cells ([`index`]); from the cell
-//! of the Eye on, the front ([`front`]) grows over neighbors, and always the cell is projected that has the
-//! least solidity: an estimate of how much stands between it and the Eye, handed on from cell to cell
-//! (Figures 4 to 6, [`walk`]).
+//! 6(2), 2000, <https://doi.org/10.1109/2945.856993>. Its steps, by which the bodies refer to them:
 //!
-//! Departures: the view direction of the transfer is that from the Eye to the cell's center, for a single one
-//! says nothing near the rim of a wide view; a transfer against the view direction counts as none, not as
-//! negative; where a cell is cut by the view volume, its primitives are tested one by one, as the paper's
-//! baseline does; where the front runs dry before the budget does, the nearest cell in view that was not
-//! reached starts a new one, so that with an unlimited budget nothing is missed. The penalty is added: the
-//! paper leaves it open, and a factor leaves the solidity 0 of empty space as it is, through which the front
-//! flows around everything and takes what is behind for as good as what is seen. Two parameters go beyond the
-//! paper by default, for they find more (`cullscope paper klosowski-silva-table-1`): `transfer=whole` hands
-//! on all solidity in place of its part v · n, for through the oblique faces of tetrahedra that part shrinks
-//! from cell to cell; `update=star-shaped` lets the value stand that came through the face toward the Eye,
-//! where in the paper the latest one replaces it. `transfer=aligned`, `update=latest` is the paper's
-//! arithmetic. Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
+//! 1. Once per scene: divide space into cells that hold about equally much and assign the primitives to them
+//!    (Sections 3.1 and 4.3, [`cells`], [`index`]).
+//! 2. Begin with the cell that holds the Eye, or else the nearest one (Section 4.2).
+//! 3. Take the cell of least solidity, an estimate of how much stands between it and the Eye, out of the
+//!    front ([`front`]) and draw what is in it; end when the budget is spent (Figure 4, [`walk`]).
+//! 4. Hand its solidity on to its neighbors, with a penalty for those that the Eye does not see through the
+//!    shared face, and put them into the front; go to 3 (Figures 5 and 6).
+//! 5. Extensions of Section 6: several seeds, queries of what the budget left out against the z-buffer, a
+//!    budget that grows until the image is good enough, and solidity by what faces the Eye ([`rest`]).
+//!
+//! Departures, argued where they are made: v is the direction from the Eye to the cell's center, not one for
+//! the whole frame; a transfer against the view direction counts as none; in a cell that the border of the
+//! view cuts, primitives are tested one by one; where the front runs dry before the budget does, a new one
+//! starts, so that with an unlimited budget nothing is missed; the penalty is added, not a factor. Two
+//! parameters go beyond the paper by default, for they find more (`cullscope paper klosowski-silva-table-1`):
+//! `transfer=whole` hands on all solidity in place of its part v · n, for through the oblique faces of
+//! tetrahedra that part shrinks from cell to cell; `update=star-shaped` lets the value stand that came
+//! through the face toward the Eye, where in the paper the latest one replaces it. `transfer=aligned`,
+//! `update=latest` is the paper's arithmetic. Cost: O(cells projected · log front) and the primitives in
+//! them; memory O(cells) a frame.
 
+mod cells;
 mod explain;
 mod front;
 mod index;
@@ -41,7 +47,7 @@ use crate::drawing::Drawing;
 use crate::index::tessellation::Cellular;
 use crate::method::{
     Budget, Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    backface_knob,
+    backface_knob, words,
 };
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
@@ -49,23 +55,58 @@ use crate::scene::{Progress, Scene};
 /// The method.
 pub struct LayeredProjection;
 
+words! {
+    /// Which cells space is divided into; the order is part of saved files.
+    enum CellKind {
+        /// Leaves of an octree over the vertices.
+        Octree = "octree",
+        /// A Delaunay triangulation of those leaves' centers.
+        Delaunay = "delaunay",
+        /// Leaves of a kD-tree over the vertices.
+        KdTree = "kd-tree",
+    }
+}
+words! {
+    /// How much of its solidity a cell hands on.
+    enum Transfer {
+        /// v · n of it, as in Figure 5.
+        Aligned = "aligned",
+        /// All of it.
+        Whole = "whole",
+    }
+}
+words! {
+    /// Which solidity a cell in the front keeps.
+    enum Update {
+        /// The latest, as in Figure 4.
+        Latest = "latest",
+        /// That which came through the face the Eye sees the cell through.
+        StarShaped = "star-shaped",
+    }
+}
+words! {
+    /// How the primitives of a cell add to its solidity.
+    enum Occupancy {
+        /// Each counts one, as in Section 3.2.
+        Count = "count",
+        /// Each counts the cosine between its normal and the way to the Eye (Section 6).
+        FrontFacing = "front-facing",
+    }
+}
+
 /// Parameters of [`LayeredProjection`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
-    /// Which of [`Params::TESSELLATIONS`].
-    tessellation: usize,
+    tessellation: CellKind,
     budget: Budget,
     /// Per cent of the scene's longest side.
     leaf_size: u32,
-    /// Which of [`Params::TRANSFERS`].
-    transfer: usize,
+    transfer: Transfer,
     /// Added to the solidity of a cell that is not star-shaped, per cent of a cell that holds ρ_max
     /// primitives.
-    penalty: u32,
-    /// Which of [`Params::UPDATES`].
-    update: usize,
-    /// Which of [`Params::OCCUPANCIES`].
-    occupancy: usize,
+    penalty: f32,
+    update: Update,
+    occupancy: Occupancy,
     seeds: u32,
     queries: bool,
     /// Per cent of the pixels; 0: the budget holds.
@@ -74,28 +115,21 @@ pub struct Params {
     backface_culling: bool,
 }
 
-impl Params {
-    const TESSELLATIONS: &'static [&'static str] = &["octree", "delaunay", "kd-tree"];
-    const DELAUNAY: usize = 1;
-    const KD_TREE: usize = 2;
-    const TRANSFERS: &'static [&'static str] = &["aligned", "whole"];
-    const WHOLE: usize = 1;
-    const UPDATES: &'static [&'static str] = &["latest", "star-shaped"];
-    const STAR_SHAPED: usize = 1;
-    const OCCUPANCIES: &'static [&'static str] = &["count", "front-facing"];
-    const FRONT_FACING: usize = 1;
-}
-
 impl Default for Params {
     fn default() -> Self {
         Self {
-            tessellation: Self::DELAUNAY,
+            // Of the paper's two the one that finds more (Section 5.2, Figure 12 a).
+            tessellation: CellKind::Delaunay,
+            // The largest budget of the paper's curves (Figures 10 and 11).
             budget: Budget::Percent(10.0),
+            // The paper's (Section 4.3, footnote 4).
             leaf_size: 5,
-            transfer: Self::WHOLE,
-            penalty: 30,
-            update: Self::STAR_SHAPED,
-            occupancy: 0,
+            transfer: Transfer::Whole,
+            // The paper gives none. A third of a full cell: enough that a cell is not taken behind an
+            // occluder, little enough that it is not taken after all others.
+            penalty: 30.0,
+            update: Update::StarShaped,
+            occupancy: Occupancy::Count,
             seeds: 1,
             queries: false,
             quality: 0,
@@ -123,15 +157,17 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Section 6", text: "after the budget: project c unless the z-buffer hides it" },
 ];
 
-/// Numbers of the lines that events refer to.
+/// Lines that the run reaches.
 mod line {
-    pub const TAKE: u8 = 1;
-    pub const PROJECT: u8 = 2;
-    pub const SPENT: u8 = 4;
-    pub const SKIP: u8 = 7;
-    pub const ENQUEUE: u8 = 9;
-    pub const PENALTY: u8 = 12;
-    pub const ASK: u8 = 14;
+    use super::CODE;
+    use crate::method::line;
+    pub const TAKE: u8 = line(CODE, "RenderingLoop:2");
+    pub const PROJECT: u8 = line(CODE, "RenderingLoop:3");
+    pub const SPENT: u8 = line(CODE, "RenderingLoop:5");
+    pub const SKIP: u8 = line(CODE, "RenderingLoop:8");
+    pub const ENQUEUE: u8 = line(CODE, "RenderingLoop:10");
+    pub const PENALTY: u8 = line(CODE, "UpdateSolidity:3");
+    pub const QUERY: u8 = line(CODE, "Section 6");
 }
 
 /// The paper, of which a parameter names the section.
@@ -159,59 +195,10 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         code: CODE,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let cells = Knob::new("tessellation", "", "which cells space is divided into", section!("4.3"));
-        knobs.choice(cells, Params::TESSELLATIONS, &mut params.tessellation);
-        let budget = Knob::new(
-            "budget",
-            "primitives",
-            "how much is drawn: a number of primitives, a share of the scene such as 10%, or what fits into \
-             a time such as 5ms",
-            section!("3"),
-        );
-        knobs.budget(budget, true, &mut params.budget);
-        let leaf = Knob::new(
-            "leaf-size",
-            "%",
-            "a cell shorter than this share of the scene's longest side is not divided",
-            section!("4.3"),
-        );
-        knobs.integer(leaf, 1..=100, &mut params.leaf_size);
-        let meaning =
-            "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
-        knobs.choice(
-            Knob::new("transfer", "", meaning, section!("3.2")),
-            Params::TRANSFERS,
-            &mut params.transfer,
-        );
-        let meaning = "added to the solidity of a cell that the eye does not see through the face it is \
-                       reached by; 100 is a full cell";
-        knobs.integer(Knob::new("penalty", "%", meaning, section!("3.2")), 0..=1000, &mut params.penalty);
-        let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from \
-                       the face the eye sees it through";
-        knobs.choice(Knob::new("update", "", meaning, section!("3.2")), Params::UPDATES, &mut params.update);
-        let meaning = "how a cell's primitives count: each as one, as in the paper, or by the cosine toward \
-                       the eye of those that face it";
-        knobs.choice(
-            Knob::new("occupancy", "", meaning, section!("6")),
-            Params::OCCUPANCIES,
-            &mut params.occupancy,
-        );
-        let meaning = "cells from which the front grows: that of the eye, and the first with primitives on \
-                       rays into the view";
-        knobs.integer(Knob::new("seeds", "", meaning, section!("6")), 1..=10_000, &mut params.seeds);
-        let meaning = "after the budget each cell left is asked against the z-buffer and drawn unless \
-                       hidden, so that nothing visible is missed";
-        knobs.switch(Knob::new("queries", "", meaning, section!("6")), &mut params.queries);
-        let meaning =
-            "the budget grows until at least so many of the pixels can no longer change; 0: it does not grow";
-        knobs.integer(Knob::new("quality", "%", meaning, section!("6")), 0..=100, &mut params.quality);
-        let seed = Knob::new(
-            "seed",
-            "",
-            "decides how the centers of cells are moved before they are triangulated",
-            section!("4.3"),
-        );
-        knobs.integer(seed, 0..=u32::MAX, &mut params.seed);
+        paper_knobs(params, knobs);
+        extension_knobs(params, knobs);
+        let meaning = "decides how the centers of cells are moved before they are triangulated";
+        knobs.integer(Knob::new("seed", "", meaning, section!("4.3")), 0..=u32::MAX, &mut params.seed);
         backface_knob(knobs, &mut params.backface_culling);
     }
     fn build(
@@ -236,15 +223,55 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         Walk::new(frame, front, out, watch).run();
     }
     fn is_conservative(params: &Params) -> bool {
-        // Queries decide about all that the budget leaves; a budget of everything leaves nothing.
+        // Queries decide about all that the budget leaves; a budget of everything leaves nothing. A time may
+        // leave something even with queries: it ends them too.
         !matches!(params.budget, Budget::Milliseconds(_))
             && (params.queries || params.budget == Budget::Percent(100.0))
     }
 }
 
+/// Parameters of Sections 3 and 4.
+fn paper_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+    let cells = Knob::new("tessellation", "", "which cells space is divided into", section!("4.3"));
+    knobs.words(cells, &mut params.tessellation);
+    let meaning = "how much is drawn: a number of primitives, a share of the scene such as 10%, or what fits \
+                   into a time such as 5ms";
+    knobs.budget(Knob::new("budget", "primitives", meaning, section!("3")), true, &mut params.budget);
+    let meaning = "a cell shorter than this share of the scene's longest side is not divided";
+    knobs.integer(Knob::new("leaf-size", "%", meaning, section!("4.3")), 1..=100, &mut params.leaf_size);
+    let meaning =
+        "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
+    knobs.words(Knob::new("transfer", "", meaning, section!("3.2")), &mut params.transfer);
+    let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached \
+                   by; 100 is a full cell";
+    knobs.real(Knob::new("penalty", "%", meaning, section!("3.2")), 0.0..=1000.0, &mut params.penalty);
+    let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from the \
+                   face the eye sees it through";
+    knobs.words(Knob::new("update", "", meaning, section!("3.2")), &mut params.update);
+}
+
+/// Parameters of the extensions in Section 6.
+fn extension_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+    let meaning = "how a cell's primitives count: each as one, as in the paper, or by the cosine toward the \
+                   eye of those that face it";
+    knobs.words(Knob::new("occupancy", "", meaning, section!("6")), &mut params.occupancy);
+    let meaning = "cells from which the front grows: that of the eye, and the first with primitives on rays \
+                   into the view";
+    knobs.integer(Knob::new("seeds", "", meaning, section!("6")), 1..=10_000, &mut params.seeds);
+    let meaning = "after the budget each cell left is asked against the z-buffer and drawn unless hidden, so \
+                   that nothing visible is missed";
+    knobs.switch(Knob::new("queries", "", meaning, section!("6")), &mut params.queries);
+    let meaning =
+        "the budget grows until at least so many of the pixels can no longer change; 0: it does not grow";
+    knobs.integer(Knob::new("quality", "%", meaning, section!("6")), 0..=100, &mut params.quality);
+}
+
 impl<S: Cellular + Faces> State<S, LayeredProjection> for Front {
-    // A copy of the front takes far longer than replaying a change of it.
-    const KEYFRAME_NOTES: usize = 2048;
+    // A copy takes up to 28 bytes a cell, a note with its events about 100. So with 100,000 cells (the paper's
+    // largest scene has 60,000, Section 5.1) all keyframes together take less memory than the film, however
+    // long it is; `tests` holds it to that. Replaying this many notes takes some milliseconds, so that
+    // seeking stays within one displayed frame.
+    const KEYFRAME_NOTES: usize = 1 << 15;
     fn begin(&mut self, frame: &Frame<'_, S, LayeredProjection>) {
         self.clear(frame.index.count());
     }

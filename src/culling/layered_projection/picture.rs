@@ -29,11 +29,12 @@ pub fn picture<S: Cellular>(front: &Front, notes: &[Evidence<S>], which: usize) 
 /// The front in the order in which it will be taken if nothing is put in again, and what was taken last.
 fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
     let mut to = Drawing::default();
-    let queue = front.in_order();
-    heading(&mut to, 0.0, format!("The front, least solid first: {} cells", queue.len()));
+    let (queue, count) = (front.first(ROWS), front.count());
+    heading(&mut to, 0.0, format!("The front, least solid first: {count} cells"));
     heading(&mut to, 300.0, format!("Projected, the latest first: {}", front.projected().len()));
-    let most = queue.iter().take(ROWS).map(|q| q.solidity).fold(f32::MIN_POSITIVE, f32::max);
-    for (row, queued) in queue.iter().take(ROWS).enumerate() {
+    // On the left the queue; bars are relative to the longest one shown.
+    let most = queue.iter().map(|q| q.solidity).fold(f32::MIN_POSITIVE, f32::max);
+    for (row, queued) in queue.iter().enumerate() {
         let y = TOP_PT + ROW_PT * row as f32;
         let how = if queued.is_star_shaped { "" } else { ", penalized" };
         text(
@@ -47,10 +48,11 @@ fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
         let role = if queued.is_star_shaped { Role::Undecided } else { Role::Hidden };
         bar(&mut to, role, Subject::Node(node_of(queued.cell)), [150.0, y - 7.0, 150.0 + width.max(0.5), y]);
     }
-    let left_out = queue.len().saturating_sub(ROWS);
+    let left_out = count - queue.len();
     if left_out > 0 {
         text(&mut to, 0.0, TOP_PT + ROW_PT * ROWS as f32, Role::Faint, format!("and {left_out} more"));
     }
+    // On the right what was taken out, read from the end of the notes: only the rows shown are visited.
     let projected =
         notes.iter().rev().filter_map(|n| if let Evidence::Projected(p) = n { Some(p) } else { None });
     for (row, p) in projected.take(ROWS).enumerate() {
@@ -81,6 +83,7 @@ fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
     let (left, right, top, bottom) = (44.0, WIDTH_PT - 6.0, TOP_PT + 4.0, 190.0);
     let each = taken.len().div_ceil(BARS).max(1);
     let width = (right - left) / taken.len().div_ceil(each).max(1) as f32;
+    // One bar for several cells if there are too many; a chunk draws if one of its cells does.
     for (at, some) in taken.chunks(each).enumerate() {
         let Some(tallest) = some.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
         let draws = some.iter().any(|t| t.2 > 0);
@@ -94,6 +97,7 @@ fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
             [x, y.min(bottom - 0.8), x + (width * 0.85).max(0.3), bottom],
         );
     }
+    // The axes, and the key of the two colors.
     to.line(Layer::Evidence, Role::Ink, Subject::None, [vec2(left, bottom), vec2(right, bottom)]);
     for (share, y) in [(0.0, bottom), (1.0, top)] {
         to.text(Layer::Labels, Role::Ink, vec2(left - 4.0, y + 3.0), 8.0, Anchor::End, short(share * most));

@@ -1,6 +1,9 @@
-//! What the budget leaves, asked against the z-buffer of what it drew (Section 6): PLP first, then queries
-//! for the rest, which make the result exact; and how much of the image the rest could still change, which
-//! tells when a budget is enough.
+//! What the budget leaves, compared with the z-buffer of what it drew. Two extensions of Section 6:
+//!
+//! 1. "Render a first chunk of geometry, then use the hardware to cull away unprojected geometry": queries
+//!    for the rest, which make the result exact.
+//! 3. "Adjust the PLP budget to increase the quality": how much of the image the rest could still change,
+//!    by which a budget is found to be enough.
 //!
 //! A cell is hidden if its box is; then the primitives that meet it alone are. Of those that meet several
 //! cells each is compared by itself, since its fragments may reach over a cell's boundary by the rasterizer's
@@ -27,6 +30,7 @@ impl<S: Faces> Rest<S> {
     /// Draws what was added to the frame's primitives.
     pub fn catch_up(&mut self, scene: &Scene<S>, prims: &[PrimId]) {
         if self.drawn < prims.len() {
+            // Those that the pyramid hides are not drawn, which changes no pixel.
             self.buffer.draw(scene, &prims[self.drawn..], &Options::default());
             self.drawn = prims.len();
         }
@@ -39,6 +43,12 @@ impl<S: Faces> Rest<S> {
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId]) -> &[PrimId] {
         self.buffer.refresh_all();
         self.buffer.draw(scene, prims, &Options::default())
+    }
+    /// What [`Rest::draw`] compared for a primitive: its nearest depth, and the farthest that is drawn where
+    /// it would show, `1/w`. `None` where the view volume cuts it or it covers no pixel.
+    pub fn depths(&self, scene: &Scene<S>, prim: PrimId) -> Option<[f32; 2]> {
+        let (extent, held) = self.buffer.operands(scene, prim, &Options::default())?;
+        Some([extent.nearest, held])
     }
     /// Begins to find out what part of the image can still change.
     pub fn doubt(&mut self, view: &View<S>) -> Doubt<'_, S> {
@@ -64,7 +74,9 @@ pub struct Doubt<'a, S: Faces> {
 }
 
 impl<S: Faces> Doubt<'_, S> {
-    /// Level of the pyramid whose cells are marked: blocks of 4 × 4 pixels, or as large as the pyramid's top.
+    /// Level of the pyramid whose cells are marked: blocks of 4 × 4 pixels. Finer, and the boxes' rectangles
+    /// cost sixteen times as many marks; coarser, and a block with one open pixel counts as changed by ever
+    /// more pixels that are not.
     const LEVEL: u32 = 2;
 
     /// Marks what the contents of a box could change.
@@ -93,6 +105,8 @@ impl<S: Faces> Doubt<'_, S> {
         if r.is_empty() || self.is_all {
             return;
         }
+        // In `1/w` the greater is the nearer: something at least as near as the farthest that a block holds
+        // could show in it. Equal depths count, since which of two equals shows is the rasterizer's choice.
         for y in r.y0 >> Self::LEVEL..=(r.y1 - 1) >> Self::LEVEL {
             for x in r.x0 >> Self::LEVEL..=(r.x1 - 1) >> Self::LEVEL {
                 let mark = &mut self.marks[(y * self.columns + x) as usize];
@@ -107,6 +121,7 @@ impl<S: Faces> Doubt<'_, S> {
             return 1.0;
         }
         let (width, height) = (self.view.width, self.view.height);
+        // Blocks at the right and lower border are cut by the image: count their pixels, not the blocks.
         let pixels = |at: usize| {
             let (x, y) = (at as u32 % self.columns, at as u32 / self.columns);
             let r = PyramidCell { level: Self::LEVEL as u8, x: x as u16, y: y as u16 }.pixels(width, height);

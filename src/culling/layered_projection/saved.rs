@@ -2,15 +2,16 @@
 //! against scene and parameters.
 //!
 //! Little-endian: the magic with the version, SHA-256 of the scene in hex, the parameters that the cells
-//! depend on, seven tables with their lengths (two of the cells, one of points or the region, four of the
-//! assignment), and SHA-256 of all that.
+//! depend on, six tables with their lengths (the points or the region, the cells, four of the assignment), and
+//! SHA-256 of all that.
 
 use sha2::{Digest, Sha256};
 
-use super::Params;
-use super::index::Cells;
+use super::cells::Cells;
+use super::{CellKind, Params};
 use crate::geometry::{Aabb, Vector};
 use crate::index::tessellation::{Assignment, BoxCells, Cellular, Simplex, SimplexCells};
+use crate::method::Words;
 use crate::scene::Scene;
 
 /// First bytes of a file; the last one is the version.
@@ -31,14 +32,15 @@ pub struct Key {
 impl Key {
     pub fn of<S: Cellular>(scene: &Scene<S>, params: &Params) -> Self {
         // Only one of the tessellations depends on the seed.
-        let seed = if params.tessellation == Params::DELAUNAY { params.seed } else { 0 };
-        Self { scene: scene.hash_hex(), params: [params.tessellation as u32, params.leaf_size, seed] }
+        let seed = if params.tessellation == CellKind::Delaunay { params.seed } else { 0 };
+        let tessellation = params.tessellation.number() as u32;
+        Self { scene: scene.hash_hex(), params: [tessellation, params.leaf_size, seed] }
     }
     fn describe(params: [u32; 3]) -> String {
         let [tessellation, leaf_size, seed] = params;
         format!(
             "tessellation={} leaf-size={leaf_size} seed={seed}",
-            Params::TESSELLATIONS.get(tessellation as usize).unwrap_or(&"?")
+            CellKind::WORDS.get(tessellation as usize).unwrap_or(&"?")
         )
     }
 }
@@ -61,6 +63,7 @@ pub fn write<S: Cellular>(key: &Key, cells: &Cells<S>, assignment: &Assignment) 
         }
     };
     let [own, own_starts, shared, shared_starts] = assignment.tables();
+    // Everything is a row of 32-bit words: reals by their bits, so that nothing is rounded.
     let tables: [Vec<u32>; TABLES] = [points, cells, own, own_starts, shared, shared_starts];
     let mut bytes = MAGIC.to_vec();
     bytes.extend(key.scene.as_bytes());
@@ -84,6 +87,8 @@ pub fn read<S: Cellular>(
     let damaged = || "the file is damaged".to_owned();
     let (body, sum) = bytes.split_last_chunk::<CHECKSUM>().ok_or_else(damaged)?;
     let (magic, rest) = body.split_first_chunk::<12>().ok_or_else(damaged)?;
+    // The version first, so that an older file is not called damaged; then the sum, so that what follows may
+    // trust every length.
     if magic != MAGIC {
         return Err("it is no preprocess of layered-projection that this version reads".into());
     }
@@ -109,18 +114,19 @@ pub fn read<S: Cellular>(
     if !words.is_empty() {
         return Err(damaged());
     }
+    // A file with a right sum may still be forged: both check that every number in it has a place.
     let [points, cells, own, own_starts, shared, shared_starts] = tables;
-    let cells = cells_of(params[0] as usize, &points, &cells).ok_or_else(damaged)?;
+    let cells = cells_of(params[0], &points, &cells).ok_or_else(damaged)?;
     let assignment =
         Assignment::of_tables([own, own_starts, shared, shared_starts], cells.any().count(), scene)
             .ok_or_else(damaged)?;
     Ok((cells, assignment))
 }
 
-fn cells_of<S: Cellular>(tessellation: usize, points: &[u32], cells: &[u32]) -> Option<Cells<S>> {
+fn cells_of<S: Cellular>(tessellation: u32, points: &[u32], cells: &[u32]) -> Option<Cells<S>> {
     let point = |p: &[u32]| S::Vector::from_fn(|a| f32::from_bits(p[a]));
     let points: Vec<S::Vector> = points.chunks_exact(S::Vector::AXES).map(point).collect();
-    if tessellation == Params::DELAUNAY {
+    if CellKind::ALL.get(tessellation as usize) == Some(&CellKind::Delaunay) {
         let (rows, []) = cells.as_chunks::<8>() else { return None };
         let simplex = |[a, b, c, d, e, f, g, h]: &[u32; 8]| Simplex {
             vertices: [*a, *b, *c, *d],

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use super::explain::Evidence;
 use super::front::Front;
 use super::index::node_of;
-use super::{LayeredProjection, Params};
+use super::{CellKind, LayeredProjection, Params};
 use crate::culling::Methods;
-use crate::geometry::{CellId, Flat, PrimId, Solid, View};
+use crate::drawing::Subject;
+use crate::geometry::{CellId, Flat, PrimId, Solid, Vector, View};
 use crate::index::tessellation::Cellular;
 use crate::method::evidence::prim_faces_away;
 use crate::method::{
-    Budget, DrawList, Event, Field, Frame, Method, Recorder, Run, Settings, State, Value, Verdict,
+    Budget, DrawList, Event, Field, Film, Frame, Method, Recorder, Run, Settings, State, Value, Verdict,
 };
 use crate::raster::{Drawable, render};
 use crate::scene::{Quiet, Scene, framing_view, random_views, samples};
@@ -218,7 +219,7 @@ fn figure_6_written_out() {
         CellId(n as u32)
     }
     let scene = samples::soup::<Flat>(1, 300);
-    let params = Params { tessellation: 0, leaf_size: 30, ..Params::default() };
+    let params = Params { tessellation: CellKind::Octree, leaf_size: 30, ..Params::default() };
     let built = LayeredProjection::build(&scene, &params, None, &Quiet);
     let built = built.expect("nothing saved").expect("not cancelled");
     let cells = built.cells.any();
@@ -262,7 +263,7 @@ fn the_same_seed_gives_the_same_order() {
     both(is_reproducible, is_reproducible);
 }
 
-fn is_told<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+fn is_reported<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let view = views(scene)[4];
     let recording = run(scene, &[("tessellation", kind), ("budget", "9"), ("backface-culling", "true")])
         .record(&view, usize::MAX);
@@ -279,8 +280,8 @@ fn is_told<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
 }
 
 #[test]
-fn what_the_budget_leaves_out_is_told() {
-    both(is_told, is_told);
+fn what_the_budget_leaves_out_is_reported() {
+    both(is_reported, is_reported);
 }
 
 fn is_saved<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
@@ -332,15 +333,15 @@ fn is_ended_from_outside<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     for view in views(scene) {
         let all = run.cull(&view).prims;
         for most in [1, all.len() / 2, all.len() + 1] {
-            let told = std::cell::RefCell::new(Vec::new());
+            let reported = std::cell::RefCell::new(Vec::new());
             let limit = |prims: &[PrimId]| {
-                told.borrow_mut().extend_from_slice(prims);
-                told.borrow().len() >= most
+                reported.borrow_mut().extend_from_slice(prims);
+                reported.borrow().len() >= most
             };
             let part = run.cull_until(&view, Some(&limit)).prims;
             assert_eq!(part, all[..part.len()], "{kind}");
             assert!(part.len() >= most.min(all.len()), "{kind}: {} of {most}", part.len());
-            assert_eq!(told.into_inner(), part, "{kind}: all that was drawn was told, once");
+            assert_eq!(reported.into_inner(), part, "{kind}: all that was drawn was reported, once");
         }
     }
     assert!(!run.remembers());
@@ -440,4 +441,84 @@ fn no_more_pixels_are_wrong_than_the_quality_allows() {
 #[test]
 fn budgets_count_primitives_of_the_whole_scene() {
     assert_eq!(Budget::Percent(10.0).of(810_000), 81_000);
+}
+
+/// Whether evidence about one subject may stand for a decision about another.
+fn is_about<S: World>(film: &dyn Film<S>, evidence: Subject, of: Subject) -> bool {
+    match (evidence, of) {
+        (Subject::Object(object), Subject::Prim(prim)) => film.scene().object_of(prim) == object,
+        // A cell's own list leaves out what it shares with others: its box tells whether it meets it.
+        (Subject::Node(node), Subject::Prim(prim)) => {
+            let (cell, prim) = (film.hierarchy().bounds(node), film.scene().prim_bounds(prim));
+            S::Vector::AXES
+                == (0..S::Vector::AXES)
+                    .filter(|&a| cell.min.get(a) <= prim.max.get(a) && prim.min.get(a) <= cell.max.get(a))
+                    .count()
+        }
+        _ => evidence == of,
+    }
+}
+
+/// The verdicts of decisions with the kinds of what they rest on.
+type Grounds = std::collections::BTreeSet<(Verdict, &'static str)>;
+
+fn has_evidence<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, verdicts: &mut Grounds) {
+    let extensions: [&[(&str, &str)]; 4] = [
+        &[],
+        &[("queries", "true"), ("budget", "3%")],
+        &[("quality", "90"), ("budget", "0")],
+        &[("budget", "100%"), ("seeds", "5"), ("backface-culling", "true")],
+    ];
+    for pairs in extensions {
+        let mut run = run(scene, &[pairs, &[("tessellation", kind)]].concat());
+        for view in views(scene) {
+            let film = run.record(&view, usize::MAX).film;
+            for at in 0..film.events().len() {
+                let Some(verdict) = film.events()[at].verdict().filter(|v| *v != Verdict::Partial) else {
+                    continue;
+                };
+                let place = format!("{kind}, {pairs:?}, event {at}: {}", film.sentence(at));
+                let evidence = film.evidence_of(at).unwrap_or_else(|| panic!("{place}"));
+                assert!(is_about(&*film, film.subject(evidence), film.subject(at)), "{place}");
+                let claim = film.claim(evidence).map(|c| c.word());
+                match verdict {
+                    Verdict::Outside => assert!(matches!(claim, Some("outside" | "faces-away")), "{place}"),
+                    // Without queries what no cell in view holds is hidden because the front is empty.
+                    Verdict::Hidden => assert!(
+                        claim == Some("hidden") || film.kind(evidence) == "TraversalEnded",
+                        "{place}: {}",
+                        film.sentence(evidence)
+                    ),
+                    _ => assert_eq!(claim, None, "{place}"),
+                }
+                verdicts.insert((verdict, film.kind(evidence)));
+            }
+        }
+    }
+}
+
+#[test]
+fn every_decision_rests_on_evidence_about_what_it_decides() {
+    let found = std::cell::RefCell::new(Grounds::new());
+    both(
+        |scene, kind| has_evidence(scene, kind, &mut found.borrow_mut()),
+        |scene, kind| has_evidence(scene, kind, &mut found.borrow_mut()),
+    );
+    let found = found.into_inner();
+    for wanted in [(Verdict::Hidden, "CellAsked"), (Verdict::OverBudget, "TraversalEnded")] {
+        assert!(found.contains(&wanted), "{wanted:?} is not among {found:?}");
+    }
+    assert!(found.iter().any(|(_, kind)| *kind == "PrimCompared"), "{found:?}");
+}
+
+#[test]
+fn keyframes_take_less_memory_than_the_film() {
+    const CELLS: usize = 100_000;
+    let kept = <Front as State<Solid, LayeredProjection>>::KEYFRAME_NOTES;
+    // A note is an event of its own, and a line of pseudocode comes with it.
+    let recorded = |note: usize| kept * (note + 2 * size_of::<Event>());
+    let copy = CELLS * Front::BYTES_A_CELL;
+    for note in [size_of::<Evidence<Flat>>(), size_of::<Evidence<Solid>>()] {
+        assert!(copy < recorded(note), "{copy} bytes a keyframe, {} recorded", recorded(note));
+    }
 }

@@ -1,10 +1,14 @@
 //! The traversal: Figures 4 and 5, once for both spaces and all tessellations.
+//!
+//! One frame is: 2. seed, and more seeds if wanted; 3. and 4. spread until the budget is spent or the front
+//! is empty, in which case a new seed is looked for; 5. what the budget left, by queries if wanted. The
+//! numbers are those of the method's steps ([`super`]).
 
-use super::explain::{Asked, Bounded, Ended, Evidence, Origin, Projected, Seeded, Transferred};
+use super::explain::{Bounded, Compared, Ended, Evidence, Origin, Projected, Queried, Seeded, Transferred};
 use super::front::Front;
 use super::index::{Index, node_of};
 use super::rest::Rest;
-use super::{LayeredProjection, Params, line};
+use super::{LayeredProjection, Occupancy, Params, Transfer, Update, line};
 use crate::culling::depth::Faces;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
@@ -14,25 +18,36 @@ use crate::method::evidence::{Facing, Tested, prim_faces_away};
 use crate::method::{DrawList, Event, Frame, Limit, Observer, Verdict};
 use crate::scene::Scene;
 
-/// Primitives that are drawn between two questions whether it is enough.
+/// Primitives that are drawn between two calls of the limit, inside a cell: a full cell may hold thousands,
+/// and a frame cannot end between two calls. So many that the call costs nothing beside drawing them, so few
+/// that they are drawn in a small part of a millisecond.
 const CHUNK: usize = 256;
 
-/// A growing budget grows by half, at least by this many primitives.
+/// A growing budget grows by half, at least by this many primitives. Each bound of the doubt costs
+/// O(cells), so growth must be geometric for their sum to stay O(cells · log primitives); half, not double,
+/// since all that is drawn beyond what was needed is waste. The least keeps a budget of 0 from growing by 0.
 const LEAST_GROWTH: usize = 16;
+
+/// Steps along the diagonal of the region by which a ray looks for its beginning, where it starts outside:
+/// a step is then about the size of a cell that holds anything at the default leaf size.
+const STEPS_OUTSIDE: f32 = 64.0;
+/// A step along a ray inside, of the diagonal of the cell it is in: short enough that hardly a cell on the
+/// way is jumped over, and one that is loses no more than a seed.
+const STEP_INSIDE: f32 = 0.25;
 
 /// Where a cell lies in regard to the view volume.
 #[derive(Clone, Copy, PartialEq)]
-enum Sight {
+enum InView {
     Unknown,
     Outside,
     /// The planes that cut it; 0 if it lies inside.
-    In(u8),
+    Cut(u8),
 }
 
 /// A cell as it is seen in this frame; found out once, when the front reaches it.
 #[derive(Clone, Copy)]
 struct Aspect<V> {
-    sight: Sight,
+    in_view: InView,
     /// How the way from its center to the Eye leaves it.
     exit: Exit,
     /// v: unit vector from the Eye to its center.
@@ -63,15 +78,15 @@ pub struct Walk<'a, S: Cellular + Faces, O> {
     marks: Vec<bool>,
     left: usize,
     limit: Option<&'a Limit<'a>>,
-    /// Primitives that `limit` knows of, and whether it ended the frame.
-    told: usize,
+    /// Primitives that were reported to `limit`, and whether it ended the frame.
+    reported: usize,
     ended: bool,
     /// Cells projected so far.
     rank: u32,
-    /// What is drawn as a z-buffer, where somebody asks it.
+    /// What is drawn as a z-buffer, where queries or the quality need one.
     rest: Option<Rest<S>>,
-    /// Whether the budget is spent and the rest is asked for.
-    asks: bool,
+    /// Whether the budget is spent and the rest is decided by queries.
+    queries: bool,
     out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
@@ -85,7 +100,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     ) -> Self {
         let Frame { index, scene, view, params, limit, .. } = *frame;
         let unseen = Aspect {
-            sight: Sight::Unknown,
+            in_view: InView::Unknown,
             exit: Exit::Out,
             toward: S::Vector::default(),
             is_settled: false,
@@ -102,33 +117,42 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             marks: vec![false; index.assignment.all_shared().len()],
             left: params.budget.of(scene.live().len()),
             limit,
-            told: 0,
+            reported: 0,
             ended: false,
             rank: 0,
             rest: (params.queries || params.quality > 0).then(|| Rest::new(view)),
-            asks: false,
+            queries: false,
             out,
             watch,
         }
     }
 
-    /// Figure 4.
+    /// Figure 4, repeated where the front runs dry.
     pub fn run(mut self) {
         self.watch.event(Event::Entered(NodeId(0)));
+        // 2. The paper places one cell in the front; more are its last extension.
+        self.watch.stage("seed");
         let mut seed = self.seed();
         self.seeds_ahead();
         while let Some(seeded) = seed {
             self.grow_from(seeded);
+            // 3. and 4.
+            self.watch.stage(if self.queries { "rest" } else { "spread" });
             if self.spread() {
                 break;
             }
+            // A departure: the front grows over faces in view only, so it may run dry with something in view
+            // not reached, such as where the Eye is outside of all cells. The paper ends there.
+            self.watch.stage("seed");
             seed = self.nearest_unreached();
         }
-        if self.asks {
+        // 5. What no cell decided.
+        self.watch.stage("rest");
+        if self.queries {
             self.draw_the_shared_rest();
         }
-        self.ask();
-        self.tell_the_rest(seed.is_some());
+        self.report_drawn();
+        self.report_rest(seed.is_some());
         self.watch.event(Event::DecidedNode(NodeId(0), Verdict::Partial));
         self.watch.event(Event::Left(NodeId(0)));
     }
@@ -136,18 +160,23 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Projects cells until the front is empty; whether the budget is spent.
     fn spread(&mut self) -> bool {
         let cells = self.cells;
-        while let Some((cell, solidity)) = self.front.take() {
+        // Lines 1 and 2: the cell leaves the front where it is projected or found hidden, below.
+        while let Some((cell, solidity)) = self.front.least() {
             self.watch.event(Event::Line(line::TAKE));
-            if !self.asks || !self.is_hidden(cell, solidity) {
+            // Line 3; past the budget only what the z-buffer does not hide (Section 6).
+            if !self.queries || !self.is_hidden(cell, solidity) {
                 self.project(cell, solidity);
             }
+            // Lines 4 and 5.
             if self.left == 0 && !self.goes_on() {
                 self.watch.event(Event::Line(line::SPENT));
                 return true;
             }
+            // Lines 6 to 10. What is out of view is skipped like what was projected: nothing of it is drawn,
+            // and what is in view beyond it is reached by other ways.
             let source = Source { cell, solidity, share: self.share(cell) };
             for there in cells.neighbors(cell) {
-                if self.front.is_projected(there.cell) || self.look(there.cell).sight == Sight::Outside {
+                if self.front.is_projected(there.cell) || self.look(there.cell).in_view == InView::Outside {
                     self.watch.event(Event::Line(line::SKIP));
                 } else if let Some((solidity, is_star_shaped)) = self.update_solidity(there, &source) {
                     self.enqueue(there.cell, solidity, is_star_shaped);
@@ -157,32 +186,41 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         false
     }
 
-    /// Section 6, with the budget spent: whether something else says when it is enough.
+    /// Section 6, with the budget spent: whether queries or the quality ask for more.
     fn goes_on(&mut self) -> bool {
+        // A limit from outside is final.
         let Some(mut rest) = self.rest.take_if(|_| !self.ended) else { return false };
         rest.catch_up(self.scene, &self.out.prims);
         if self.params.queries {
-            (self.asks, self.left) = (true, usize::MAX);
+            // First the budget, then queries for the rest, which now mostly find something in front.
+            self.watch.stage("rest");
+            (self.queries, self.left) = (true, usize::MAX);
         } else {
+            // Adjust the budget until the image is as good as asked for. What could change a pixel is
+            // bounded, not what does: the promise holds, and the budget is larger than it need be.
             let most = 1.0 - self.params.quality as f32 / 100.0;
-            let share = self.doubt(&mut rest);
+            let (share, bare) = self.doubt(&mut rest);
             let drawn = self.out.prims.len() as u32;
             self.watch.note(|| Evidence::Bounded(Bounded { share, most, drawn }));
+            bare.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, Verdict::Visible)));
             self.left = if share > most { (self.out.prims.len() / 2).max(LEAST_GROWTH) } else { 0 };
         }
         self.rest = Some(rest);
         self.left > 0
     }
-    /// The share of the image that what is in view and not drawn could still change.
-    fn doubt(&mut self, rest: &mut Rest<S>) -> f32 {
+    /// The share of the image that what is in view and not drawn could still change; and the primitives that
+    /// have no bounds in the image, which were drawn instead.
+    fn doubt(&mut self, rest: &mut Rest<S>) -> (f32, Vec<PrimId>) {
         let (index, scene, eye, planes) =
             (self.index, self.scene, self.view.eye.position, Frustum::<S::Vector>::ALL);
-        let mut doubt = rest.doubt(self.view);
+        let (mut doubt, mut bare) = (rest.doubt(self.view), Vec::new());
+        // What meets one cell alone lies in its box.
         for cell in (0..index.count() as u32).map(CellId).filter(|c| !index.assignment.own(*c).is_empty()) {
-            if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside {
+            if !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside {
                 doubt.of_box(&self.cells.bounds(cell));
             }
         }
+        // What meets several cells may reach out of those that are left: each by itself.
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
             let faces = || !(self.params.backface_culling && prim_faces_away(scene, eye, prim));
             let outside =
@@ -192,22 +230,24 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             if !self.marks[number] && faces() && !outside() && !doubt.of_prim(scene, prim) {
                 self.marks[number] = true;
                 self.out.prims.push(prim);
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+                bare.push(prim);
             }
         }
-        doubt.share()
+        (doubt.share(), bare)
     }
-    /// Whether all of a cell is hidden by what is drawn; says so.
+    /// Whether all of a cell is hidden by what is drawn; then it leaves the front.
     fn is_hidden(&mut self, cell: CellId, solidity: f32) -> bool {
         let (node, bounds) = (node_of(cell), self.cells.bounds(cell));
         let Some(rest) = self.rest.as_mut().filter(|_| self.index.assignment.held(cell) > 0) else {
             return false;
         };
         rest.catch_up(self.scene, &self.out.prims);
+        // Out of view: projecting it draws nothing and lets the front grow on.
         let Some(answer) = rest.hides(&bounds) else { return false };
-        self.watch.event(Event::Line(line::ASK));
+        self.watch.event(Event::Line(line::QUERY));
         self.watch.event(Event::Entered(node));
-        self.watch.note(|| Evidence::Asked(Asked { cell, solidity, answer }));
+        self.watch.note(|| Evidence::Queried(Queried { cell, solidity, answer }));
+        // A hidden cell is done with, but its solidity goes on to its neighbors: they may be seen past it.
         if answer.is_hidden {
             self.front.leave_out(cell);
             self.rank += 1;
@@ -218,6 +258,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// Draws those of the shared primitives in view that no cell drew and that are not hidden themselves.
     fn draw_the_shared_rest(&mut self) {
+        // Out of view or facing away first: the z-buffer need not be read for those.
         let shared = self.index.assignment.all_shared();
         let mut open = Vec::new();
         for number in (0..shared.len()).filter(|n| !self.marks[*n]).collect::<Vec<_>>() {
@@ -229,19 +270,25 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         let Some(rest) = &mut self.rest else { return };
         rest.catch_up(self.scene, &self.out.prims);
-        // Both are in the same order.
-        let mut hidden = rest.draw(self.scene, &open).iter().peekable();
+        // They are drawn one after the other, and each is compared with all before it: those that are hidden
+        // come back, in the order in which they went in.
+        let hidden = rest.draw(self.scene, &open).to_vec();
+        let mut hidden = hidden.iter().peekable();
         for prim in open {
-            let verdict =
-                if hidden.next_if_eq(&&prim).is_some() { Verdict::Hidden } else { Verdict::Visible };
-            if verdict == Verdict::Visible {
+            let is_hidden = hidden.next_if_eq(&&prim).is_some();
+            if !is_hidden {
                 self.out.prims.push(prim);
             }
+            let (rest, scene) = (&*rest, self.scene);
+            self.watch
+                .note(|| Evidence::Compared(Compared { prim, depths: rest.depths(scene, prim), is_hidden }));
+            let verdict = if is_hidden { Verdict::Hidden } else { Verdict::Visible };
             self.watch.event(Event::DecidedPrim(prim, verdict));
         }
     }
 
-    /// Section 4.2: the cell that holds the Eye, or else the nearest one that is in view.
+    /// 2. The cell that holds the Eye, or else the one closest to it (`findCell`, Section 4.2). A departure:
+    /// of those in view, since the front does not grow over cells that are not.
     fn seed(&mut self) -> Option<Seeded> {
         let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else {
             return self.nearest_unreached();
@@ -257,10 +304,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             if self.front.is_projected(cell) || self.index.assignment.held(cell) == 0 {
                 continue;
             }
+            // By its box: where two boxes are equally near, the lower number is taken, which is reproducible.
             let bounds = self.cells.bounds(cell);
             let away = eye - eye.max(bounds.min).min(bounds.max);
             let squared = away.dot(away);
-            if best.is_none_or(|(least, _)| squared < least) && self.look(cell).sight != Sight::Outside {
+            let is_nearer = best.is_none_or(|(least, _)| squared < least);
+            if is_nearer && self.look(cell).in_view != InView::Outside {
                 best = Some((squared, cell));
             }
         }
@@ -276,9 +325,11 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Section 6, several seeds: on rays through points spread over the image, the first cells that hold
     /// something.
     fn seeds_ahead(&mut self) {
+        // The last row of the projection is depth, so that `ray * depth` is at that view depth.
         let rows = self.view.projection().rows;
         let forward = rows[S::Vector::AXES - 1];
         for number in 1..self.params.seeds {
+            // Through the point whose coordinates are spread over −1 to 1: the rows are orthogonal.
             let ray = (0..S::Vector::AXES - 1).fold(forward, |ray, axis| {
                 let row = rows[axis];
                 ray + row * ((2.0 * spread_out(number, axis) - 1.0) / row.dot(row))
@@ -291,18 +342,21 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// The first cell with primitives that steps along a ray from the Eye meet, and how far away they do.
     fn first_along(&self, ray: S::Vector) -> Option<(CellId, f32)> {
         let (mut depth, mut near) = (self.view.eye.near, CellId(0));
-        let coarse = self.index.bounds(NodeId(0)).diagonal() / 64.0;
+        let coarse = self.index.bounds(NodeId(0)).diagonal() / STEPS_OUTSIDE;
         while depth < self.view.eye.far {
             let at = self.cells.locate(self.view.eye.position + ray * depth, near);
             if let Some(cell) = at.filter(|c| self.index.assignment.held(*c) > 0) {
                 return Some((cell, depth * ray.length()));
             }
+            // The last cell found is where the search for the next begins: it is a neighbor or near.
             near = at.unwrap_or(near);
-            depth += at.map_or(coarse, |cell| 0.25 * self.cells.bounds(cell).diagonal()) / ray.length();
+            depth +=
+                at.map_or(coarse, |cell| STEP_INSIDE * self.cells.bounds(cell).diagonal()) / ray.length();
         }
         None
     }
 
+    /// Line 10.
     fn enqueue(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
         self.watch.event(Event::Line(line::ENQUEUE));
         self.front.put(cell, solidity, is_star_shaped);
@@ -312,7 +366,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// How a cell is seen; found out once a frame.
     #[inline]
     fn look(&mut self, cell: CellId) -> Aspect<S::Vector> {
-        if self.aspects[cell.at()].sight == Sight::Unknown {
+        if self.aspects[cell.at()].in_view == InView::Unknown {
             self.aspects[cell.at()] = self.aspect(cell);
         }
         self.aspects[cell.at()]
@@ -323,31 +377,36 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let test = self.frustum.test(&bounds, planes);
         self.watch
             .note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), &bounds, planes, test)));
-        let sight = match test {
+        let in_view = match test {
             FrustumTest::Outside(_) => {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
-                Sight::Outside
+                InView::Outside
             }
-            FrustumTest::Partial(cutting) => Sight::In(cutting),
-            FrustumTest::Inside => Sight::In(0),
+            FrustumTest::Partial(cutting) => InView::Cut(cutting),
+            FrustumTest::Inside => InView::Cut(0),
         };
+        // A departure: v belongs to the cell. The paper has "the current viewing direction" (Figure 6), and a
+        // single one says nothing near the rim of a wide view.
         let eye = self.view.eye.position;
         let way = self.cells.center(cell) - eye;
-        let exit = if sight == Sight::Outside { Exit::Out } else { self.cells.exit(cell, eye) };
-        Aspect { sight, exit, toward: way * (1.0 / way.length().max(f32::MIN_POSITIVE)), is_settled: false }
+        let toward = way * (1.0 / way.length().max(f32::MIN_POSITIVE));
+        // The way from the center to the Eye decides about the penalty, whichever neighbor asks later.
+        let exit = if in_view == InView::Outside { Exit::Out } else { self.cells.exit(cell, eye) };
+        Aspect { in_view, exit, toward, is_settled: false }
     }
 
     /// |A| / ρ_max, or the part of it that faces the Eye (Section 6).
     fn share(&self, cell: CellId) -> f32 {
         let assignment = &self.index.assignment;
         let most = assignment.most().max(1) as f32;
-        if self.params.occupancy != Params::FRONT_FACING {
+        if self.params.occupancy == Occupancy::Count {
             return assignment.held(cell) as f32 / most;
         }
         let shared = assignment.shared(cell).iter().map(|n| assignment.all_shared()[*n as usize]);
         assignment.own(cell).iter().copied().chain(shared).map(|prim| self.facing(prim)).sum::<f32>() / most
     }
-    /// The cosine of the angle between a primitive's normal and the way to the Eye, 0 if it faces away.
+    /// Section 6, front-facing triangles: the cosine of the angle between a primitive's normal and the way to
+    /// the Eye, 0 if it faces away.
     fn facing(&self, prim: PrimId) -> f32 {
         let mut corners = [S::Vector::default(); 3];
         for (to, from) in corners.iter_mut().zip(self.scene.prim_points(prim)) {
@@ -360,13 +419,23 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
     fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<(f32, bool)> {
         let seen = self.aspects[b.cell.at()];
-        let along =
-            if self.params.transfer == Params::WHOLE { 1.0 } else { seen.toward.dot(b.normal).max(0.0) };
+        // Line 1. A departure: not below 0. A face that the front crosses toward the Eye would take solidity
+        // away, and what is behind would come before what is in front.
+        let along = match self.params.transfer {
+            Transfer::Whole => 1.0,
+            Transfer::Aligned => seen.toward.dot(b.normal).max(0.0),
+        };
         let sum = a.share + along * a.solidity;
+        // Line 2, Section 3.2: the center of B is seen from the Eye along a ray through the shared face.
         let star_shaped = seen.exit == Exit::Ends || seen.exit == Exit::Into(a.cell);
-        let solidity = if star_shaped { sum } else { sum + self.params.penalty as f32 / 100.0 };
+        // Line 3. A departure: the paper says neither what the penalty factor is nor how it is applied.
+        // Multiplying keeps empty space at solidity 0, so the front would flow around occluders at no cost.
+        let solidity = if star_shaped { sum } else { sum + self.params.penalty / 100.0 };
+        // `enqueue` of Figure 4 reinserts with the latest value. A departure by default: a value that came
+        // through the face the Eye sees B through is about what is in front of B; others are detours, and the
+        // least of these stands until that one comes.
         let before = self.front.solidity(b.cell);
-        let keeps = self.params.update == Params::STAR_SHAPED
+        let keeps = self.params.update == Update::StarShaped
             && !star_shaped
             && (seen.is_settled || before.is_some_and(|v| v <= solidity));
         self.aspects[b.cell.at()].is_settled |= star_shaped;
@@ -406,9 +475,11 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (index, node) = (self.index, node_of(cell));
         self.watch.event(Event::Line(line::PROJECT));
         self.watch.event(Event::Entered(node));
-        let sight = self.look(cell).sight;
+        let in_view = self.look(cell).in_view;
         let (drawn, rank) = (self.out.prims.len(), self.rank);
-        if let Sight::In(cutting) = sight {
+        // What the cell holds alone, then what it shares if no cell before it drew that: once a frame
+        // (Section 4.1).
+        if let InView::Cut(cutting) = in_view {
             for &prim in index.assignment.own(cell) {
                 if let Some(verdict) = self.fate(prim, cutting) {
                     self.watch.event(Event::DecidedPrim(prim, verdict));
@@ -423,29 +494,31 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 }
             }
         }
-        self.ask();
+        self.report_drawn();
         self.rank += 1;
         let (drawn, held, left) =
             ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
         self.front.project(cell);
         self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left }));
-        if sight != Sight::Outside {
+        // One that is out of view was decided when it was looked at.
+        if in_view != InView::Outside {
             self.watch.event(Event::DecidedNode(node, Verdict::Visible));
         }
         self.watch.event(Event::Left(node));
     }
 
     /// Reports newly drawn primitives to the limit, which may end the frame.
-    fn ask(&mut self) {
+    fn report_drawn(&mut self) {
         let Some(limit) = self.limit else { return };
-        if self.told < self.out.prims.len() && limit(&self.out.prims[self.told..]) {
+        if self.reported < self.out.prims.len() && limit(&self.out.prims[self.reported..]) {
             (self.left, self.ended) = (0, true);
         }
-        self.told = self.out.prims.len();
+        self.reported = self.out.prims.len();
     }
 
-    /// Draws a primitive of a cell that these planes cut, or says why not. Where the rest is asked for, the
-    /// cell in which the budget ends is drawn whole.
+    /// Draws a primitive of a cell that these planes cut, or returns why not. A cell is drawn in part where
+    /// the budget ends in it (Section 4.1), but whole where queries or the quality decide about the rest:
+    /// those look at whole cells.
     fn fate(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
         let outside = self.outside(prim, cutting);
         if outside.is_some() {
@@ -456,14 +529,16 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         self.left = self.left.saturating_sub(1);
         self.out.prims.push(prim);
-        if self.out.prims.len() - self.told >= CHUNK {
-            self.ask();
+        if self.out.prims.len() - self.reported >= CHUNK {
+            self.report_drawn();
         }
         None
     }
     /// Whether a primitive lies beyond one of these planes or faces away.
     fn outside(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
         let (scene, view) = (self.scene, self.view);
+        // A departure: the paper culls by the view frustum without saying at what; here cells, and primitives
+        // one by one where a cell is cut.
         if cutting != 0 {
             let bounds: Aabb<S::Vector> = scene.prim_bounds(prim);
             let test = self.frustum.test(&bounds, cutting);
@@ -480,9 +555,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         None
     }
 
-    /// Says of every cell and primitive that was not reached why not: it is out of view, or the budget was
+    /// Reports of every cell and primitive that was not reached why not: it is out of view, or the budget was
     /// spent. Only if someone listens; it changes nothing.
-    fn tell_the_rest(&mut self, spent: bool) {
+    fn report_rest(&mut self, spent: bool) {
         let (cells, left) = (self.rank, self.budget_left());
         self.watch.note(|| Evidence::Ended(Ended { cells, left, spent }));
         if !O::LISTENS {
@@ -492,10 +567,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let count = index.count() as u32;
         for cell in (0..count).map(CellId) {
             // Of what the front did not reach without the need to stop, all in view is empty.
-            if !self.front.is_projected(cell) && self.look(cell).sight != Sight::Outside && spent {
+            let is_left = !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside;
+            if is_left && spent {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
             }
         }
+        // A cell decided for what it holds alone; what it shares is still open.
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
             if !self.marks[number] {
                 let verdict = self.fate_of_the_rest(prim, spent);
@@ -519,6 +596,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
 /// The radical inverse of a number, base 2 or 3 by axis (Halton): points spread evenly over 0 to 1.
 fn spread_out(mut number: u32, axis: usize) -> f32 {
+    // Primes for bases, so that the coordinates do not repeat together; digits are mirrored at the point.
     let base = axis as u32 + 2;
     let (mut sum, mut part) = (0.0, 1.0);
     while number > 0 {

@@ -35,7 +35,7 @@ impl Moment {
             step = at + 1;
         }
         let projected = front.projected().iter().map(|&cell| node_of(cell)).collect();
-        let front = front.in_order().into_iter().map(|queued| (node_of(queued.cell), queued.solidity));
+        let front = front.first(usize::MAX).into_iter().map(|queued| (node_of(queued.cell), queued.solidity));
         Self { projected, front: front.collect(), left, step }
     }
 }

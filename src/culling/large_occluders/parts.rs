@@ -1,9 +1,9 @@
 //! The parts of the method by themselves: one eye, some occluders, one box. For figures, benchmarks and
-//! tests, which all look at the very functions that the method runs.
+//! tests, which all use the very functions that the method runs.
 
 use super::joint::{Candidate, Scratch, jointly};
 use super::occluders::Occluders;
-use super::relation::{Margin, Planes, Relation, Sight};
+use super::relation::{EyeSide, Margin, Planes, Relation};
 use super::selection;
 use super::space::{Edge, Point as _, Shape, corner};
 use crate::geometry::{Aabb, Vector, View};
@@ -39,7 +39,7 @@ impl<S: Shape> Blockers<S> {
             polygons.iter().map(|c| Face { corners: c.clone(), prims: Vec::new() }).collect();
         Self { occluders: Occluders::new(points, &faces), margin: Margin::GEOMETRIC }
     }
-    /// Demands what the pixels of a view demand, where it is otherwise plain geometry.
+    /// Uses the pixel margin of `view` instead of the geometric one.
     pub fn for_view(mut self, view: &View<S>) -> Self {
         self.margin = Margin::of(view);
         self
@@ -54,14 +54,14 @@ impl<S: Shape> Blockers<S> {
     }
 
     fn candidate(&self, id: u32, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Option<Candidate> {
-        let sight = Sight::of(&self.occluders, id, S::widened(eye), self.margin);
-        if sight.side == 0 {
+        let eye_side = EyeSide::of(&self.occluders, id, S::widened(eye), self.margin);
+        if eye_side.side == 0 {
             return None;
         }
-        let relation = Relation::new(&self.occluders, id, sight.side, bounds, false);
+        let relation = Relation::new(&self.occluders, id, eye_side.side, bounds, false);
         let depth = bounds.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max);
-        let seen = relation.classify(&sight, self.occluders.thickness(id), depth, self.margin);
-        Some(Candidate { occluder: id, side: sight.side, seen })
+        let seen = relation.classify(&eye_side, self.occluders.thickness(id), depth, self.margin);
+        Some(Candidate { occluder: id, side: eye_side.side, seen })
     }
     /// What one occluder does to a box (Section 2).
     pub fn classify(&self, id: usize, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Occlusion {
@@ -69,6 +69,7 @@ impl<S: Shape> Blockers<S> {
     }
     /// The occluders that hide a box: one, or several together; empty if it is not hidden.
     pub fn hiding(&self, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Vec<usize> {
+        // As in TestOcclusion: one alone first, then those that partially occlude together.
         let all = (0..self.len() as u32).filter_map(|id| self.candidate(id, bounds, eye));
         let candidates: Vec<Candidate> = all.filter(|c| c.seen.occlusion != Occlusion::None).collect();
         if let Some(full) = candidates.iter().find(|c| c.seen.occlusion == Occlusion::Full) {
@@ -90,11 +91,12 @@ impl<S: Shape> Blockers<S> {
         bounds: &Aabb<S::Vector>,
         eye: S::Vector,
     ) -> Vec<Option<[Tangent<S::Vector>; 2]>> {
-        let sight = Sight::of(&self.occluders, id as u32, S::widened(eye), self.margin);
+        let eye_side = EyeSide::of(&self.occluders, id as u32, S::widened(eye), self.margin);
+        // An eye in the occluder's plane is on no side; figures show the planes as from the front.
         let relation = Relation::new(
             &self.occluders,
             id as u32,
-            if sight.side == 0 { 1 } else { sight.side },
+            if eye_side.side == 0 { 1 } else { eye_side.side },
             bounds,
             false,
         );
@@ -122,7 +124,7 @@ impl<S: Shape> Blockers<S> {
     /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a
     /// number that depends on all of them.
     pub fn make_relations(&self, bounds: &Aabb<S::Vector>, eye: S::Vector, naive: bool) -> f64 {
-        let side = |id: u32| Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
+        let side = |id: u32| EyeSide::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
         let arm = |planes: &Planes<S::Vector>| {
             if let Planes::Tangent([plane, _]) = planes { f64::from(plane.normal.get(0)) } else { 1.0 }
         };
@@ -143,8 +145,9 @@ impl<S: Shape> Blockers<S> {
     /// The relations of all occluders to boxes, for an eye.
     pub fn keep(&self, boxes: &[Aabb<S::Vector>], eye: S::Vector) -> Kept<S> {
         let side = |id: u32| {
-            if Sight::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 }
+            if EyeSide::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 }
         };
+        // Box by box, so that [`Blockers::check`] can take them apart again.
         let all = boxes.iter().flat_map(|b| (0..self.len() as u32).map(move |id| (b, id)));
         let relations = all.map(|(b, id)| Relation::new(&self.occluders, id, side(id), b, false)).collect();
         let depth = |b: &Aabb<S::Vector>| {
@@ -152,17 +155,17 @@ impl<S: Shape> Blockers<S> {
         };
         Kept { relations, depths: boxes.iter().map(depth).collect() }
     }
-    /// Checks kept relations from an eye on the same sides of the occluders, each occluder looked at once as
-    /// in a frame, for timing. How many are partial, and how many full.
+    /// Classifies kept relations from an eye on the same sides of the occluders, for timing; each occluder is
+    /// prepared once, as in a frame. Returns how many are partial, and how many full.
     pub fn check(&self, kept: &Kept<S>, eye: S::Vector) -> [usize; 2] {
-        let sights: Vec<Sight<S>> = (0..self.len() as u32)
-            .map(|id| Sight::of(&self.occluders, id, S::widened(eye), self.margin))
+        let eye_sides: Vec<EyeSide<S>> = (0..self.len() as u32)
+            .map(|id| EyeSide::of(&self.occluders, id, S::widened(eye), self.margin))
             .collect();
         let mut counts = [0; 2];
         for (relations, depth) in kept.relations.chunks(self.len().max(1)).zip(&kept.depths) {
-            for (relation, sight) in relations.iter().zip(&sights).filter(|(r, s)| r.side == s.side) {
+            for (relation, eye_side) in relations.iter().zip(&eye_sides).filter(|(r, s)| r.side == s.side) {
                 let seen = relation.classify(
-                    sight,
+                    eye_side,
                     self.occluders.thickness(relation.occluder),
                     *depth,
                     self.margin,
