@@ -20,7 +20,8 @@
 //! one in view eight corners in SIMD and four cells where they decide; at worst the pixels along the outlines
 //! of its faces.
 
-use super::{Buffer, FaceImage, Faces, footprint};
+use super::buffer::{Buffer, Step};
+use super::faces::{FaceImage, Faces, footprint};
 use crate::geometry::{Aabb, BoxImage, Footprint, PixelRect, View};
 use crate::method::evidence::short;
 use crate::raster::PyramidCell;
@@ -140,7 +141,7 @@ impl<S: Faces> Held<S> for &mut Buffer<S> {
         self.pyramid().is_stale(cell)
     }
     fn refresh(&mut self, cell: PyramidCell) {
-        Buffer::refresh(self, cell);
+        self.step(Step::Refresh(cell));
     }
 }
 
@@ -163,12 +164,12 @@ pub fn hides<S: Faces>(
     bounds: &Aabb<S::Vector>,
     listener: impl Listener,
 ) -> Option<Answer> {
-    let sight = buffer.buffer().sight()?;
-    if sight.frustum.excludes(bounds) {
+    let seen = buffer.buffer().projected()?;
+    if seen.frustum.excludes(bounds) {
         return None;
     }
-    let view = sight.view;
-    match footprint(&view, &sight.projection, bounds) {
+    let view = seen.view;
+    match footprint(&view, &seen.projection, bounds) {
         Footprint::Outside => None,
         Footprint::CrossesNear => {
             Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
