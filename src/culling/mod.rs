@@ -12,7 +12,7 @@ pub(crate) mod large_occluders;
 pub(crate) mod layered_projection;
 pub(crate) mod parallel_hierarchical_z;
 
-pub use hierarchical_z::parts as obscuration;
+pub use hierarchical_z::parts as hierarchical_z_parts;
 pub use large_occluders::anatomy;
 
 use crate::geometry::{Flat, Solid, Space};

@@ -78,7 +78,7 @@ impl<S: Drawable> Buffer<S> {
         self.target.clear(view);
         self.look(view);
     }
-    /// The same for depths alone, which queries need: nobody will look at which primitive shows where.
+    /// The same for depths alone, which are all that queries need: the image has no items.
     pub fn clear_depths(&mut self, view: &View<S>) {
         self.target.clear_depths(view);
         self.look(view);
@@ -86,6 +86,7 @@ impl<S: Drawable> Buffer<S> {
     fn look(&mut self, view: &View<S>) {
         self.projected =
             Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
+        // An empty pixel is as deep as the far plane, in the pyramid as in the image.
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }
     /// Makes a change. Returns the primitives that drawing left out, in their order.
@@ -115,6 +116,7 @@ impl<S: Drawable> Buffer<S> {
     fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
         if let Some(Projected { view, .. }) = &self.projected {
             S::draw(&mut self.target, scene, view, prims, options);
+            // Where they were drawn is not reported: anywhere in the window.
             self.pyramid.touch(options.window.unwrap_or(PixelRect {
                 x0: 0,
                 x1: view.width,
@@ -124,8 +126,8 @@ impl<S: Drawable> Buffer<S> {
         }
     }
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid
-    /// holds for it. The same before and after it was drawn, unless it is one pixel: only refreshing changes what
-    /// the pyramid holds above level 0.
+    /// holds for it. The same before and after it was drawn, unless it is one pixel: only refreshing changes
+    /// what the pyramid holds above level 0.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
         let extent = S::extent(scene, &self.projected.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))

@@ -212,7 +212,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
 }
 
 /// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
-/// asked for begins.
+/// queried begins.
 fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, to: &mut Drawing<S::Vector>) {
     let projection = view.projection();
     let image_axes = S::Vector::AXES - 1;

@@ -47,8 +47,8 @@ impl<S: Faces> Obscurer<S> {
             state: Buffer::default(),
         }))
     }
-    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes can
-    /// be asked for, and the image has no items; half the memory to clear and to fill.
+    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes
+    /// can be queried, and the image has no items; half the memory to clear and to fill.
     pub fn render(&mut self, view: &View<S>, depths_only: bool) -> DrawList<S> {
         let mut list = DrawList::default();
         let (index, scene, params) = (&self.index, &*self.scene, &self.params);

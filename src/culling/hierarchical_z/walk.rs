@@ -437,7 +437,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 }
 
-/// What there is to ask for a cube.
+/// What there is to query for a cube.
 enum Question {
     /// Nothing: it reaches the near plane and counts as visible, or lies beside the view.
     Decided { crosses_near: bool },

@@ -130,8 +130,8 @@ impl Processor {
 
 /// The cube that stands for a group of structures, this one among them.
 pub(super) fn group_of<V: Vector>(index: &Octree<V>, node: NodeId) -> NodeId {
-    // One level finer than what the coarse distribution deals out, so that a group is a part of the scene that
-    // a viewpoint mostly sees or does not see as a whole.
+    // One level finer than what the coarse distribution deals out: a part of the scene that mostly is seen or
+    // is not seen as a whole.
     std::iter::successors(Some(node), |n| index.parent_of(*n))
         .find(|n| index.nodes()[n.at()].level <= COARSE_LEVEL + 1)
         .unwrap_or(node)

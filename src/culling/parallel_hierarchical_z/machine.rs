@@ -85,16 +85,16 @@ impl Machine {
         let distribution = Knob::new(
             "distribution",
             "",
-            "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts of \
-             the scene (structure), or a part of every structure (primitive)",
+            "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts \
+             of the scene (structure), or a part of every structure (primitive)",
             "Georges 1995, Section 4.1",
         );
         knobs.words(distribution, &mut self.distribution);
         let allocation = Knob::new(
             "allocation",
             "",
-            "static: every region has its renderer all the time; dynamic: the busiest regions first, the others \
-             when a renderer is free",
+            "static: every region has its renderer all the time; dynamic: the busiest regions first, the \
+             others when a renderer is free",
             five,
         );
         knobs.words(allocation, &mut self.allocation);

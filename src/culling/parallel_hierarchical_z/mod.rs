@@ -1,15 +1,16 @@
 //! `parallel-hierarchical-z`: obscuration culling on a simulated machine of processors, which own structures,
 //! and renderers, which own regions of the screen.
 //!
-//! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Sections 4 and 5. A
-//! structure is a bounding volume and its geometry: here a cube of an octree and what it holds itself. A frame
-//! ([`simulation`]):
+//! Georges, "Obscuration Culling on Parallel Graphics Architectures", UNC TR95-017, 1995, Sections 4 and 5.
+//! A structure is a bounding volume and its geometry: here a cube of an octree and what it holds itself. A
+//! frame ([`simulation`]):
 //!
 //! 1. structures are dealt out to processors (Section 4.1, [`dealing`]);
 //! 2. regions of 128 × 128 pixels are given to renderers (Section 5.1, [`screen`]);
-//! 3. each processor draws its visible structures by decreasing area on the screen, then queries its invisible
-//!    ones by increasing number of primitives (Sections 4.2 and 5.1); meanwhile each renderer rasterizes what
-//!    arrives and answers for boxes with whether any pixel of a region is left on (the all-enables-off bit);
+//! 3. each processor draws its visible structures by decreasing area on the screen, then queries its
+//!    invisible ones by increasing number of primitives (Sections 4.2 and 5.1); meanwhile each renderer
+//!    rasterizes what arrives, and answers for a box with whether any pixel of a region is left on (the
+//!    all-enables-off bit);
 //! 4. every n frames all visible structures are checked against the finished image (Sections 4.2 and 5.1).
 //!
 //! Departures: the cost of an operation is a parameter, not that of a Pixel-Planes 5; a processor of the
@@ -128,8 +129,8 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         name: "Parallel hierarchical z-buffer: obscuration culling on a simulated machine",
         summary: "Deals the cubes of an octree out to simulated processors, which draw what was visible and \
                   query renderers, each with regions of the screen, for the rest.",
-        paper: "Georges. Obscuration Culling on Parallel Graphics Architectures. UNC TR95-017, 1995, Sections \
-                4 and 5.",
+        paper: "Georges. Obscuration Culling on Parallel Graphics Architectures. UNC TR95-017, 1995, \
+                Sections 4 and 5.",
         doi: "",
         conservative: true,
         code: CODE,

@@ -136,11 +136,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Runs the frame.
     pub fn run(mut self) {
         self.watch.stage("simulate");
+        // 1. Section 4.1.
         self.distribute();
+        // 2. Section 5.1. Memory of the last frame decides only where the allocation is dynamic.
         self.watch.event(Event::Line(line::ALLOCATE));
         let View { width, height, .. } = *self.view;
         self.screen = Screen::new(width, height, self.machine, &mut self.lists.load);
         self.lists.load.fill(0);
+        // 3. Every processor begins on its own; "the visible and invisible stages of rendering will not be
+        // synchronized among the processors" (Section 4.2).
         for p in 0..self.processors.len() {
             self.after(0, What::Free(p as u16));
         }
@@ -163,6 +167,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             }
         }
         self.report_unseen();
+        // 4. Sections 4.2 and 5.1.
         self.watch.stage("check");
         self.check();
     }
@@ -181,6 +186,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn distribute(&mut self) {
         self.watch.event(Event::Line(line::DEAL));
         let (count, nodes) = (self.machine.processors as usize, self.index.nodes().len());
+        // Marks stay where processors or nodes became more: these begin as invisible (Section 5.1).
         self.lists.visible.resize(count, vec![]);
         self.lists.visible.iter_mut().for_each(|v| v.resize(nodes, false));
         if !self.params.coherence {
@@ -201,8 +207,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             processor.sort(dealer.distribution, visible, self.index, self.view, &self.projection);
         }
     }
-    /// Whether a structure is out of view. It keeps its place on the lists (Section 5.1): what leaves the view
-    /// by turning is mostly still visible when the view turns back.
+    /// Whether a structure is out of view. It keeps its place on the lists (Section 5.1): what leaves the
+    /// view by turning is mostly still visible when the view turns back.
     fn is_outside(&mut self, node: NodeId) -> bool {
         let (all, held) = (Frustum::<S::Vector>::ALL, &self.index.nodes()[node.at()].held);
         let test = self.frustum.test(held, all);
@@ -232,8 +238,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             self.watch.note(move || Evidence::Worked(waited));
         }
         let processor = &mut self.processors[p as usize];
-        // Section 5.1: first its visible list, then the invisible one. What an answer let through comes before
-        // both: it waits for nothing, and it may hide what is queried next.
+        // Section 5.1: first its visible list, then the invisible one. What an answer let through comes
+        // before both: it waits for nothing, and it may hide what is queried next.
         if let Some(s) = processor.found.pop_front() {
             self.watch.event(Event::Line(line::DRAW_FOUND));
             self.transform(p, s, Job::DrawFound);
@@ -241,6 +247,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             self.watch.event(Event::Line(line::DRAW_VISIBLE));
             self.transform(p, s, Job::DrawVisible);
         } else if processor.waiting > 0 && !self.machine.overlap {
+            // Without the overlap of Section 5.3 it waits for the reply before it queries again.
             processor.idle = Some(now);
         } else if let Some(group) = processor.to_ask.pop_front() {
             self.ask(p, group);
@@ -263,6 +270,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         for prim in prims {
             self.bin(node, prim, &mut bins);
         }
+        // By ascending region, so that messages of the same tick have an order.
         for (region, prims) in bins {
             self.lists.load[region as usize] += prims.len() as u32;
             self.send(region, Message::Draw { node, prims }, cost);
@@ -287,6 +295,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.out.prims.push(prim);
         self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
         let all = PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height };
+        // A primitive that has to be clipped may cover anything.
         let pixels = S::extent(scene, view, prim, &self.options()).map_or(all, |e| e.pixels);
         self.screen.regions(pixels).into_iter().for_each(|r| bins.entry(r).or_default().push(prim));
     }
@@ -307,23 +316,17 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let node = if is_group { group_of(self.index, first) } else { first };
         let n = &self.index.nodes()[node.at()];
         let (bounds, whole) = if is_group { (n.bounds, n.whole) } else { (n.held, n.held_whole) };
+        // "The triangles composing the bounding box are transformed and sent to the Renderers" (5.1).
         let cost = ticks(self.machine.transform, BOX_PRIMS);
         self.works(p, Job::Ask, cost, node, structures.len());
-        let (image, crosses_near) = match footprint(self.view, &self.projection, &bounds) {
-            Footprint::Seen(image) => (image, false),
-            other => {
-                let pixels = PixelRect::default();
-                let nearest = 1.0 / self.view.eye.near;
-                (BoxImage { corners_px: [[0.0; 2]; 8], pixels, nearest }, other == Footprint::CrossesNear)
-            }
-        };
+        let (image, crosses_near) = self.image(&bounds);
         // A shared primitive is drawn as a whole, and the part outside the cube may come nearer.
         let nearest = nearest_depth(&self.projection, &whole, self.view.eye.near);
         let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
         let regions = self.screen.regions(image.pixels);
         let open = regions.len() as u32;
-        // A departure: with dynamic allocation a region that no renderer holds cannot be queried and counts as
-        // seen. The paper concludes that the allocation has to be static (Section 5.1).
+        // A departure: with dynamic allocation a region that no renderer holds cannot be queried and counts
+        // as seen. The paper concludes that the allocation has to be static (Section 5.1).
         let is_seen = crosses_near || regions.iter().any(|&r| !self.screen.is_held(r));
         let question = Question { processor: p, structures, node, bounds, image, open, is_seen, answer };
         self.questions.push(question);
@@ -341,6 +344,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             question.answer = Answer { reads: open, decisive: Some(closest), ..answer };
             self.decide(number, false);
         } else if is_seen {
+            // A region is not held.
             self.decide(number, false);
         } else {
             self.watch.event(Event::Line(line::SEND_BOX));
@@ -350,6 +354,16 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             }
         }
         self.after(cost, What::Free(p));
+    }
+    /// Where a box falls in the image, nowhere if it is out of view; and whether it crosses the near plane.
+    fn image(&self, bounds: &Aabb<S::Vector>) -> (BoxImage, bool) {
+        let nearest = 1.0 / self.view.eye.near;
+        let nowhere = BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest };
+        match footprint(self.view, &self.projection, bounds) {
+            Footprint::Seen(image) => (image, false),
+            Footprint::Outside => (nowhere, false),
+            Footprint::CrossesNear => (nowhere, true),
+        }
     }
     /// The shortcut of Section 5.3: if a box lies behind the farthest depth of all its regions, that of the
     /// closest one. The processor reads these once, "after the visible list has been rendered, when the
