@@ -11,11 +11,11 @@ use crate::scene::{Progress, Scene};
 /// How the octree is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cubes {
-    tree_levels: u32,
+    pub(crate) tree_levels: u32,
     /// 0: by the space.
     pub(crate) leaf_primitives: u32,
-    redistribution: Redistribution,
-    small_percent: u32,
+    pub(crate) redistribution: Redistribution,
+    pub(crate) small_percent: u32,
 }
 
 impl Default for Cubes {

@@ -257,8 +257,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         }
         true
     }
-    /// Whether the part of the rectangle inside a cell lies behind the cell's depth, descending at most `finer`
-    /// levels.
+    /// Whether the part of the rectangle inside a cell lies behind the cell's depth, descending at most
+    /// `finer` levels.
     fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;

@@ -227,7 +227,8 @@ fn a_processor_draws_the_largest_first_and_queries_the_cheapest_first() {
         let held = &index.nodes()[n.at()].held;
         match crate::culling::depth::footprint(&view, &view.projection(), held) {
             crate::geometry::Footprint::Seen(image) => std::cmp::Reverse(image.pixels.area()),
-            _ => std::cmp::Reverse(u64::MAX),
+            crate::geometry::Footprint::Outside => std::cmp::Reverse(0),
+            crate::geometry::Footprint::CrossesNear => std::cmp::Reverse(u64::MAX),
         }
     });
     assert!(drawn.len() > 10 && area.is_sorted(), "the largest are drawn first");
