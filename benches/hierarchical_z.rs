@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use cullscope::culling::Methods;
-use cullscope::culling::obscuration::Obscurer;
+use cullscope::culling::hierarchical_z_parts::Obscurer;
 use cullscope::geometry::{Aabb, NodeId, Solid, View};
 use cullscope::measure::timed;
 use cullscope::measure::timing::{Paired, median, paired};

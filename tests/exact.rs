@@ -97,7 +97,7 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
 const SETTINGS: [(&str, &[(&str, &str)]); 5] = [
     ("hierarchical-z", &[("coherence", "false"), ("query", "rectangles"), ("redistribution", "split")]),
     ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
-    ("hierarchical-z", &[("processors", "4"), ("leaf-primitives", "256")]),
+    ("parallel-hierarchical-z", &[("leaf-primitives", "256")]),
     ("layered-projection", &[("budget", "2%"), ("queries", "true")]),
     (
         "layered-projection",

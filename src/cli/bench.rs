@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::error::reason;
 use super::{CliError, methods, output, scene};
 use crate::culling::Methods;
-use crate::culling::obscuration::{METHOD, Obscurer};
+use crate::culling::hierarchical_z_parts::{METHOD, Obscurer};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::method::Settings;

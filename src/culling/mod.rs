@@ -5,12 +5,14 @@
 //! To add a method: make a folder, implement [`Method`], add a `mod` line and a line in each list below.
 
 pub(crate) mod baseline;
+mod cubes;
 pub(crate) mod depth;
 pub(crate) mod hierarchical_z;
 pub(crate) mod large_occluders;
 pub(crate) mod layered_projection;
+pub(crate) mod parallel_hierarchical_z;
 
-pub use hierarchical_z::anatomy as obscuration;
+pub use hierarchical_z::parts as hierarchical_z_parts;
 pub use large_occluders::anatomy;
 
 use crate::geometry::{Flat, Solid, Space};
@@ -23,6 +25,7 @@ pub static FLAT: &[&dyn Entry<Flat>] = &[
     &Of::<baseline::Centroid>::NEW,
     &Of::<large_occluders::LargeOccluders>::NEW,
     &Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &Of::<parallel_hierarchical_z::ParallelHierarchicalZ>::NEW,
     &Of::<layered_projection::LayeredProjection>::NEW,
 ];
 /// Every method that runs in space, in the order of menus.
@@ -32,6 +35,7 @@ pub static SOLID: &[&dyn Entry<Solid>] = &[
     &Of::<baseline::Centroid>::NEW,
     &Of::<large_occluders::LargeOccluders>::NEW,
     &Of::<hierarchical_z::HierarchicalZ>::NEW,
+    &Of::<parallel_hierarchical_z::ParallelHierarchicalZ>::NEW,
     &Of::<layered_projection::LayeredProjection>::NEW,
 ];
 

@@ -34,8 +34,6 @@ pub enum Redistribution {
 }
 
 impl Redistribution {
-    /// The words for it, in the order of [`Redistribution::ALL`].
-    pub const WORDS: [&'static str; 4] = ["hybrid", "parent", "grown", "split"];
     /// Every choice.
     pub const ALL: [Self; 4] = [Self::Hybrid, Self::Parent, Self::Grown, Self::Split];
 }

@@ -11,5 +11,7 @@ pub const CENTROID: &str = "centroid";
 pub const LARGE_OCCLUDERS: &str = "large-occluders";
 /// Georges, after Greene, Kass and Miller.
 pub const HIERARCHICAL_Z: &str = "hierarchical-z";
+/// Georges, on a machine of many processors.
+pub const PARALLEL_HIERARCHICAL_Z: &str = "parallel-hierarchical-z";
 /// Klosowski and Silva.
 pub const LAYERED_PROJECTION: &str = "layered-projection";

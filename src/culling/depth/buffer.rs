@@ -4,18 +4,46 @@ use crate::geometry::{Frustum, PixelRect, PrimId, Projection, View};
 use crate::raster::{Drawable, Extent, Options, Pyramid, PyramidCell, Sieve, Target};
 use crate::scene::Scene;
 
-/// A view with what follows from it.
+/// A view with its projection and its planes, which every query needs.
 #[derive(Clone, Copy, Debug)]
-pub struct Sight<S: Drawable> {
+pub struct Projected<S: Drawable> {
     pub view: View<S>,
     pub projection: Projection<S::Vector>,
     pub frustum: Frustum<S::Vector>,
 }
 
+/// A change of a buffer. A run makes it, and a film makes it again from the note that holds its operands.
+#[derive(Clone, Copy, Debug)]
+pub enum Step<'a, S: Drawable> {
+    /// The tile of a cell is brought up to date.
+    Refresh(PyramidCell),
+    /// The tiles under a rectangle are, unless more than so many are stale.
+    RefreshUnder(PixelRect, u32),
+    /// The whole pyramid is.
+    RefreshAll,
+    /// Primitives are drawn; those behind their pyramid cells are left out if `is_sieved`.
+    ///
+    /// Drawing them one by one leads to the same state as drawing them at once, and so may be replayed from
+    /// one note a primitive. The image is a function of the set of primitives that are drawn. Drawing marks
+    /// tiles as stale and refreshes none, so what the pyramid holds on its levels above 0 is the same for
+    /// each of them; level 0 is the image, and a primitive of one pixel that is left out only because of one
+    /// drawn just before it lies in a tile that is stale already and changes no pixel.
+    Draw {
+        /// The scene that they are of.
+        scene: &'a Scene<S>,
+        /// Which.
+        prims: &'a [PrimId],
+        /// How.
+        options: Options,
+        /// Whether the pyramid is asked first.
+        is_sieved: bool,
+    },
+}
+
 /// A depth image, its pyramid, and the view it is for.
 #[derive(Clone, Debug)]
 pub struct Buffer<S: Drawable> {
-    sight: Option<Sight<S>>,
+    projected: Option<Projected<S>>,
     target: Target,
     pyramid: Pyramid,
     hidden: Vec<PrimId>,
@@ -24,55 +52,71 @@ pub struct Buffer<S: Drawable> {
 /// Images of the same view with the same pyramid, its stale tiles included.
 impl<S: Drawable> PartialEq for Buffer<S> {
     fn eq(&self, other: &Self) -> bool {
-        let view = |b: &Self| b.sight.as_ref().map(|s| s.view);
+        let view = |b: &Self| b.projected.as_ref().map(|s| s.view);
         view(self) == view(other) && self.target == other.target && self.pyramid == other.pyramid
     }
 }
 
 impl<S: Drawable> Default for Buffer<S> {
     fn default() -> Self {
-        Self { sight: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
+        Self { projected: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
     }
 }
 
 impl<S: Drawable> Buffer<S> {
     /// The view it is for and its projection, once there is one.
     pub fn view(&self) -> Option<(&View<S>, &Projection<S::Vector>)> {
-        self.sight.as_ref().map(|s| (&s.view, &s.projection))
+        self.projected.as_ref().map(|s| (&s.view, &s.projection))
     }
     /// The same with its frustum.
     #[inline]
-    pub fn sight(&self) -> Option<&Sight<S>> {
-        self.sight.as_ref()
+    pub fn projected(&self) -> Option<&Projected<S>> {
+        self.projected.as_ref()
     }
     /// Empties it for a view.
     pub fn clear(&mut self, view: &View<S>) {
         self.target.clear(view);
         self.look(view);
     }
-    /// The same for depths alone, which queries need: nobody will look at which primitive shows where.
+    /// The same for depths alone, which are all that queries need: the image has no items.
     pub fn clear_depths(&mut self, view: &View<S>) {
         self.target.clear_depths(view);
         self.look(view);
     }
     fn look(&mut self, view: &View<S>) {
-        self.sight = Some(Sight { view: *view, projection: view.projection(), frustum: view.frustum() });
+        self.projected =
+            Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
+        // An empty pixel is as deep as the far plane, in the pyramid as in the image.
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
+    }
+    /// Makes a change. Returns the primitives that drawing left out, in their order.
+    #[inline]
+    pub fn step(&mut self, step: Step<'_, S>) -> &[PrimId] {
+        self.hidden.clear();
+        match step {
+            Step::Refresh(cell) => self.refresh(cell),
+            Step::RefreshUnder(pixels, most) => self.refresh_under(pixels, most as usize),
+            Step::RefreshAll => self.refresh_all(),
+            Step::Draw { scene, prims, options, is_sieved: true } => _ = self.draw(scene, prims, &options),
+            Step::Draw { scene, prims, options, is_sieved: false } => self.draw_all(scene, prims, &options),
+        }
+        &self.hidden
     }
     /// Draws primitives but for those that lie behind their pyramid cells, which are returned in the order of
     /// `prims`. The pyramid grows stale where something was drawn.
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) -> &[PrimId] {
         self.hidden.clear();
-        if let Some(Sight { view, .. }) = &self.sight {
+        if let Some(Projected { view, .. }) = &self.projected {
             let sieve = Sieve { pyramid: &mut self.pyramid, hidden: &mut self.hidden };
             S::sift(&mut self.target, sieve, scene, view, prims, options);
         }
         &self.hidden
     }
     /// Draws primitives without asking the pyramid, which grows stale all over.
-    pub fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
-        if let Some(Sight { view, .. }) = &self.sight {
+    fn draw_all(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) {
+        if let Some(Projected { view, .. }) = &self.projected {
             S::draw(&mut self.target, scene, view, prims, options);
+            // Where they were drawn is not reported: anywhere in the window.
             self.pyramid.touch(options.window.unwrap_or(PixelRect {
                 x0: 0,
                 x1: view.width,
@@ -82,9 +126,10 @@ impl<S: Drawable> Buffer<S> {
         }
     }
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid
-    /// holds for it. The same before and after it was drawn: only refreshing changes what the pyramid holds.
+    /// holds for it. The same before and after it was drawn, unless it is one pixel: only refreshing changes
+    /// what the pyramid holds above level 0.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
-        let extent = S::extent(scene, &self.sight.as_ref()?.view, prim, options)?;
+        let extent = S::extent(scene, &self.projected.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
     /// Makes a part of the pyramid stale.
@@ -102,12 +147,14 @@ impl<S: Drawable> Buffer<S> {
     }
     /// Brings the tile of a cell up to date.
     #[inline]
-    pub fn refresh(&mut self, cell: PyramidCell) {
+    fn refresh(&mut self, cell: PyramidCell) {
         self.pyramid.refresh(&self.target.depth, cell);
     }
-    /// Brings the tiles under a rectangle up to date if no more than `most` are stale; returns how many were.
-    pub fn refresh_under(&mut self, pixels: PixelRect, most: usize) -> usize {
-        if pixels.is_empty() { 0 } else { self.pyramid.refresh_under(&self.target.depth, pixels, most) }
+    /// Brings the tiles under a rectangle up to date if no more than `most` are stale.
+    fn refresh_under(&mut self, pixels: PixelRect, most: usize) {
+        if !pixels.is_empty() {
+            self.pyramid.refresh_under(&self.target.depth, pixels, most);
+        }
     }
     /// Brings the whole pyramid up to date.
     pub fn refresh_all(&mut self) {

@@ -1,13 +1,21 @@
-//! Depths drawn so far, and what they hide: the z-buffer with its z-pyramid, and the query of a box against
-//! it. What methods that ask for depth share; it knows none of them. Who wants to hear what a query reads is
-//! a [`Listener`].
+//! Depths drawn so far, and what they hide: the z-buffer with its z-pyramid, the query of a box against it,
+//! and how both are recorded and shown. What methods that query depth share; it knows none of them. What a
+//! query reads goes to a [`Listener`].
 //!
-//! [`Buffer::begin`] for a view, [`Buffer::draw`] primitives, then [`hides`] for boxes.
+//! [`Buffer::clear`] for a view, [`Buffer::draw`] primitives, then [`hides`] for boxes. A method whose large
+//! state is the buffer changes it by [`Buffer::step`] alone, and records each change as a [`DepthNote`].
 
 mod buffer;
+mod evidence;
 mod faces;
+pub mod picture;
 mod query;
+#[cfg(test)]
+mod tests;
 
-pub use buffer::Buffer;
+pub use buffer::{Buffer, Step};
+pub use evidence::{Answered, DepthNote, QueryReporter, Rasterized};
 pub use faces::{FaceImage, Faces, footprint, project_sphere};
-pub use query::{Answer, Held, Listener, Nobody, Outcome, Query, Read, hides};
+#[cfg(test)]
+pub use query::Outcome;
+pub use query::{Answer, Held, Listener, Nobody, Query, hides};

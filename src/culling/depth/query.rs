@@ -15,12 +15,13 @@
 //! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the
 //! image of the box, hence in its screen rectangle and so near to the image of one of its front faces; its
 //! fragments are no nearer than the box's nearest vertex; and depths that are equal count as visible, since
-//! ids then decide. A box out of view is told by the bound that also keeps its contents from being drawn
+//! ids then decide. A box out of view is recognized by the bound that also keeps its contents undrawn
 //! ([`crate::geometry::Frustum::excludes`]). Cost: a box out of view takes one test of six planes at a time;
 //! one in view eight corners in SIMD and four cells where they decide; at worst the pixels along the outlines
 //! of its faces.
 
-use super::{Buffer, FaceImage, Faces, footprint};
+use super::buffer::{Buffer, Step};
+use super::faces::{FaceImage, Faces, footprint};
 use crate::geometry::{Aabb, BoxImage, Footprint, PixelRect, View};
 use crate::method::evidence::short;
 use crate::raster::PyramidCell;
@@ -103,7 +104,7 @@ impl Read {
     }
 }
 
-/// Who hears what a query reads, in order. It cannot answer, so a query that is heard and one that is not are
+/// Receives what a query reads, in order. It returns nothing, so a query with a listener and one without are
 /// the same.
 pub trait Listener {
     /// The tile of a cell was out of date and is being brought up to date.
@@ -140,7 +141,7 @@ impl<S: Faces> Held<S> for &mut Buffer<S> {
         self.pyramid().is_stale(cell)
     }
     fn refresh(&mut self, cell: PyramidCell) {
-        Buffer::refresh(self, cell);
+        self.step(Step::Refresh(cell));
     }
 }
 
@@ -163,12 +164,13 @@ pub fn hides<S: Faces>(
     bounds: &Aabb<S::Vector>,
     listener: impl Listener,
 ) -> Option<Answer> {
-    let sight = buffer.buffer().sight()?;
-    if sight.frustum.excludes(bounds) {
+    let seen = buffer.buffer().projected()?;
+    // All planes at a time, by the bound that keeps primitives out of the image.
+    if seen.frustum.excludes(bounds) {
         return None;
     }
-    let view = sight.view;
-    match footprint(&view, &sight.projection, bounds) {
+    let view = seen.view;
+    match footprint(&view, &seen.projection, bounds) {
         Footprint::Outside => None,
         Footprint::CrossesNear => {
             Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
@@ -183,7 +185,7 @@ pub fn hides<S: Faces>(
 pub struct Query<S: Faces, B: Held<S>, L> {
     /// What is drawn so far.
     pub buffer: B,
-    /// Who listens.
+    /// What receives the reads.
     pub listener: L,
     pub answer: Answer,
     space: std::marker::PhantomData<S>,
@@ -207,13 +209,17 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         view: &View<S>,
         window: PixelRect,
     ) -> Answer {
+        // A departure: first the few cells over the whole box, which decide for most of what is hidden.
         if self.behind_whole(image.pixels.intersection(window)) {
             return self.answer;
         }
+        // Section 3.2: "if all faces are invisible, the cube's contents can be disregarded". Only faces
+        // toward the eye can be seen; the others lie behind them.
         let (faces, count) = S::front(bounds, view.eye.position);
         for (number, face) in faces[..count].iter().enumerate() {
             let mut face = S::image(*face, image, view.width, view.height);
             face.pixels = face.pixels.intersection(window);
+            // One face that may be seen is enough.
             if !self.face(number as u8, &face) {
                 break;
             }
@@ -223,7 +229,10 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
 
     /// Asks for one face.
     pub fn face(&mut self, number: u8, face: &FaceImage) -> bool {
+        // A face without a pixel's center cannot show.
         if !face.pixels.is_empty() {
+            // Section 3.2: "the single finest resolution pixel in the pyramid that still completely covers
+            // the bounding box area".
             let cell = self.buffer.buffer().pyramid().finest_over(face.pixels);
             self.answer.is_hidden &= self.behind(number, face, cell);
         }
@@ -240,7 +249,7 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         for y in first.y..=last.y {
             for x in first.x..=last.x {
                 if !self.behind_part(pixels, PyramidCell { level: first.level, x, y }, FINER) {
-                    // What was found so far decides nothing.
+                    // The cells found so far hide parts of the rectangle, which decides nothing.
                     self.answer.decisive = None;
                     return false;
                 }
@@ -248,8 +257,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         }
         true
     }
-    /// Whether it lies behind what of it a cell holds, or behind all of the cells in it that are at most so
-    /// many levels finer.
+    /// Whether the part of the rectangle inside a cell lies behind the cell's depth, descending at most
+    /// `finer` levels.
     fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
@@ -280,6 +289,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     fn look_at(&mut self, cell: PyramidCell) -> f32 {
         self.answer.reads += 1;
         let held = self.buffer.buffer().farthest(cell);
+        // A stale cell holds too far a depth: what is behind it is hidden all the same, and only what is not
+        // is worth a refresh.
         if self.answer.nearest >= held && self.buffer.would_refresh(cell) {
             self.listener.refreshes(cell);
             self.buffer.refresh(cell);
@@ -299,6 +310,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
+        // Section 3.2: obscured if "the closest face z is further than the sample z". Depths are 1/w, so
+        // farther is less. Equal depths count as seen, since ids then decide.
         let outcome = if nearest < held {
             Outcome::Behind
         } else if cell.level == 0 || cell.level <= TILE_LEVEL && face.covers(self.pixels(cell)) {
@@ -322,6 +335,7 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
 
     /// Whether the face lies behind all that is drawn in the cells below one.
     fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+        // "Descending to higher resolutions and seeing if all samples the face intersects are closer."
         for k in 0..4 {
             let child =
                 PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
@@ -338,7 +352,7 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     }
 }
 
-/// Levels by which the cells over a whole box are refined before its faces are asked for: one look at four
+/// Levels by which the cells over a whole box are refined before its faces are queried: one look at four
 /// cells takes in up to 16 times the box's rectangle, one at the cells two levels below hardly more than it.
 const FINER: u8 = 2;
 /// The highest level whose cells know when they are stale: below it a cell that is not farther shows a pixel;

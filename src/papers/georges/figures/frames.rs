@@ -12,7 +12,7 @@ use crate::figure::tools::{Tint, WIDTH_PT, eye, flat_panel, page, ready};
 use crate::figure::{Look, Paper, panels};
 use crate::geometry::{Flat, Solid, View};
 use crate::method::{Film, Verdict};
-use crate::papers::keys::HIERARCHICAL_Z;
+use crate::papers::keys::{HIERARCHICAL_Z, PARALLEL_HIERARCHICAL_Z};
 use crate::raster::DepthScale;
 use crate::scene::{Scene, SceneError, example};
 use crate::trace::Stamps;
@@ -25,7 +25,7 @@ const PROCESSORS: &str = "4";
 /// A frame of the game level, after some frames of the same view.
 fn level(scene: &Arc<Scene<Flat>>, coherence: &str, frames: usize) -> Arc<dyn Film<Flat>> {
     let view = View { width: 512, ..eye(scene, 0) };
-    after(scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
+    after(HIERARCHICAL_Z, scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
 }
 
 pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
@@ -53,12 +53,13 @@ pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
 
 /// The film of a frame after some frames of the same view.
 fn after<S: Methods>(
+    method: &str,
     scene: &Arc<Scene<S>>,
     view: &View<S>,
     pairs: &[(&str, &str)],
     frames: usize,
 ) -> Arc<dyn Film<S>> {
-    let mut run = ready(scene, HIERARCHICAL_Z, pairs);
+    let mut run = ready(scene, method, pairs);
     (0..frames).for_each(|_| _ = run.cull(view));
     run.record(view, usize::MAX).film
 }
@@ -72,7 +73,7 @@ fn timeline(scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
         ("distribution", distribution),
         ("leaf-primitives", "64"),
     ];
-    let film = after(scene, &view, &pairs, 1);
+    let film = after(PARALLEL_HIERARCHICAL_Z, scene, &view, &pairs, 1);
     film.picture(film.events().len(), TIMELINE, DepthScale::default())
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::notes::hidden_query;
-use crate::culling::obscuration::{figure_1, pyramid_picture};
+use crate::culling::hierarchical_z_parts::{figure_1, pyramid_picture};
 use crate::drawing::{Drawing, Mark, Role};
 use crate::figure::page::{below, legend};
 use crate::figure::tools::{Tint, WIDTH_PT, entry, eye, film, flat_panel, page};

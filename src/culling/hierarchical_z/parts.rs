@@ -1,13 +1,13 @@
-//! The parts of the method by themselves: an image that is drawn, and boxes and rectangles that are asked
-//! for. For figures, benchmarks and tests, which all look at the very functions that the method runs.
+//! The parts of the method by themselves: an image that is drawn, and boxes and rectangles that are queried.
+//! For figures, benchmarks and tests, which all look at the very functions that the method runs.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
-use super::explain::{Asked, Evidence};
-use super::{HierarchicalZ, Memory, Params, picture};
-use crate::culling::depth::{Buffer, FaceImage, Faces, Nobody, Query, hides};
+use super::{HierarchicalZ, Memory, Params};
+use crate::culling::depth::picture::{last_reads, levels};
+use crate::culling::depth::{Buffer, DepthNote, FaceImage, Faces, Nobody, Query, QueryReporter, hides};
 use crate::drawing::Drawing;
 use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
 use crate::index::Octree;
@@ -47,8 +47,8 @@ impl<S: Faces> Obscurer<S> {
             state: Buffer::default(),
         }))
     }
-    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes can
-    /// be asked for, and the image has no items; half the memory to clear and to fill.
+    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes
+    /// can be queried, and the image has no items; half the memory to clear and to fill.
     pub fn render(&mut self, view: &View<S>, depths_only: bool) -> DrawList<S> {
         let mut list = DrawList::default();
         let (index, scene, params) = (&self.index, &*self.scene, &self.params);
@@ -91,13 +91,14 @@ pub fn pyramid_picture<S: Faces>(
     buffer.clear(view);
     buffer.draw(scene, scene.live(), &Options::default());
     buffer.refresh_all();
-    let mut recorder: Recorder<Evidence<S>> = Recorder::new(usize::MAX);
+    let mut recorder: Recorder<DepthNote<S>> = Recorder::new(usize::MAX);
     let mut is_hidden = false;
     if let Some((pixels, depth)) = face {
-        is_hidden = Query::new(&mut buffer, 1.0 / depth, Asked::new(NodeId(0), 0, &mut recorder))
-            .face(0, &FaceImage::rectangle(pixels));
+        is_hidden =
+            Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), [0, 0], &mut recorder))
+                .face(0, &FaceImage::rectangle(pixels));
     }
-    (picture::picture(&buffer, view, &recorder.notes, 0, scale), is_hidden)
+    (levels(&buffer, view, &last_reads(recorder.notes.iter().rev().map(Some)), scale), is_hidden)
 }
 
 /// The depths of Figure 1 of Georges 1995, each a square of one pixel that deep, and the straight view of

@@ -1,0 +1,371 @@
+//! Evidence that methods with a z-pyramid record: what a query read and found, what was brought up to date,
+//! what was drawn. As fields, as sentences, and as marks in the world.
+
+use std::marker::PhantomData;
+
+use super::buffer::Step;
+use super::faces::Faces;
+use super::query::{Answer, Listener, Read};
+use crate::drawing::{Drawing, Layer, Role, Subject};
+use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
+use crate::method::evidence::{axes, integer, label, number, outline, short};
+use crate::method::{Context, Event, Field, Note, Observer, Tallied, Tally, Value};
+use crate::raster::{Extent, Options, PyramidCell};
+use crate::scene::Scene;
+
+/// What happened to a buffer, or was read of it.
+#[derive(Clone, Copy, Debug)]
+pub enum DepthNote<S: Faces> {
+    /// A cell of the pyramid was compared with a face of a node's box.
+    Read(NodeId, Read),
+    /// A tile of the pyramid was brought up to date.
+    Refreshed(PyramidCell),
+    /// The tiles under a rectangle were brought up to date, unless more were stale than the number says.
+    RefreshedUnder(PixelRect, u32),
+    /// The whole pyramid was brought up to date.
+    RefreshedAll,
+    /// A node's box was queried.
+    Answered(Answered<S>),
+    /// A primitive was drawn, or left out because it lies behind its cells.
+    Rasterized(Rasterized),
+}
+
+/// A box was queried, and this was the answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Answered<S: Faces> {
+    /// Whose box.
+    pub node: NodeId,
+    /// The box.
+    pub bounds: Aabb<S::Vector>,
+    /// Pixels that it can cover; empty if it falls between them.
+    pub pixels: PixelRect,
+    /// What the query found.
+    pub answer: Answer,
+    /// It reaches the near plane, so it counts as visible.
+    pub crosses_near: bool,
+}
+
+/// A primitive was compared with its cells and drawn, or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rasterized {
+    /// Which.
+    pub prim: PrimId,
+    /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None`
+    /// if it covers no pixel or had to be clipped: then it is drawn without a test.
+    pub operands: Option<(Extent, f32)>,
+    /// Whether it was left out.
+    pub is_hidden: bool,
+    /// Whether the pyramid was asked.
+    pub is_sieved: bool,
+    /// Whether it was drawn only if it faces the eye.
+    pub backface_culling: bool,
+    /// The part of the image it was drawn in, if not all.
+    pub window: Option<PixelRect>,
+}
+
+/// Reports what a query reads, as evidence about the node whose box is queried, at lines of a method's
+/// pseudocode. `N` is the method's own note.
+pub struct QueryReporter<'a, S, N, O> {
+    node: NodeId,
+    lines: [u8; 2],
+    watch: &'a mut O,
+    kinds: PhantomData<(S, N)>,
+}
+
+impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> QueryReporter<'a, S, N, O> {
+    /// `lines`: the line that compares the rectangle of the whole box with a cell, and the one that compares
+    /// a face.
+    pub fn new(node: NodeId, lines: [u8; 2], watch: &'a mut O) -> Self {
+        Self { node, lines, watch, kinds: PhantomData }
+    }
+}
+
+impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter<'_, S, N, O> {
+    #[inline]
+    fn refreshes(&mut self, cell: PyramidCell) {
+        self.watch.note(|| DepthNote::Refreshed(cell).into());
+    }
+    #[inline]
+    fn reads(&mut self, read: Read) {
+        let node = self.node;
+        self.watch.event(Event::Line(self.lines[usize::from(read.face.is_some())]));
+        self.watch.note(move || DepthNote::Read(node, read).into());
+    }
+}
+
+/// View depth of a depth, world units.
+pub fn units(depth: f32) -> f32 {
+    1.0 / depth
+}
+
+impl<S: Faces> DepthNote<S> {
+    /// The change of the buffer that it records; `None` if nothing changed.
+    pub fn step<'a>(&'a self, scene: &'a Scene<S>) -> Option<Step<'a, S>> {
+        match self {
+            Self::Refreshed(cell) => Some(Step::Refresh(*cell)),
+            Self::RefreshedUnder(pixels, most) => Some(Step::RefreshUnder(*pixels, *most)),
+            Self::RefreshedAll => Some(Step::RefreshAll),
+            Self::Rasterized(n) if !n.is_hidden => {
+                let options =
+                    Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
+                let prims = std::slice::from_ref(&n.prim);
+                Some(Step::Draw { scene, prims, options, is_sieved: n.is_sieved })
+            }
+            Self::Read(..) | Self::Answered(_) | Self::Rasterized(_) => None,
+        }
+    }
+    /// Draws the evidence in the world.
+    pub fn draw(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+        match self {
+            Self::Answered(n) => n.draw(view, to),
+            Self::Rasterized(n) => {
+                outline(scene, n.prim, to);
+                if let Some((extent, held)) = n.operands {
+                    behind(view, extent.pixels, extent.nearest, held, to);
+                }
+            }
+            Self::Read(_, n) => {
+                let size = (view.width, view.height);
+                behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
+            }
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => {}
+        }
+    }
+}
+
+impl<S: Faces> Tallied for DepthNote<S> {
+    fn tally(&self, tally: &mut Tally) {
+        match self {
+            Self::Read(..) => tally.add("cells_read", 1),
+            Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
+            Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
+            Self::Answered(_) => tally.add("queries", 1),
+            Self::Rasterized(n) => {
+                tally.add(if n.is_hidden { "primitives_behind" } else { "primitives_drawn" }, 1)
+            }
+        }
+    }
+}
+
+impl<S: Faces> Note<S> for DepthNote<S> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Read(..) => "CellRead",
+            Self::Refreshed(_) => "TileRefreshed",
+            Self::RefreshedUnder(..) => "TilesRefreshed",
+            Self::RefreshedAll => "PyramidRefreshed",
+            Self::Answered(_) => "ObscurationTested",
+            Self::Rasterized(n) if n.is_hidden => "PrimitiveBehind",
+            Self::Rasterized(_) => "PrimitiveRasterized",
+        }
+    }
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Read(n, _) => Subject::Node(*n),
+            Self::Answered(n) => Subject::Node(n.node),
+            Self::Rasterized(n) => Subject::Prim(n.prim),
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => Subject::None,
+        }
+    }
+    fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
+        match self {
+            Self::Read(node, n) => {
+                let mut fields = vec![integer("node", node.0)];
+                fields.extend(n.face.map(|face| integer("face", face.into())));
+                fields.extend(cell_fields(n.cell));
+                fields.push(number("face_depth_units", units(n.nearest).into()));
+                fields.push(number("held_depth_units", units(n.held).into()));
+                fields.push(Field { name: "outcome", value: Value::Word(n.outcome.word().into()) });
+                fields
+            }
+            Self::Refreshed(cell) => cell_fields(*cell).to_vec(),
+            Self::RefreshedUnder(pixels, most) => vec![pixels_field(*pixels), integer("most_tiles", *most)],
+            Self::RefreshedAll => vec![],
+            Self::Answered(n) => n.fields(),
+            Self::Rasterized(n) => n.fields(),
+        }
+    }
+    fn sentence(&self, _: &Context<'_, S>) -> String {
+        match self {
+            Self::Read(node, n) => {
+                let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
+                format!("{what} of node {node} against {}: {}.", place(n.cell), n.comparison())
+            }
+            Self::Refreshed(cell) => {
+                format!(
+                    "Something was drawn under {} since it was read: its tile is brought up to date, with \
+                     all values above.",
+                    place(*cell)
+                )
+            }
+            Self::RefreshedUnder(_, most) => {
+                format!(
+                    "The pyramid is brought up to date where the next cube falls, if no more than {most} \
+                     tiles are stale there."
+                )
+            }
+            Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
+            Self::Answered(n) => n.sentence(),
+            Self::Rasterized(n) => n.sentence::<S>(),
+        }
+    }
+}
+
+/// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
+/// queried begins.
+fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, to: &mut Drawing<S::Vector>) {
+    let projection = view.projection();
+    let image_axes = S::Vector::AXES - 1;
+    let at = |x: u32, y: u32, w: f32| {
+        // The rows are orthogonal; dividing by the squared length undoes their scale.
+        let image = [x as f32 / view.width as f32 * 2.0 - 1.0, 1.0 - y as f32 / view.height as f32 * 2.0];
+        let forward = projection.rows[image_axes];
+        let ray = (0..image_axes).fold(forward, |r, a| {
+            let row = projection.rows[a];
+            r + row * (image[a] / row.dot(row))
+        });
+        projection.eye + ray * w
+    };
+    let corners: &[(u32, u32)] = if image_axes == 1 {
+        &[(pixels.x0, 0), (pixels.x1, 0)]
+    } else {
+        &[(pixels.x0, pixels.y0), (pixels.x1, pixels.y0), (pixels.x1, pixels.y1), (pixels.x0, pixels.y1)]
+    };
+    let (far, near) = (units(held).min(view.eye.far), units(nearest).min(view.eye.far));
+    for &(x, y) in corners {
+        to.line(Layer::Evidence, Role::Faint, Subject::None, [view.eye.position, at(x, y, far)]);
+    }
+    let section = |w: f32| corners.iter().map(|&(x, y)| at(x, y, w)).collect::<Vec<_>>();
+    to.outline(Layer::Evidence, Role::Occluder, Subject::None, section(far));
+    to.outline(Layer::Evidence, Role::Current, Subject::None, section(near));
+    // At opposite corners, so that they do not meet.
+    label(to, at(pixels.x0, pixels.y0, far), format!("drawn to {}", short(far)));
+    label(to, at(pixels.x1, pixels.y1, near), format!("nearest {}", short(near)));
+}
+
+impl<S: Faces> Answered<S> {
+    fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
+        to.bounds(Layer::Emphasis, Role::Current, Subject::Node(self.node), &self.bounds);
+        if let (Some((cell, held)), false) = (self.answer.decisive, self.crosses_near) {
+            behind(view, cell.pixels(view.width, view.height), self.answer.nearest, held, to);
+        }
+    }
+    fn sentence(&self) -> String {
+        let (node, near) = (self.node, short(units(self.answer.nearest)));
+        if self.crosses_near {
+            return format!("Node {node} reaches the near plane, so it counts as visible.");
+        }
+        let reads = self.answer.reads;
+        let cells = if reads == 1 { "one cell was".into() } else { format!("{reads} cells were") };
+        match (self.answer.decisive, self.answer.is_hidden) {
+            (None, false) => {
+                format!("Node {node} counts as visible: what is drawn in its place could not be read.")
+            }
+            (None, true) => {
+                format!("The image of node {node} falls between the pixels' centers: nothing of it can show.")
+            }
+            (Some((cell, held)), true) => format!(
+                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in \
+                 its place. {cells} read; the closest is {}, where the farthest thing drawn is at {}, nearer \
+                 by {}.",
+                place(cell),
+                short(units(held)),
+                short(units(self.answer.nearest) - units(held))
+            ),
+            (Some((cell, held)), false) => format!(
+                "Node {node} may be seen: it comes as near as {near}, and {} shows nothing nearer than {}, \
+                 which is {} beyond. {cells} read.",
+                place(cell),
+                short(units(held)),
+                short(units(held) - units(self.answer.nearest))
+            ),
+        }
+    }
+    fn fields(&self) -> Vec<Field> {
+        let mut fields = vec![
+            integer("node", self.node.0),
+            Field { name: "hidden", value: Value::Switch(self.answer.is_hidden) },
+            Field { name: "crosses_near", value: Value::Switch(self.crosses_near) },
+            number("nearest_depth_units", units(self.answer.nearest).into()),
+            integer("cells_read", self.answer.reads),
+            pixels_field(self.pixels),
+            Field { name: "box_min", value: axes(self.bounds.min) },
+            Field { name: "box_max", value: axes(self.bounds.max) },
+        ];
+        if let Some((cell, held)) = self.answer.decisive {
+            fields.extend(cell_fields(cell));
+            fields.push(number("held_depth_units", units(held).into()));
+            fields
+                .push(number("margin_units", f64::from(units(self.answer.nearest)) - f64::from(units(held))));
+        }
+        fields
+    }
+}
+
+fn pixels_field(r: PixelRect) -> Field {
+    Field { name: "pixels", value: Value::List([r.x0, r.x1, r.y0, r.y1].map(f64::from).to_vec()) }
+}
+fn cell_fields(cell: PyramidCell) -> [Field; 3] {
+    [integer("level", cell.level.into()), integer("column", cell.x.into()), integer("row", cell.y.into())]
+}
+
+/// A cell in words.
+pub fn place(cell: PyramidCell) -> String {
+    match cell.level {
+        0 => format!("pixel ({}, {})", cell.x, cell.y),
+        level => format!("cell ({}, {}) of level {level}", cell.x, cell.y),
+    }
+}
+
+impl Rasterized {
+    fn fields(&self) -> Vec<Field> {
+        let mut fields = vec![
+            integer("prim", self.prim.0),
+            Field { name: "hidden", value: Value::Switch(self.is_hidden) },
+        ];
+        if let Some((extent, held)) = self.operands {
+            let (nearest, held) = (units(extent.nearest), units(held));
+            fields.push(pixels_field(extent.pixels));
+            fields.push(number("nearest_depth_units", nearest.into()));
+            fields.push(number("held_depth_units", held.into()));
+            fields.push(number("margin_units", f64::from(nearest) - f64::from(held)));
+        }
+        fields
+    }
+    fn sentence<S: Faces>(&self) -> String {
+        let (kind, prim) = (S::PRIM, self.prim);
+        if let Some(w) = self.window {
+            return format!(
+                "The {kind} {prim} is rasterized in columns {} to {} and rows {} to {} of the image.",
+                w.x0,
+                w.x1 - 1,
+                w.y0,
+                w.y1 - 1
+            );
+        }
+        match self.operands {
+            None => format!(
+                "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by the \
+                 near plane or the image's wide border."
+            ),
+            Some((extent, held)) => {
+                let (near, held) = (units(extent.nearest), units(held));
+                if self.is_hidden {
+                    format!(
+                        "The {kind} {prim} is left out: its nearest point, at depth {}, lies behind all that \
+                         is drawn in its cells, which is no farther than {}.",
+                        short(near),
+                        short(held)
+                    )
+                } else {
+                    format!(
+                        "The {kind} {prim} is drawn: it comes as near as {}, and its cells show nothing \
+                         nearer than {} somewhere.",
+                        short(near),
+                        short(held)
+                    )
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! Pictures of what is not in the world: the levels of the pyramid beside each other and stacked, and the
+//! lists of a method that remembers what was visible.
+//!
+//! They are drawn from the large state and the reads at a step, so what is lit is what the run read.
+
+use glam::{Vec2, vec2};
+
+use super::buffer::Buffer;
+use super::evidence::{Answered, DepthNote, place, units};
+use super::faces::Faces;
+use super::query::{Outcome, Read};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
+use crate::geometry::{NodeId, View};
+use crate::method::evidence::short;
+use crate::raster::{DepthScale, PyramidCell, shade_depth};
+
+/// Width of a picture in points.
+pub const WIDTH_PT: f32 = 480.0;
+const LABEL_PT: f32 = 7.5;
+/// The least side of a cell in which its value has room.
+const VALUE_ROOM_PT: f32 = 15.0;
+/// Levels with more columns or rows are left out: their cells are far smaller than a point.
+const MOST_COLUMNS: u32 = 1024;
+
+/// The reads of the query that the last of some notes belongs to. `notes`: last first; `None` for what is no
+/// note about depth.
+pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote<S>>>) -> Vec<Read> {
+    let (mut reads, mut whose): (Vec<Read>, _) = (Vec::new(), None);
+    for note in notes {
+        match note {
+            Some(DepthNote::Read(node, r)) if whose.is_none_or(|n| n == *node) => {
+                reads.push(*r);
+                whose = Some(*node);
+            }
+            Some(DepthNote::Refreshed(_)) => {}
+            // A query ends with its answer: behind it only if nothing was read since.
+            Some(DepthNote::Answered(_)) if reads.is_empty() => {}
+            _ => break,
+        }
+    }
+    reads.reverse();
+    reads
+}
+
+/// Where a level stands on paper: its corner, the size of a cell, and how far the image goes.
+#[derive(Clone, Copy)]
+struct Frame {
+    level: u32,
+    at: Vec2,
+    cell: Vec2,
+    end: Vec2,
+}
+
+impl Frame {
+    /// A level whose image is `size` large; cells at the far edges may be cut.
+    fn new<S: Faces>(level: u32, at: Vec2, size: Vec2, view: &View<S>) -> Self {
+        let cell = size * (1u32 << level) as f32 / vec2(view.width as f32, view.height as f32);
+        // A line of pixels has one row on every level.
+        let cell = if view.height == 1 { vec2(cell.x, size.y) } else { cell };
+        Self { level, at, cell, end: at + size }
+    }
+    fn rect(&self, cell: PyramidCell) -> [Vec2; 2] {
+        let a = self.at + self.cell * vec2(cell.x.into(), cell.y.into());
+        [a, (a + self.cell).min(self.end)]
+    }
+    fn cell_under(&self, at: Vec2) -> Option<PyramidCell> {
+        let inside = at.cmpge(self.at).all() && at.cmplt(self.end).all();
+        let place = (at - self.at) / self.cell;
+        inside.then_some(PyramidCell { level: self.level as u8, x: place.x as u16, y: place.y as u16 })
+    }
+}
+
+/// The levels that are shown, and where.
+fn frames<S: Faces>(buffer: &Buffer<S>, view: &View<S>) -> (Vec<Frame>, f32) {
+    let (root, top) = (buffer.pyramid().root(), 12.0);
+    if S::CORNERS == 2 {
+        let frame = |level: u32| {
+            Frame::new(level, vec2(0.0, top + level as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
+        };
+        return ((0..=root).map(frame).collect(), (root + 1) as f32 * STRIP_PITCH_PT);
+    }
+    let shown: Vec<u32> = (0..=root)
+        .filter(|&l| buffer.pyramid().size(l).0.max(buffer.pyramid().size(l).1) <= MOST_COLUMNS)
+        .collect();
+    let in_row = shown.len().clamp(1, 4);
+    let gap = vec2(8.0, 16.0);
+    let width = (WIDTH_PT - gap.x * (in_row - 1) as f32) / in_row as f32;
+    let size = vec2(width, width * view.height as f32 / view.width.max(1) as f32);
+    let at = |k: usize| vec2(0.0, top) + (size + gap) * vec2((k % in_row) as f32, (k / in_row) as f32);
+    let frames = shown.iter().enumerate().map(|(k, &level)| Frame::new(level, at(k), size, view)).collect();
+    (frames, shown.len().div_ceil(in_row) as f32 * (size.y + gap.y))
+}
+
+/// Height of a strip and distance from one to the next, in flatland.
+const STRIP_PT: f32 = 13.0;
+const STRIP_PITCH_PT: f32 = 26.0;
+
+/// Some cells of a level as an image, one cell a pixel.
+fn image<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    level: u32,
+    [x0, x1, y0, y1]: [u32; 4],
+    scale: DepthScale,
+) -> Pixels {
+    let cells = (y0..y1)
+        .flat_map(|y| (x0..x1).map(move |x| PyramidCell { level: level as u8, x: x as u16, y: y as u16 }));
+    let depths: Vec<f32> = cells.map(|c| buffer.farthest(c)).collect();
+    Pixels {
+        width: x1 - x0,
+        height: y1 - y0,
+        rgba: shade_depth(&depths, &buffer.target().depth, 1.0 / view.eye.far, scale).into(),
+    }
+}
+
+/// The frame with the level's name and its image, and values where there is room.
+fn draw_level<S: Faces>(
+    buffer: &Buffer<S>,
+    view: &View<S>,
+    frame: &Frame,
+    scale: DepthScale,
+    to: &mut Drawing,
+) {
+    let (columns, rows) = buffer.pyramid().size(frame.level);
+    let title = match frame.level {
+        // Short: with its size it would reach the next level's name.
+        0 => "level 0: the z-buffer".into(),
+        l => format!("level {l}, {columns} × {rows}"),
+    };
+    to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
+    // Whole cells first, then those that the image's edge cuts.
+    let split = |cells: u32, pixels: u32| {
+        if pixels >> frame.level == cells {
+            vec![[0, cells]]
+        } else {
+            vec![[0, cells - 1], [cells - 1, cells]]
+        }
+    };
+    for [y0, y1] in split(rows, view.height) {
+        for [x0, x1] in split(columns, view.width).into_iter().filter(|_| y1 > y0) {
+            if x1 > x0 {
+                let cell =
+                    |x: u32, y: u32| PyramidCell { level: frame.level as u8, x: x as u16, y: y as u16 };
+                let corners = [frame.rect(cell(x0, y0))[0], frame.rect(cell(x1 - 1, y1 - 1))[1]];
+                let pixels = image(buffer, view, frame.level, [x0, x1, y0, y1], scale);
+                to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
+            }
+        }
+    }
+    stale(buffer, frame, to);
+    to.outline(
+        Layer::Scene,
+        Role::Faint,
+        Subject::None,
+        [frame.at, vec2(frame.end.x, frame.at.y), frame.end, vec2(frame.at.x, frame.end.y)],
+    );
+    for y in 0..rows as u16 {
+        for x in 0..columns as u16 {
+            let cell = PyramidCell { level: frame.level as u8, x, y };
+            let text =
+                if is_stale(buffer, cell) { "stale".into() } else { value(buffer.farthest(cell), view) };
+            let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
+            if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
+                return;
+            }
+            let [a, b] = frame.rect(cell);
+            plate(to, (a + b) * 0.5, &text);
+        }
+    }
+}
+
+/// Whether a cell holds less than the truth, since something was drawn under it and it was not read since.
+fn is_stale<S: Faces>(buffer: &Buffer<S>, cell: PyramidCell) -> bool {
+    cell.level > 0 && buffer.pyramid().is_stale_below(cell)
+}
+
+/// Marks what is not up to date, in runs along the rows.
+fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
+    // Below the level of tiles all cells of a tile are alike.
+    let level = frame.level.max(if frame.level == 0 { 0 } else { 4.min(buffer.pyramid().root()) });
+    let (columns, rows) = buffer.pyramid().size(level);
+    let tile = Frame { level, cell: frame.cell * (1u32 << (level - frame.level)) as f32, ..*frame };
+    let tile = if frame.end.y - frame.at.y <= STRIP_PT {
+        Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile }
+    } else {
+        tile
+    };
+    // Runs along a row; those of rows below each other that are alike are one rectangle.
+    let mut open: Vec<([u32; 2], u32)> = Vec::new();
+    let mut close = |[x0, x1]: [u32; 2], y0: u32, y1: u32| {
+        let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: x as u16, y: y as u16 };
+        let ([a, _], [_, b]) = (tile.rect(cell(x0, y0)), tile.rect(cell(x1 - 1, y1 - 1)));
+        to.push(
+            Layer::Nodes,
+            Role::Approximated,
+            Subject::None,
+            Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]),
+        );
+    };
+    for y in 0..=rows {
+        let mut runs: Vec<[u32; 2]> = Vec::new();
+        for x in (0..columns).filter(|&x| {
+            y < rows && is_stale(buffer, PyramidCell { level: level as u8, x: x as u16, y: y as u16 })
+        }) {
+            match runs.last_mut().filter(|run| run[1] == x) {
+                Some(run) => run[1] += 1,
+                None => runs.push([x, x + 1]),
+            }
+        }
+        open.iter().filter(|(run, _)| !runs.contains(run)).for_each(|&(run, from)| close(run, from, y));
+        open.retain(|(run, _)| runs.contains(run));
+        for run in runs {
+            if !open.iter().any(|(o, _)| *o == run) {
+                open.push((run, y));
+            }
+        }
+    }
+}
+
+/// A depth as it stands in a cell: a view depth, or nothing where nothing was drawn.
+fn value<S: Faces>(depth: f32, view: &View<S>) -> String {
+    if depth <= 1.0 / view.eye.far { "empty".into() } else { short(units(depth)) }
+}
+
+/// Text on a piece of paper, about its middle.
+fn plate(to: &mut Drawing, middle: Vec2, text: &str) {
+    let half = vec2(metrics::width_pt(text, Font::Regular, LABEL_PT) * 0.5 + 1.0, LABEL_PT * 0.55);
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| middle + Vec2::from(c) * half);
+    to.push(Layer::Evidence, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
+    let at = middle + vec2(0.0, LABEL_PT * 0.35);
+    to.push(
+        Layer::Labels,
+        Role::Ink,
+        Subject::None,
+        Mark::Text { at, text: text.into(), size_pt: LABEL_PT, anchor: Anchor::Middle, font: Font::Regular },
+    );
+}
+
+/// How a read is lit.
+fn role_of(read: &Read) -> Role {
+    match read.outcome {
+        Outcome::Behind => Role::Hidden,
+        Outcome::Descends => Role::Undecided,
+        Outcome::Shows => Role::Visible,
+    }
+}
+
+/// Lights the cells that a query read, numbered in order, the last one most.
+fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
+    for (number, read) in reads.iter().enumerate() {
+        let Some(frame) = frames.iter().find(|f| f.level == u32::from(read.cell.level)) else { continue };
+        let [a, b] = frame.rect(read.cell);
+        let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
+        to.outline(Layer::Emphasis, role_of(read), Subject::None, corners);
+        if number + 1 == reads.len() {
+            to.outline(
+                Layer::Emphasis,
+                Role::Current,
+                Subject::None,
+                corners.map(|c| c + (c - (a + b) * 0.5).signum() * 1.5),
+            );
+        }
+        // A cell may be read for several faces; the first time writes all its numbers.
+        let same = |r: &&(usize, &Read)| r.1.cell == read.cell;
+        let all: Vec<(usize, &Read)> = reads.iter().enumerate().collect();
+        let numbers: Vec<String> = all.iter().filter(same).map(|(n, _)| (n + 1).to_string()).collect();
+        let text = format!("{}.", numbers.join(", "));
+        let room =
+            b.x - a.x - metrics::width_pt(&text, Font::Regular, LABEL_PT) > 2.0 && b.y - a.y > 2.0 * LABEL_PT;
+        if room && numbers[0] == (number + 1).to_string() {
+            let half = vec2(metrics::width_pt(&text, Font::Regular, LABEL_PT) * 0.5, LABEL_PT * 0.55);
+            plate(to, a + half + 2.0, &text);
+        }
+    }
+}
+
+/// The last comparisons in words, below a picture that ends at `top`; returns where they end.
+fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
+    const LINES: usize = 6;
+    let first = reads.len().saturating_sub(LINES);
+    for (line, (number, read)) in reads.iter().enumerate().skip(first).enumerate() {
+        let text = format!("{}. {}: {}", number + 1, place(read.cell), read.comparison());
+        to.text(
+            Layer::Labels,
+            if number + 1 == reads.len() { Role::Ink } else { Role::Faint },
+            vec2(0.0, top + 11.0 * (line + 1) as f32),
+            8.5,
+            Anchor::Start,
+            text,
+        );
+    }
+    if reads.is_empty() {
+        to.text(
+            Layer::Labels,
+            Role::Faint,
+            vec2(0.0, top + 11.0),
+            8.5,
+            Anchor::Start,
+            "No cell is being read at this step.",
+        );
+    }
+    top + 11.0 * (reads.len() - first).max(1) as f32 + 5.0
+}
+
+/// The levels side by side, each as large as the others; in flatland strips below each other.
+pub fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], scale: DepthScale) -> Drawing {
+    let (frames, height) = frames(buffer, view);
+    let mut to = Drawing::default();
+    frames.iter().for_each(|f| draw_level(buffer, view, f, scale, &mut to));
+    light(reads, &frames, &mut to);
+    let mut bottom = comparisons(reads, 4.0 + height, &mut to);
+    if to.items.iter().any(|i| i.role == Role::Approximated) {
+        let text = "Cross-hatched: drawn into since it was last read, so it holds too far a depth; it is \
+                    brought up to date when it is read.";
+        to.text(Layer::Labels, Role::Faint, vec2(0.0, bottom + 8.0), 8.0, Anchor::Start, text);
+        bottom += 12.0;
+    }
+    finished(to, bottom, "The levels of the z-pyramid")
+}
+
+/// How the levels are stacked on paper: the image's unit square at each of them.
+struct Stack {
+    /// Right along the base, and how far the back edge leans to the right.
+    base: f32,
+    lean: f32,
+    /// From the back edge to the front one, and from one level to the next.
+    depth: f32,
+    rise: f32,
+    /// Where the back edge of level 0 is.
+    top: f32,
+}
+
+impl Stack {
+    fn at(&self, k: usize, p: Vec2) -> Vec2 {
+        let y = self.top - self.rise * k as f32 - self.depth * (1.0 - p.y) + self.depth;
+        vec2(self.lean * (1.0 - p.y) + self.base * p.x, y)
+    }
+    fn quad(&self, k: usize, a: Vec2, b: Vec2) -> [Vec2; 4] {
+        [a, vec2(b.x, a.y), b, vec2(a.x, b.y)].map(|p| self.at(k, p))
+    }
+    /// Rows of the sheared image of a level, each a thin picture of its own.
+    fn rows(
+        &self,
+        k: usize,
+        level: u32,
+        height: u32,
+        [columns, rows]: [u32; 2],
+        all: &Pixels,
+        to: &mut Drawing,
+    ) {
+        let thin = rows.max((self.depth as u32).min(64));
+        for line in 0..thin {
+            let row = ((line * height / thin) >> level).min(rows - 1) as usize;
+            let (y0, y1) = (line as f32 / thin as f32, (line + 1) as f32 / thin as f32);
+            let rgba: Vec<u8> =
+                all.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
+            let (a, b) = (self.at(k, vec2(0.0, y0)), self.at(k, vec2(1.0, y1)));
+            let corners = [vec2(a.x, a.y), vec2(a.x + self.base, b.y + 0.2)];
+            let pixels = Pixels { width: columns, height: 1, rgba: rgba.into() };
+            to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
+        }
+    }
+}
+
+/// The levels above each other, seen askew, the image at the bottom.
+pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], scale: DepthScale) -> Drawing {
+    let root = buffer.pyramid().root();
+    let shown: Vec<u32> = (0..=root).filter(|&l| buffer.pyramid().size(l).0 <= MOST_COLUMNS).collect();
+    let (base, lean, rise) = (WIDTH_PT * 0.62, WIDTH_PT * 0.2, 46.0);
+    let depth = (base * 0.45 * view.height as f32 / view.width.max(1) as f32).clamp(14.0, base * 0.6);
+    let top = 14.0 + rise * shown.len().saturating_sub(1) as f32;
+    let stack = Stack { base, lean, depth, rise, top };
+    let mut to = Drawing::default();
+    for (k, &level) in shown.iter().enumerate() {
+        let (columns, rows) = buffer.pyramid().size(level);
+        let pixels = image(buffer, view, level, [0, columns, 0, rows], scale);
+        let corners = stack.quad(k, Vec2::ZERO, Vec2::ONE);
+        to.push(Layer::Scene, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
+        stack.rows(k, level, view.height, [columns, rows], &pixels, &mut to);
+        to.outline(Layer::Scene, Role::Faint, Subject::None, corners);
+        let side =
+            vec2((1u32 << level) as f32 / view.width as f32, (1u32 << level) as f32 / view.height as f32);
+        for read in reads.iter().filter(|r| u32::from(r.cell.level) == level) {
+            let a = side * vec2(read.cell.x.into(), read.cell.y.into());
+            let lit = stack.quad(k, a, (a + side).min(Vec2::ONE));
+            to.outline(Layer::Emphasis, role_of(read), Subject::None, lit);
+        }
+        let name = vec2(lean + base + 6.0, stack.at(k, vec2(1.0, 0.0)).y + 4.0);
+        let text = format!("level {level}, {columns} × {rows}");
+        to.text(Layer::Labels, Role::Ink, name, LABEL_PT, Anchor::Start, text);
+    }
+    let bottom = comparisons(reads, top + depth + 2.0, &mut to);
+    finished(to, bottom, "The z-pyramid over the image")
+}
+
+/// What the picture of the visible list shows: nodes with what became of them, in order.
+#[derive(Default)]
+pub struct Lists {
+    /// Drawn, and why.
+    pub drawn: Vec<(NodeId, &'static str)>,
+    /// Queried, and the answer.
+    pub queried: Vec<(NodeId, String)>,
+    /// Taken off the list.
+    pub unlisted: Vec<NodeId>,
+}
+
+impl Lists {
+    /// The answer for a node's box.
+    pub fn query<S: Faces>(&mut self, a: &Answered<S>) {
+        let seen = if a.answer.is_hidden { "hidden" } else { "seen" };
+        self.queried.push((a.node, format!("{seen}, {} cells read", a.answer.reads)));
+    }
+    /// The lists beside each other, each with its last rows.
+    pub fn draw(&self) -> Drawing {
+        const ROWS: usize = 28;
+        let mut to = Drawing::default();
+        let mut column = |x: f32, title: String, rows: Vec<String>| {
+            let (at, size_pt) = (vec2(x, 10.0), 9.0);
+            let mark = Mark::Text { at, text: title, size_pt, anchor: Anchor::Start, font: Font::Bold };
+            to.push(Layer::Labels, Role::Ink, Subject::None, mark);
+            let first = rows.len().saturating_sub(ROWS);
+            for (line, row) in rows.into_iter().skip(first).enumerate() {
+                let at = vec2(x, 24.0 + 11.0 * line as f32);
+                to.text(Layer::Labels, Role::Ink, at, 8.0, Anchor::Start, row);
+            }
+        };
+        let drawn = self.drawn.iter().enumerate();
+        column(
+            0.0,
+            format!("Drawn, in this order: {}", self.drawn.len()),
+            drawn.map(|(i, (node, why))| format!("{}. node {node}: {why}", i + 1)).collect(),
+        );
+        column(
+            170.0,
+            format!("Asked for: {}", self.queried.len()),
+            self.queried.iter().map(|(node, answer)| format!("node {node}: {answer}")).collect(),
+        );
+        column(
+            340.0,
+            format!("Left the list: {}", self.unlisted.len()),
+            self.unlisted.iter().map(|node| format!("node {node}: off the list")).collect(),
+        );
+        finished(to, 24.0 + 11.0 * ROWS as f32, "The visible list")
+    }
+}
+
+/// A picture that ends at `bottom`, with its title.
+pub fn finished(mut to: Drawing, bottom: f32, title: &str) -> Drawing {
+    to.size_pt = vec2(WIDTH_PT, bottom);
+    to.title = title.into();
+    to
+}
+
+/// The value of the cell under a point of [`levels`], in words.
+pub fn probe<S: Faces>(buffer: &Buffer<S>, view: &View<S>, at: Vec2) -> Option<String> {
+    let cell = frames(buffer, view).0.iter().find_map(|f| f.cell_under(at))?;
+    let stale =
+        if is_stale(buffer, cell) { " as far as it is known; drawn into since it was last read" } else { "" };
+    Some(format!("{}: farthest {}{stale}", place(cell), value(buffer.farthest(cell), view)))
+}

@@ -1,0 +1,160 @@
+//! The evidence of this method: as fields, as sentences, and as marks in the world.
+
+use crate::culling::cubes::CubeNote;
+use crate::culling::depth::{DepthNote, Faces};
+use crate::drawing::{Drawing, Subject};
+use crate::geometry::{NodeId, View};
+use crate::method::evidence::{Facing, Tested, integer, number, outline};
+use crate::method::{Claim, Context, Field, Note, Tallied, Tally, Value};
+use crate::scene::Scene;
+
+/// What the method records.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Evidence<S: Faces> {
+    /// A cube is on the visible list: it is drawn without a test (true), or was.
+    Listed(NodeId, bool),
+    /// A box against the frustum.
+    Tested(Tested<S>),
+    /// A primitive's orientation.
+    Facing(Facing),
+    /// What was read of the image and its pyramid, or changed.
+    Depth(DepthNote<S>),
+    /// What became of a cube, or of a primitive that cubes share.
+    Cube(CubeNote),
+    /// What is due at the end of a frame.
+    Checked(Check),
+}
+
+impl<S: Faces> From<DepthNote<S>> for Evidence<S> {
+    #[inline]
+    fn from(note: DepthNote<S>) -> Self {
+        Self::Depth(note)
+    }
+}
+
+/// Whether the visible list is checked at the end of a frame, and why.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Check {
+    /// Frames since the last check, this one included.
+    pub frames: u32,
+    /// Frames between checks.
+    pub interval: u32,
+    /// Cubes that came onto the list in this frame.
+    pub added: u32,
+    /// Cubes on it.
+    pub listed: u32,
+    /// The farthest depth of the image, `1/w`, in this frame and in the one before.
+    pub farthest: [f32; 2],
+    /// Whether it is made.
+    pub is_due: bool,
+}
+
+impl<S: Faces> Evidence<S> {
+    /// What of it is about the image and its pyramid.
+    pub(super) fn depth(&self) -> Option<&DepthNote<S>> {
+        if let Self::Depth(note) = self { Some(note) } else { None }
+    }
+    /// Draws the evidence in the world.
+    pub(super) fn draw(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+        match self {
+            Self::Tested(n) => n.draw(view, to),
+            Self::Facing(n) => n.draw(scene, view, to),
+            Self::Depth(n) => n.draw(scene, view, to),
+            Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
+            Self::Listed(..) | Self::Cube(CubeNote::Unlisted(_)) | Self::Checked(_) => {}
+        }
+    }
+}
+
+impl<S: Faces> Tallied for Evidence<S> {
+    fn tally(&self, tally: &mut Tally) {
+        match self {
+            Self::Listed(_, is_drawn) => tally.add("cubes_drawn_from_list", (*is_drawn).into()),
+            Self::Tested(n) => n.tally(tally),
+            Self::Facing(_) => Facing::tally(tally),
+            Self::Depth(n) => n.tally(tally),
+            Self::Cube(n) => n.tally(tally),
+            Self::Checked(n) => tally.add("checks", n.is_due.into()),
+        }
+    }
+}
+
+impl<S: Faces> Note<S> for Evidence<S> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Listed(..) => "CubeListed",
+            Self::Tested(n) => n.kind(),
+            Self::Facing(_) => "OrientationTested",
+            Self::Depth(n) => n.kind(),
+            Self::Cube(n) => Note::<S>::kind(n),
+            Self::Checked(_) => "ListChecked",
+        }
+    }
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Listed(n, _) => Subject::Node(*n),
+            Self::Tested(n) => n.subject(),
+            Self::Facing(n) => n.subject(),
+            Self::Depth(n) => n.subject(),
+            Self::Cube(n) => Note::<S>::subject(n),
+            Self::Checked(_) => Subject::None,
+        }
+    }
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
+            _ => None,
+        }
+    }
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
+        match self {
+            Self::Listed(n, _) => vec![integer("node", n.0)],
+            Self::Tested(n) => n.fields(context),
+            Self::Facing(n) => n.fields(context),
+            Self::Depth(n) => n.fields(context),
+            Self::Cube(n) => n.fields(context),
+            Self::Checked(n) => n.fields(),
+        }
+    }
+    fn sentence(&self, context: &Context<'_, S>) -> String {
+        match self {
+            Self::Listed(n, true) => {
+                format!("Node {n} was visible in the last frame, so it is drawn at once, without a test.")
+            }
+            Self::Listed(n, false) => format!(
+                "Node {n} is on the visible list: it was drawn at the start of the frame, without a test."
+            ),
+            Self::Tested(n) => n.sentence(context),
+            Self::Facing(n) => n.sentence(context),
+            Self::Depth(n) => n.sentence(context),
+            Self::Cube(n) => n.sentence(context),
+            Self::Checked(n) => n.sentence(),
+        }
+    }
+}
+
+impl Check {
+    fn fields(&self) -> Vec<Field> {
+        vec![
+            Field { name: "due", value: Value::Switch(self.is_due) },
+            integer("frames", self.frames),
+            integer("interval", self.interval),
+            integer("added", self.added),
+            integer("listed", self.listed),
+            number("farthest_units", (1.0 / self.farthest[0]).into()),
+            number("farthest_before_units", (1.0 / self.farthest[1]).into()),
+        ]
+    }
+    fn sentence(&self) -> String {
+        let of = format!(
+            "{} of {} cubes are new on the visible list, {} frames since it was checked",
+            self.added, self.listed, self.frames
+        );
+        if self.is_due {
+            format!("{of}: every cube on it is asked against the finished image.")
+        } else {
+            format!("{of}: no check is due before {}.", self.interval)
+        }
+    }
+}
