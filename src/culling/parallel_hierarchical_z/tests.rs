@@ -7,7 +7,7 @@ use rand_pcg::rand_core::Rng;
 use super::machine::{Allocation, Distribution, Unit};
 use super::*;
 use crate::geometry::{Eye, Flat, PrimId, Solid, Space, Vector, View};
-use crate::method::{Recorder, Unobserved, Verdict};
+use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
 use crate::raster::render;
 use crate::scene::Parts;
 
@@ -232,4 +232,29 @@ fn a_processor_draws_the_largest_first_and_queries_the_cheapest_first() {
         }
     });
     assert!(drawn.len() > 10 && area.is_sorted(), "the largest are drawn first");
+}
+
+/// Every decision rests on evidence: a structure's work, an answer, a box, or the primitive itself.
+#[test]
+fn every_decision_rests_on_evidence() {
+    let mut rng = Pcg32::new(10, 9);
+    let scene = soup::<Solid>(&mut rng, 200, |c| c);
+    let settings = [("leaf-primitives", "4"), ("backface-culling", "true")];
+    let settings = Settings(settings.map(|(k, v)| (k.to_owned(), v.to_owned())).into());
+    let entry: &dyn Entry<Solid> = &Of::<ParallelHierarchicalZ>::NEW;
+    let run = entry.ready(&scene, &settings, &crate::scene::Quiet).expect("settings fit");
+    let mut run = run.expect("not cancelled");
+    let (mut decisions, mut kinds) = (0, std::collections::BTreeSet::new());
+    for view in crate::scene::random_views(&scene, 4, 6) {
+        let view = View { width: 300, height: 200, ..view };
+        let film = run.record(&view, usize::MAX).film;
+        for (at, event) in film.events().iter().enumerate().filter(|(_, e)| e.verdict().is_some()) {
+            let evidence = film.evidence_of(at);
+            kinds.insert(evidence.map(|evidence| film.kind(evidence)));
+            assert!(evidence.is_some(), "event {at}, {event:?}");
+            decisions += 1;
+        }
+    }
+    let wanted = ["VisibleDrawn", "FoundDrawn", "ObscurationTested", "OrientationTested", "PrimClassified"];
+    assert!(decisions > 200 && wanted.iter().all(|k| kinds.contains(&Some(*k))), "{decisions}: {kinds:?}");
 }
