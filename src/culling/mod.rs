@@ -1,8 +1,9 @@
-//! The culling methods, and the one shape they share.
+//! The culling methods, and the list of them. What a method is says [`crate::method`].
 //!
-//! A method is written once and watched: [`Method::cull`] is generic over an [`Observer`] that returns
-//! nothing and sees no state, so the function that runs at full speed is the one that is stepped.
-//! To add a method: make a folder, implement [`Method`], add a `mod` line and a line in each list below.
+//! A method is written once and watched: [`crate::method::Method::cull`] is generic over an observer that
+//! returns nothing and sees no state, so the function that runs at full speed is the one that is stepped.
+//! To add a method: make a folder, implement [`crate::method::Method`] and [`crate::method::Shown`], add its
+//! `mod` line and its line in the list below.
 
 pub(crate) mod baseline;
 mod cubes;
@@ -18,26 +19,25 @@ pub use large_occluders::anatomy;
 use crate::geometry::{Flat, Solid, Space};
 use crate::method::{Entry, Of};
 
-/// Every method that runs in flatland, in the order of menus.
-pub static FLAT: &[&dyn Entry<Flat>] = &[
-    &Of::<baseline::ZBuffer>::NEW,
-    &Of::<baseline::Frustum>::NEW,
-    &Of::<baseline::Centroid>::NEW,
-    &Of::<large_occluders::LargeOccluders>::NEW,
-    &Of::<hierarchical_z::HierarchicalZ>::NEW,
-    &Of::<parallel_hierarchical_z::ParallelHierarchicalZ>::NEW,
-    &Of::<layered_projection::LayeredProjection>::NEW,
-];
-/// Every method that runs in space, in the order of menus.
-pub static SOLID: &[&dyn Entry<Solid>] = &[
-    &Of::<baseline::ZBuffer>::NEW,
-    &Of::<baseline::Frustum>::NEW,
-    &Of::<baseline::Centroid>::NEW,
-    &Of::<large_occluders::LargeOccluders>::NEW,
-    &Of::<hierarchical_z::HierarchicalZ>::NEW,
-    &Of::<parallel_hierarchical_z::ParallelHierarchicalZ>::NEW,
-    &Of::<layered_projection::LayeredProjection>::NEW,
-];
+/// The list of methods, in the order of menus: each runs in flatland and in space.
+macro_rules! methods {
+    ($($method:ty,)*) => {
+        /// Every method that runs in flatland.
+        pub static FLAT: &[&dyn Entry<Flat>] = &[$(&Of::<$method>::NEW,)*];
+        /// Every method that runs in space.
+        pub static SOLID: &[&dyn Entry<Solid>] = &[$(&Of::<$method>::NEW,)*];
+    };
+}
+
+methods! {
+    baseline::ZBuffer,
+    baseline::Frustum,
+    baseline::Centroid,
+    large_occluders::LargeOccluders,
+    hierarchical_z::HierarchicalZ,
+    parallel_hierarchical_z::ParallelHierarchicalZ,
+    layered_projection::LayeredProjection,
+}
 
 /// Key of the method that a new session begins with: the simplest one that leaves something out.
 pub const DEFAULT_METHOD: &str = "frustum";
