@@ -21,8 +21,11 @@ pub(crate) struct Cubes {
 impl Default for Cubes {
     fn default() -> Self {
         Self {
+            // Section 3.1 gives no number for these: neither a depth of the tree, nor primitives of a leaf,
+            // nor when a primitive is "small" compared to its cube.
             tree_levels: 12,
             leaf_primitives: 0,
+            // Section 3.1: the strategy of the original algorithm.
             redistribution: Redistribution::Hybrid,
             small_percent: 12,
         }
@@ -45,6 +48,8 @@ impl Cubes {
         );
         knobs.integer(
             Knob::new(
+                // Section 3.1: "The subdivision criteria is most commonly based on number of primitives in
+                // the cell".
                 "leaf-primitives",
                 "",
                 "a cube with no more primitives is not divided; 0: 128 triangles, 8 segments",
@@ -53,6 +58,9 @@ impl Cubes {
             0..=100_000,
             &mut self.leaf_primitives,
         );
+        // Section 3.1 names three ways and what is wrong with each, then the hybrid of the original
+        // algorithm: tiny primitives that straddle a boundary are not to share the visibility of a large
+        // cube.
         let crossing = Knob::new(
             "redistribution",
             "",
@@ -82,10 +90,13 @@ impl Cubes {
         progress.report(0.0, "building the octree");
         let shape = Shape {
             levels: self.tree_levels,
+            // Parameters are declared for any space, and the best number depends on it: 0 waits for the space
+            // until here.
             leaf_prims: if self.leaf_primitives == 0 { leaf_prims::<S>() } else { self.leaf_primitives },
             redistribution: self.redistribution,
             small: self.small_percent as f32 / 100.0,
         };
+        // Dropped primitives are never drawn, so no cube is to hold them.
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         Octree::build(boxes, &shape, &|| progress.cancelled())
     }
@@ -129,6 +140,7 @@ impl<S: Space> Note<S> for CubeNote {
     fn subject(&self) -> Subject {
         match self {
             Self::Unlisted(node) => Subject::Node(*node),
+            // The decision that follows is about the primitive; the cube is a field.
             Self::SharedUnseen(prim, _) => Subject::Prim(*prim),
         }
     }

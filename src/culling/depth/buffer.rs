@@ -52,6 +52,8 @@ pub struct Buffer<S: Drawable> {
 /// Images of the same view with the same pyramid, its stale tiles included.
 impl<S: Drawable> PartialEq for Buffer<S> {
     fn eq(&self, other: &Self) -> bool {
+        // Projection and planes follow from the view, and `hidden` is no state: it is what the last drawing
+        // left out.
         let view = |b: &Self| b.projected.as_ref().map(|s| s.view);
         view(self) == view(other) && self.target == other.target && self.pyramid == other.pyramid
     }
@@ -84,6 +86,7 @@ impl<S: Drawable> Buffer<S> {
         self.look(view);
     }
     fn look(&mut self, view: &View<S>) {
+        // Once a frame: every query needs all three.
         self.projected =
             Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
         // An empty pixel is as deep as the far plane, in the pyramid as in the image.
@@ -92,7 +95,9 @@ impl<S: Drawable> Buffer<S> {
     /// Makes a change. Returns the primitives that drawing left out, in their order.
     #[inline]
     pub fn step(&mut self, step: Step<'_, S>) -> &[PrimId] {
+        // A refresh leaves nothing out, whatever was drawn before it.
         self.hidden.clear();
+        // A run and its film both come through here, so that the same operands make the same change.
         match step {
             Step::Refresh(cell) => self.refresh(cell),
             Step::RefreshUnder(pixels, most) => self.refresh_under(pixels, most as usize),
@@ -107,6 +112,8 @@ impl<S: Drawable> Buffer<S> {
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId], options: &Options) -> &[PrimId] {
         self.hidden.clear();
         if let Some(Projected { view, .. }) = &self.projected {
+            // Greene, Kass and Miller 1993, Section 3.2: the pyramid also rejects single primitives. A
+            // departure from Georges 1995, Section 3.2: what is drawn only marks tiles as stale.
             let sieve = Sieve { pyramid: &mut self.pyramid, hidden: &mut self.hidden };
             S::sift(&mut self.target, sieve, scene, view, prims, options);
         }
@@ -129,6 +136,7 @@ impl<S: Drawable> Buffer<S> {
     /// holds for it. The same before and after it was drawn, unless it is one pixel: only refreshing changes
     /// what the pyramid holds above level 0.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
+        // Nothing is refreshed for it, so to record what was compared does not change what is read next.
         let extent = S::extent(scene, &self.projected.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
@@ -153,6 +161,7 @@ impl<S: Drawable> Buffer<S> {
     /// Brings the tiles under a rectangle up to date if no more than `most` are stale.
     fn refresh_under(&mut self, pixels: PixelRect, most: usize) {
         if !pixels.is_empty() {
+            // The pyramid counts tiles up to the last pixel, which an empty rectangle has not.
             self.pyramid.refresh_under(&self.target.depth, pixels, most);
         }
     }

@@ -88,6 +88,7 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter
     #[inline]
     fn reads(&mut self, read: Read) {
         let node = self.node;
+        // A read for no face is one of the rectangle of the whole box, the first line.
         self.watch.event(Event::Line(self.lines[usize::from(read.face.is_some())]));
         self.watch.note(move || DepthNote::Read(node, read).into());
     }
@@ -95,6 +96,7 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter
 
 /// View depth of a depth, world units.
 pub fn units(depth: f32) -> f32 {
+    // Notes keep 1/w, the very number that was compared; it is inverted for readers alone.
     1.0 / depth
 }
 
@@ -106,11 +108,14 @@ impl<S: Faces> DepthNote<S> {
             Self::RefreshedUnder(pixels, most) => Some(Step::RefreshUnder(*pixels, *most)),
             Self::RefreshedAll => Some(Step::RefreshAll),
             Self::Rasterized(n) if !n.is_hidden => {
+                // How many threads drew is not recorded, since the image does not depend on it. Whether the
+                // pyramid was asked is: it decides which tiles the drawing marks as stale.
                 let options =
                     Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
                 let prims = std::slice::from_ref(&n.prim);
                 Some(Step::Draw { scene, prims, options, is_sieved: n.is_sieved })
             }
+            // What was only looked at, or left out, changes neither a pixel nor a tile.
             Self::Read(..) | Self::Answered(_) | Self::Rasterized(_) => None,
         }
     }
@@ -128,6 +133,7 @@ impl<S: Faces> DepthNote<S> {
                 let size = (view.width, view.height);
                 behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
             }
+            // A tile has no place in the world; the pictures of the pyramid show it.
             Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => {}
         }
     }
@@ -138,6 +144,7 @@ impl<S: Faces> Tallied for DepthNote<S> {
         match self {
             Self::Read(..) => tally.add("cells_read", 1),
             Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
+            // How many tiles were stale is not recorded, so the whole call counts once.
             Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
             Self::Answered(_) => tally.add("queries", 1),
             Self::Rasterized(n) => {
@@ -154,6 +161,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             Self::Refreshed(_) => "TileRefreshed",
             Self::RefreshedUnder(..) => "TilesRefreshed",
             Self::RefreshedAll => "PyramidRefreshed",
+            // Georges 1995, Section 3.3, calls a query an obscuration test.
             Self::Answered(_) => "ObscurationTested",
             Self::Rasterized(n) if n.is_hidden => "PrimitiveBehind",
             Self::Rasterized(_) => "PrimitiveRasterized",
@@ -162,8 +170,10 @@ impl<S: Faces> Note<S> for DepthNote<S> {
     fn subject(&self) -> Subject {
         match self {
             Self::Read(n, _) => Subject::Node(*n),
+            // It follows the reads of its query, so it is the note that the node's verdict rests on.
             Self::Answered(n) => Subject::Node(n.node),
             Self::Rasterized(n) => Subject::Prim(n.prim),
+            // Of no node, even where a query caused it: no verdict may rest on a refresh.
             Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => Subject::None,
         }
     }
@@ -173,6 +183,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 let mut fields = vec![integer("node", node.0)];
                 fields.extend(n.face.map(|face| integer("face", face.into())));
                 fields.extend(cell_fields(n.cell));
+                // View depths, so that they compare with lengths in the world.
                 fields.push(number("face_depth_units", units(n.nearest).into()));
                 fields.push(number("held_depth_units", units(n.held).into()));
                 fields.push(Field { name: "outcome", value: Value::Word(n.outcome.word().into()) });
@@ -231,11 +242,15 @@ fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, 
     } else {
         &[(pixels.x0, pixels.y0), (pixels.x1, pixels.y0), (pixels.x1, pixels.y1), (pixels.x0, pixels.y1)]
     };
+    // Where nothing was drawn the far plane's depth is held, whose inverse may be rounded to beyond it.
     let (far, near) = (units(held).min(view.eye.far), units(nearest).min(view.eye.far));
+    // A line of sight ends at what is drawn: what is queried lies beyond its end if it is hidden, and before
+    // it if it is not.
     for &(x, y) in corners {
         to.line(Layer::Evidence, Role::Faint, Subject::None, [view.eye.position, at(x, y, far)]);
     }
     let section = |w: f32| corners.iter().map(|&(x, y)| at(x, y, w)).collect::<Vec<_>>();
+    // Both depths as sections of the same cone of sight: which of them is nearer is all that was compared.
     to.outline(Layer::Evidence, Role::Occluder, Subject::None, section(far));
     to.outline(Layer::Evidence, Role::Current, Subject::None, section(near));
     // At opposite corners, so that they do not meet.
@@ -289,10 +304,13 @@ impl<S: Faces> Answered<S> {
             number("nearest_depth_units", units(self.answer.nearest).into()),
             integer("cells_read", self.answer.reads),
             pixels_field(self.pixels),
+            // Recorded and not looked up by the node: methods query different bounds of one.
             Field { name: "box_min", value: axes(self.bounds.min) },
             Field { name: "box_max", value: axes(self.bounds.max) },
         ];
         if let Some((cell, held)) = self.answer.decisive {
+            // Of the cells that hide it the closest call, or the one that shows it; the other reads are notes
+            // of their own.
             fields.extend(cell_fields(cell));
             fields.push(number("held_depth_units", units(held).into()));
             fields
@@ -303,6 +321,7 @@ impl<S: Faces> Answered<S> {
 }
 
 fn pixels_field(r: PixelRect) -> Field {
+    // Half-open along both axes, as the rectangle is.
     Field { name: "pixels", value: Value::List([r.x0, r.x1, r.y0, r.y1].map(f64::from).to_vec()) }
 }
 fn cell_fields(cell: PyramidCell) -> [Field; 3] {
@@ -312,6 +331,7 @@ fn cell_fields(cell: PyramidCell) -> [Field; 3] {
 /// A cell in words.
 pub fn place(cell: PyramidCell) -> String {
     match cell.level {
+        // Level 0 is the image itself and is not called a cell.
         0 => format!("pixel ({}, {})", cell.x, cell.y),
         level => format!("cell ({}, {}) of level {level}", cell.x, cell.y),
     }
@@ -324,6 +344,7 @@ impl Rasterized {
             Field { name: "hidden", value: Value::Switch(self.is_hidden) },
         ];
         if let Some((extent, held)) = self.operands {
+            // A hidden primitive has a positive margin: its nearest point lies so far behind what is drawn.
             let (nearest, held) = (units(extent.nearest), units(held));
             fields.push(pixels_field(extent.pixels));
             fields.push(number("nearest_depth_units", nearest.into()));
@@ -334,6 +355,7 @@ impl Rasterized {
     }
     fn sentence<S: Faces>(&self) -> String {
         let (kind, prim) = (S::PRIM, self.prim);
+        // Drawn in a part of the image, it is not tested: there is nothing to compare in the sentence.
         if let Some(w) = self.window {
             return format!(
                 "The {kind} {prim} is rasterized in columns {} to {} and rows {} to {} of the image.",

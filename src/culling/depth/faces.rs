@@ -12,6 +12,9 @@ pub trait Faces: Drawable {
     /// (two ends of a side in flatland), `[0; 4]` beyond the count.
     fn front(bounds: &Aabb<Self::Vector>, eye: Self::Vector) -> ([[u8; 4]; 3], usize) {
         let (mut faces, mut count) = ([[0; 4]; 3], 0);
+        // A line of sight enters a box, which is convex, through a face that faces the eye: these faces cover
+        // all of its image. Between the planes of an axis, or on one of them, the eye sees neither face from
+        // its front.
         for axis in 0..Self::Vector::AXES {
             let upper = eye.get(axis) > bounds.max.get(axis);
             if upper || eye.get(axis) < bounds.min.get(axis) {
@@ -59,6 +62,8 @@ impl FaceImage {
         }
         let (center, half) = centers(both);
         let s = &self.sides;
+        // The greatest value that a side's line takes over the centers: where even that is outside by more
+        // than the margin, the face reaches none of them.
         // All four at a time: which of them rejects is not to be foreseen.
         (0..4).fold(true, |all, i| all & (s.distance(i, center) + s.spread(i, half) >= -s.margin[i]))
     }
@@ -69,6 +74,8 @@ impl FaceImage {
         let inside = cell.x0 >= r.x0 && cell.x1 <= r.x1 && cell.y0 >= r.y0 && cell.y1 <= r.y1;
         let (center, half) = centers(cell);
         let s = &self.sides;
+        // The least value over the centers, without the margin of the sides. To be wrong here would end a
+        // descent too early, which keeps a box and never drops one.
         inside && (0..4).fold(true, |all, i| all & (s.distance(i, center) >= s.spread(i, half)))
     }
 }
@@ -87,6 +94,7 @@ impl Sides {
 /// Middle and half extent of the centers of a rectangle's pixels.
 #[inline]
 fn centers(r: PixelRect) -> ([f64; 2], [f64; 2]) {
+    // Centers lie at halves, so the outermost ones are half a pixel inside the edges.
     let (x, y) = (f64::from(r.x0 + r.x1), f64::from(r.y0 + r.y1));
     let (w, h) = (f64::from(r.x1 - r.x0) - 1.0, f64::from(r.y1 - r.y0) - 1.0);
     ([x * 0.5, y * 0.5], [w * 0.5, h * 0.5])
@@ -106,10 +114,12 @@ fn rect(corners: &[[f64; 2]], width: u32, height: u32) -> PixelRect {
 
 impl Faces for Flat {
     fn around(axis: usize, upper: bool) -> [u8; 4] {
+        // A corner's number has a bit an axis, set at the upper end.
         let first = u8::from(upper) << axis;
         [first, first | 1 << (1 - axis), 0, 0]
     }
     fn image(face: [u8; 4], image: &BoxImage, width: u32, _: u32) -> FaceImage {
+        // In one row of pixels nothing slants: the rectangle is the whole image of a side.
         FaceImage::rectangle(rect(
             &[image.corners_px[face[0] as usize], image.corners_px[face[1] as usize]],
             width,
@@ -126,6 +136,7 @@ impl Faces for Solid {
     fn around(axis: usize, upper: bool) -> [u8; 4] {
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         let first = u8::from(upper) << axis;
+        // One bit changes from each corner to the next, so that they follow each other around the face.
         [first, first | 1 << b, first | 1 << b | 1 << c, first | 1 << c]
     }
     fn image(face: [u8; 4], image: &BoxImage, width: u32, height: u32) -> FaceImage {
@@ -133,10 +144,12 @@ impl Faces for Solid {
         let mut face = FaceImage::rectangle(rect(&p, width, height));
         let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
         let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
+        // From its diagonals: twice the area, and its sign tells which way round the image runs.
         let area = cross(minus(p[2], p[0]), minus(p[3], p[1]));
         if area.abs() < LEAST_AREA {
             return face;
         }
+        // Normals inward whichever way that is.
         let turn = area.signum();
         for i in 0..4 {
             let (from, along) = (p[i], minus(p[(i + 1) % 4], p[i]));
@@ -174,6 +187,7 @@ pub fn project_sphere<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Foo
         (0..S::Vector::AXES).map(|a| f64::from(row.get(a)) * f64::from(v.get(a))).sum::<f64>()
     };
     let center = bounds.center() - projection.eye;
+    // Its size and its place are both rounded: the first share is for the one, the second for the other.
     let radius =
         f64::from(bounds.diagonal()) * 0.5 * (1.0 + SPHERE_SLACK) + f64::from(center.length()) * SPHERE_SLACK;
     let w = dot(projection.rows[image_axes], center);
@@ -190,7 +204,9 @@ pub fn project_sphere<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>) -> Foo
         let across = dot(row, center) / scale;
         // The two lines through the eye that touch the sphere, in the plane of the axis and the line of
         // sight.
+        // The whole sphere lies beyond the near plane here, so only rounding can make the quotient exceed 1.
         let (middle, half) = (across.atan2(w), (radius / across.hypot(w)).min(1.0).asin());
+        // Rows run downward, the second axis of the view upward.
         let place = |angle: f64| angle.tan() * scale * if a == 0 { 1.0 } else { -1.0 };
         let ends = [place(middle - half), place(middle + half)].map(|v| (v * 0.5 + 0.5) * f64::from(pixels));
         (low[a], high[a]) = (ends[0].min(ends[1]), ends[0].max(ends[1]));

@@ -32,6 +32,7 @@ pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote
                 reads.push(*r);
                 whose = Some(*node);
             }
+            // Made for the read that follows it, so it is part of the same query.
             Some(DepthNote::Refreshed(_)) => {}
             // A query ends with its answer: behind it only if nothing was read since.
             Some(DepthNote::Answered(_)) if reads.is_empty() => {}
@@ -74,6 +75,7 @@ impl Frame {
 fn frames<S: Faces>(buffer: &Buffer<S>, view: &View<S>) -> (Vec<Frame>, f32) {
     let (root, top) = (buffer.pyramid().root(), 12.0);
     if S::CORNERS == 2 {
+        // Strips of one width below each other: a cell stands right below the two that it stands for.
         let frame = |level: u32| {
             Frame::new(level, vec2(0.0, top + level as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
         };
@@ -82,7 +84,9 @@ fn frames<S: Faces>(buffer: &Buffer<S>, view: &View<S>) -> (Vec<Frame>, f32) {
     let shown: Vec<u32> = (0..=root)
         .filter(|&l| buffer.pyramid().size(l).0.max(buffer.pyramid().size(l).1) <= MOST_COLUMNS)
         .collect();
+    // All of one size, so that a place is found again on each, and coarse cells have room for their values.
     let in_row = shown.len().clamp(1, 4);
+    // More between the rows, where the names of the levels stand.
     let gap = vec2(8.0, 16.0);
     let width = (WIDTH_PT - gap.x * (in_row - 1) as f32) / in_row as f32;
     let size = vec2(width, width * view.height as f32 / view.width.max(1) as f32);
@@ -109,6 +113,7 @@ fn image<S: Faces>(
     Pixels {
         width: x1 - x0,
         height: y1 - y0,
+        // On the scale of the whole image: one gray is one depth on every level.
         rgba: shade_depth(&depths, &buffer.target().depth, 1.0 / view.eye.far, scale).into(),
     }
 }
@@ -129,6 +134,7 @@ fn draw_level<S: Faces>(
     };
     to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
     // Whole cells first, then those that the image's edge cuts.
+    // The pixels of an image mark are all of one size, which cut cells are not: they have marks of their own.
     let split = |cells: u32, pixels: u32| {
         if pixels >> frame.level == cells {
             vec![[0, cells]]
@@ -157,9 +163,11 @@ fn draw_level<S: Faces>(
     for y in 0..rows as u16 {
         for x in 0..columns as u16 {
             let cell = PyramidCell { level: frame.level as u8, x, y };
+            // No number where it is stale: it would be read as the truth.
             let text =
                 if is_stale(buffer, cell) { "stale".into() } else { value(buffer.farthest(cell), view) };
             let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
+            // All cells of a level are of one size: as a rule all have room for their values or none has.
             if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
                 return;
             }
@@ -187,6 +195,7 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
     };
     // Runs along a row; those of rows below each other that are alike are one rectangle.
     let mut open: Vec<([u32; 2], u32)> = Vec::new();
+    // Over the shades and under the cells that were read: a hatch lets the gray beneath it be seen.
     let mut close = |[x0, x1]: [u32; 2], y0: u32, y1: u32| {
         let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: x as u16, y: y as u16 };
         let ([a, _], [_, b]) = (tile.rect(cell(x0, y0)), tile.rect(cell(x1 - 1, y1 - 1)));
@@ -197,6 +206,7 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
             Mark::Area(vec![a, vec2(b.x, a.y), b, vec2(a.x, b.y)]),
         );
     };
+    // One row past the last, which has no runs, closes those that are still open.
     for y in 0..=rows {
         let mut runs: Vec<[u32; 2]> = Vec::new();
         for x in (0..columns).filter(|&x| {
@@ -224,6 +234,7 @@ fn value<S: Faces>(depth: f32, view: &View<S>) -> String {
 
 /// Text on a piece of paper, about its middle.
 fn plate(to: &mut Drawing, middle: Vec2, text: &str) {
+    // The text must be legible over any gray and any hatch.
     let half = vec2(metrics::width_pt(text, Font::Regular, LABEL_PT) * 0.5 + 1.0, LABEL_PT * 0.55);
     let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| middle + Vec2::from(c) * half);
     to.push(Layer::Evidence, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
@@ -239,6 +250,7 @@ fn plate(to: &mut Drawing, middle: Vec2, text: &str) {
 /// How a read is lit.
 fn role_of(read: &Read) -> Role {
     match read.outcome {
+        // The states of nodes: what is hidden looks alike here and in the world.
         Outcome::Behind => Role::Hidden,
         Outcome::Descends => Role::Undecided,
         Outcome::Shows => Role::Visible,
@@ -248,6 +260,7 @@ fn role_of(read: &Read) -> Role {
 /// Lights the cells that a query read, numbered in order, the last one most.
 fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
     for (number, read) in reads.iter().enumerate() {
+        // A level whose cells are too fine to be shown has no frame.
         let Some(frame) = frames.iter().find(|f| f.level == u32::from(read.cell.level)) else { continue };
         let [a, b] = frame.rect(read.cell);
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
@@ -257,6 +270,7 @@ fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
                 Layer::Emphasis,
                 Role::Current,
                 Subject::None,
+                // Outside the first outline, so that how the read ended is still seen.
                 corners.map(|c| c + (c - (a + b) * 0.5).signum() * 1.5),
             );
         }
@@ -277,6 +291,7 @@ fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
 /// The last comparisons in words, below a picture that ends at `top`; returns where they end.
 fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
     const LINES: usize = 6;
+    // The last ones, since the very last is what this step is about; it alone is in ink.
     let first = reads.len().saturating_sub(LINES);
     for (line, (number, read)) in reads.iter().enumerate().skip(first).enumerate() {
         let text = format!("{}. {}: {}", number + 1, place(read.cell), read.comparison());
@@ -289,6 +304,7 @@ fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
             text,
         );
     }
+    // In words, since nothing is lit then; the picture is as high as with one read.
     if reads.is_empty() {
         to.text(
             Layer::Labels,
@@ -310,6 +326,7 @@ pub fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], scal
     light(reads, &frames, &mut to);
     let mut bottom = comparisons(reads, 4.0 + height, &mut to);
     if to.items.iter().any(|i| i.role == Role::Approximated) {
+        // Explained only where it occurs.
         let text = "Cross-hatched: drawn into since it was last read, so it holds too far a depth; it is \
                     brought up to date when it is read.";
         to.text(Layer::Labels, Role::Faint, vec2(0.0, bottom + 8.0), 8.0, Anchor::Start, text);
@@ -348,6 +365,8 @@ impl Stack {
         all: &Pixels,
         to: &mut Drawing,
     ) {
+        // The mark of an image is an upright rectangle, so the lean is made of steps: a row of pixels is cut
+        // into several where there are few.
         let thin = rows.max((self.depth as u32).min(64));
         for line in 0..thin {
             let row = ((line * height / thin) >> level).min(rows - 1) as usize;
@@ -355,6 +374,7 @@ impl Stack {
             let rgba: Vec<u8> =
                 all.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
             let (a, b) = (self.at(k, vec2(0.0, y0)), self.at(k, vec2(1.0, y1)));
+            // A little overlap, so that no paper shows between two of them.
             let corners = [vec2(a.x, a.y), vec2(a.x + self.base, b.y + 0.2)];
             let pixels = Pixels { width: columns, height: 1, rgba: rgba.into() };
             to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
@@ -371,6 +391,7 @@ pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], sca
     let top = 14.0 + rise * shown.len().saturating_sub(1) as f32;
     let stack = Stack { base, lean, depth, rise, top };
     let mut to = Drawing::default();
+    // From the image up: what is drawn later lies on top, as the upper level does.
     for (k, &level) in shown.iter().enumerate() {
         let (columns, rows) = buffer.pyramid().size(level);
         let pixels = image(buffer, view, level, [0, columns, 0, rows], scale);
@@ -418,6 +439,7 @@ impl Lists {
             let (at, size_pt) = (vec2(x, 10.0), 9.0);
             let mark = Mark::Text { at, text: title, size_pt, anchor: Anchor::Start, font: Font::Bold };
             to.push(Layer::Labels, Role::Ink, Subject::None, mark);
+            // The latest rows, which are those that the step has added.
             let first = rows.len().saturating_sub(ROWS);
             for (line, row) in rows.into_iter().skip(first).enumerate() {
                 let at = vec2(x, 24.0 + 11.0 * line as f32);
@@ -440,6 +462,7 @@ impl Lists {
             format!("Left the list: {}", self.unlisted.len()),
             self.unlisted.iter().map(|node| format!("node {node}: off the list")).collect(),
         );
+        // As high with few rows as with many: the picture keeps its size from step to step.
         finished(to, 24.0 + 11.0 * ROWS as f32, "The visible list")
     }
 }

@@ -44,6 +44,8 @@ impl Answer {
     /// Takes in what another part of the image says.
     pub fn join(&mut self, other: &Self) {
         self.reads += other.reads;
+        // Depths are 1/w. A cell that shows the box holds no more than the box's nearest depth, and one that
+        // hides it more: the least of all shows the box, or else hides it by the least margin.
         let decides = match (self.decisive, other.decisive) {
             (Some((_, a)), Some((_, b))) => b < a,
             (None, b) => b.is_some(),
@@ -173,6 +175,7 @@ pub fn hides<S: Faces>(
     match footprint(&view, &seen.projection, bounds) {
         Footprint::Outside => None,
         Footprint::CrossesNear => {
+            // No finite rectangle bounds what reaches the near plane, so no cell can decide.
             Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
         }
         Footprint::Seen(image) => {
@@ -210,6 +213,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         window: PixelRect,
     ) -> Answer {
         // A departure: first the few cells over the whole box, which decide for most of what is hidden.
+        // It may decide: the box's pixels are those within `MARGIN_PX` of its image, and so hold every pixel
+        // where something in the box can show.
         if self.behind_whole(image.pixels.intersection(window)) {
             return self.answer;
         }
@@ -217,6 +222,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         // toward the eye can be seen; the others lie behind them.
         let (faces, count) = S::front(bounds, view.eye.position);
         for (number, face) in faces[..count].iter().enumerate() {
+            // Each face's pixels have the same margin: what is drawn near to the box's image is near to that
+            // of one of these faces, so nothing is lost between them.
             let mut face = S::image(*face, image, view.width, view.height);
             face.pixels = face.pixels.intersection(window);
             // One face that may be seen is enough.
@@ -262,6 +269,9 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
+        // Conservative in rounding: `nearest` is rounded to f32 as fragments are, which keeps the order, so
+        // no fragment of the contents exceeds it; and the cell holds a depth that no pixel under it is
+        // farther than.
         let outcome = if nearest < held { Outcome::Behind } else { Outcome::Descends };
         self.listener.reads(Read { face: None, cell, held, nearest, outcome });
         if outcome == Outcome::Behind {
@@ -272,6 +282,7 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
             return false;
         }
         let level = cell.level - 1;
+        // Of the two children along an axis those that the rectangle meets.
         let along = |at: u16, first: u32, past: u32| {
             (2 * at).max((first >> level) as u16)..=(2 * at + 1).min(((past - 1) >> level) as u16)
         };
@@ -336,6 +347,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     /// Whether the face lies behind all that is drawn in the cells below one.
     fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
         // "Descending to higher resolutions and seeing if all samples the face intersects are closer."
+        // A cell that the face does not touch cannot show it: "the face may not necessarily overlap the
+        // particular maximum-depth pixel". Beyond the edge of the image a cell has no pixel to touch.
         for k in 0..4 {
             let child =
                 PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };

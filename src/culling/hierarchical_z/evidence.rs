@@ -52,6 +52,7 @@ pub(crate) struct Check {
 impl<S: Faces> Evidence<S> {
     /// What of it is about the image and its pyramid.
     pub(super) fn depth(&self) -> Option<&DepthNote<S>> {
+        // What a film applies again and the pictures of the pyramid look through.
         if let Self::Depth(note) = self { Some(note) } else { None }
     }
     /// Draws the evidence in the world.
@@ -61,6 +62,7 @@ impl<S: Faces> Evidence<S> {
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Depth(n) => n.draw(scene, view, to),
             Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
+            // Marks on the tree and counts have no place in the world.
             Self::Listed(..) | Self::Cube(CubeNote::Unlisted(_)) | Self::Checked(_) => {}
         }
     }
@@ -69,11 +71,13 @@ impl<S: Faces> Evidence<S> {
 impl<S: Faces> Tallied for Evidence<S> {
     fn tally(&self, tally: &mut Tally) {
         match self {
+            // The visit meets a cube of the list once more, and draws nothing for it.
             Self::Listed(_, is_drawn) => tally.add("cubes_drawn_from_list", (*is_drawn).into()),
             Self::Tested(n) => n.tally(tally),
             Self::Facing(_) => Facing::tally(tally),
             Self::Depth(n) => n.tally(tally),
             Self::Cube(n) => n.tally(tally),
+            // Every frame records whether a check is due; those that are made count.
             Self::Checked(n) => tally.add("checks", n.is_due.into()),
         }
     }
@@ -92,11 +96,13 @@ impl<S: Faces> Note<S> for Evidence<S> {
     }
     fn subject(&self) -> Subject {
         match self {
+            // Without a query the verdict of a cube rests on its mark.
             Self::Listed(n, _) => Subject::Node(*n),
             Self::Tested(n) => n.subject(),
             Self::Facing(n) => n.subject(),
             Self::Depth(n) => n.subject(),
             Self::Cube(n) => Note::<S>::subject(n),
+            // About the list as a whole.
             Self::Checked(_) => Subject::None,
         }
     }
@@ -104,6 +110,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
+            // What is hidden needs no claim here: a checker proves it of the verdict, from the whole scene.
             _ => None,
         }
     }
@@ -137,11 +144,13 @@ impl<S: Faces> Note<S> for Evidence<S> {
 impl Check {
     fn fields(&self) -> Vec<Field> {
         vec![
+            // Recorded as a whole: the memory of the last frame is written over when this one ends.
             Field { name: "due", value: Value::Switch(self.is_due) },
             integer("frames", self.frames),
             integer("interval", self.interval),
             integer("added", self.added),
             integer("listed", self.listed),
+            // View depths for the reader; the shift is a ratio and the same in both measures.
             number("farthest_units", (1.0 / self.farthest[0]).into()),
             number("farthest_before_units", (1.0 / self.farthest[1]).into()),
         ]
@@ -154,6 +163,7 @@ impl Check {
         if self.is_due {
             format!("{of}: every cube on it is asked against the finished image.")
         } else {
+            // Only the interval is foreseen: a check that is due early depends on frames to come.
             format!("{of}: no check is due before {}.", self.interval)
         }
     }

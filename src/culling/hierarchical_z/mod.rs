@@ -57,10 +57,13 @@ pub(crate) struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
+            // The paper's way wherever there is a choice. Section 3.3: the visible list makes the z-buffer
+            // "almost complete".
             coherence: true,
             form: Form::default(),
             query: Volume::default(),
             primitive_test: true,
+            // Section 3.3: "At the end of each frame all objects on the visible list are checked".
             check_interval: 1,
             cubes: Cubes::default(),
             backface_culling: false,
@@ -91,6 +94,7 @@ words! {
 }
 
 const CODE: &[CodeLine] = &[
+    // Section 3.3.
     CodeLine { label: "Frame:1", text: "Frame(visible list L)" },
     CodeLine { label: "Frame:2", text: "  clear the z-buffer and the z-pyramid" },
     CodeLine { label: "Frame:3", text: "  for each cube C of L in view, front to back" },
@@ -98,16 +102,20 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Frame:5", text: "  Visit(root)" },
     CodeLine { label: "Frame:6", text: "  if a check of L is due" },
     CodeLine { label: "Frame:7", text: "    for each C of L in view: if Obscured(C), remove C" },
+    // Section 3.1 for the tree; the list is that of Section 3.3.
     CodeLine { label: "Visit:1", text: "Visit(cube C)" },
     CodeLine { label: "Visit:2", text: "  if C is outside the view: return" },
     CodeLine { label: "Visit:3", text: "  if C is not in L" },
     CodeLine { label: "Visit:4", text: "    if Obscured(C): return" },
     CodeLine { label: "Visit:5", text: "    add C to L; Draw(C)" },
     CodeLine { label: "Visit:6", text: "  for each child D of C, front to back: Visit(D)" },
+    // Section 3.1 for what is drawn once; Greene, Kass and Miller 1993, Section 3.2, for the test of a
+    // primitive.
     CodeLine { label: "Draw:1", text: "Draw(cube C)" },
     CodeLine { label: "Draw:2", text: "  for each primitive p of C that is not drawn yet" },
     CodeLine { label: "Draw:3", text: "    if p is behind its pyramid cells: skip it" },
     CodeLine { label: "Draw:4", text: "    rasterize p; the pyramid follows" },
+    // Section 3.2, but for the look at the few cells over the whole box.
     CodeLine { label: "Obscured:1", text: "Obscured(cube C)" },
     CodeLine { label: "Obscured:2", text: "  if C crosses the near plane: return false" },
     CodeLine {
@@ -118,6 +126,7 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Obscured:5", text: "    q := finest cell that covers F on the screen" },
     CodeLine { label: "Obscured:6", text: "    if not Behind(F, q): return false" },
     CodeLine { label: "Obscured:7", text: "  return true" },
+    // Section 3.2: the descent "to higher resolutions".
     CodeLine { label: "Behind:1", text: "Behind(face F, cell q)" },
     CodeLine { label: "Behind:2", text: "  if the nearest depth of F is behind q: return true" },
     CodeLine { label: "Behind:3", text: "  if q is a pixel or F covers q: return false" },
@@ -194,6 +203,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             source,
         );
         knobs.words(form, &mut params.form);
+        // Section 5.3: "Spheres could be used as another type of bounding volume".
         let query = Knob::new(
             "query",
             "",
@@ -209,6 +219,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             "Greene, Kass and Miller 1993, Section 3.2",
         );
         knobs.switch(test, &mut params.primitive_test);
+        // Section 4.2: if tests are expensive, "the full recheck can be done after a fixed number of frames".
         let check = Knob::new(
             "check-interval",
             "frames",
@@ -237,12 +248,15 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     ) {
         watch.event(Event::FrameBegan);
         let Memory { listed, frames, farthest, scratch } = memory;
+        // Cubes that have no mark yet begin off the list.
         listed.resize(frame.index.nodes().len(), false);
+        // Without the list of the last frame every cube that is reached is queried, as in a first frame.
         if !frame.params.coherence {
             listed.fill(false);
         }
         let mut walk = Walk::new(frame, listed, scratch, buffer, out, watch);
         walk.run();
+        // Section 3.3: against the final z-buffer, so after all is drawn.
         let check = walk.check(*farthest, *frames + 1);
         (*frames, *farthest) = (if check.is_due { 0 } else { check.frames }, check.farthest[0]);
     }
@@ -252,9 +266,11 @@ impl<S: Faces> State<S, HierarchicalZ> for Buffer<S> {
     // A copy of the images costs as much as drawing about this many primitives.
     const KEYFRAME_NOTES: usize = 1 << 14;
     fn begin(&mut self, frame: &Frame<'_, S, HierarchicalZ>) {
+        // Queries read depths alone: where nobody looks at the image, it need not know its primitives.
         if frame.depths_only { self.clear_depths(frame.view) } else { self.clear(frame.view) }
     }
     fn apply(&mut self, scene: &Scene<S>, note: &Evidence<S>) {
+        // Everything else that is recorded leaves the buffer as it is.
         if let Some(step) = note.depth().and_then(|n| n.step(scene)) {
             self.step(step);
         }

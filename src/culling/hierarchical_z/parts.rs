@@ -38,6 +38,7 @@ impl<S: Faces> Obscurer<S> {
         progress: &dyn Progress,
     ) -> Result<Option<Self>, SettingError> {
         let params = params::<S, HierarchicalZ>(settings)?;
+        // It fails only on a saved preprocess, and none is given.
         let index = HierarchicalZ::build(scene, &params, None, progress).unwrap_or_default();
         Ok(index.map(|index| Self {
             scene: scene.clone(),
@@ -53,6 +54,7 @@ impl<S: Faces> Obscurer<S> {
         let mut list = DrawList::default();
         let (index, scene, params) = (&self.index, &*self.scene, &self.params);
         let frame = Frame { index, scene, view, params, limit: None, depths_only };
+        // As a run does it, with nobody listening.
         self.state.begin(&frame);
         HierarchicalZ::cull(&frame, &mut self.memory, &mut self.state, &mut list, &mut Unobserved);
         list
@@ -63,6 +65,7 @@ impl<S: Faces> Obscurer<S> {
     }
     /// Whether a box is hidden by what was drawn last, by its front faces; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {
+        // By faces whatever the parameter `query` is: that of the paper.
         hides(&mut self.state, bounds, Nobody).map(|answer| answer.is_hidden)
     }
     /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
@@ -90,10 +93,12 @@ pub fn pyramid_picture<S: Faces>(
     let mut buffer = Buffer::default();
     buffer.clear(view);
     buffer.draw(scene, scene.live(), &Options::default());
+    // No part of the picture is to be hatched as stale.
     buffer.refresh_all();
     let mut recorder: Recorder<DepthNote<S>> = Recorder::new(usize::MAX);
     let mut is_hidden = false;
     if let Some((pixels, depth)) = face {
+        // The face is of no node and of no line of the pseudocode; the picture shows neither.
         is_hidden =
             Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), [0, 0], &mut recorder))
                 .face(0, &FaceImage::rectangle(pixels));
@@ -107,6 +112,7 @@ pub fn pyramid_picture<S: Faces>(
 /// # Errors
 /// None; the scene is valid.
 pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
+    // Level 0 of the figure, row by row from the top.
     let depths = [[4, 9, 8, 8], [4, 5, 1, 3], [6, 2, 2, 4], [2, 2, 2, 4]];
     let (mut points, mut prims) = (Vec::new(), Vec::new());
     for (row, depths) in depths.iter().enumerate() {
@@ -114,6 +120,7 @@ pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
             let (x, y) = (column as f32 - 2.0, 2.0 - row as f32);
             let first = points.len() as u32;
             // The image is 4 wide at depth 2.
+            // Scaled with its depth, a square covers the same pixel however deep it is.
             points.extend(
                 [(x, y), (x, y - 1.0), (x + 1.0, y - 1.0), (x + 1.0, y)]
                     .map(|(x, y)| Vec3::new(x, y, -2.0) * (depth as f32 / 2.0)),
@@ -122,6 +129,7 @@ pub fn figure_1() -> Result<(Scene<Solid>, View<Solid>), SceneError> {
         }
     }
     let scene = Scene::new(Parts::simple("Figure 1 of Georges 1995", points, prims))?;
+    // A right angle shows 4 units at depth 2, a unit a pixel; all depths lie between the planes.
     let eye = Eye {
         position: Vec3::ZERO,
         target: Vec3::NEG_Z,

@@ -19,7 +19,9 @@ pub(super) fn picture<S: Faces>(
     which: usize,
     scale: DepthScale,
 ) -> Drawing {
+    // Backward from the step: the latest query is shown, whole or as far as it has come.
     let reads = || last_reads(notes.iter().rev().map(Evidence::depth));
+    // In the order of `PICTURES`.
     match which {
         0 => levels(buffer, view, &reads(), scale),
         1 => stacked(buffer, view, &reads(), scale),
@@ -32,6 +34,7 @@ fn list<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
     let mut lists = Lists::default();
     for note in notes {
         match note {
+            // The same cube is recorded once more when the visit meets it, with false: it is not drawn again.
             Evidence::Listed(node, true) => lists.drawn.push((*node, "from the list")),
             Evidence::Depth(DepthNote::Answered(a)) => {
                 lists.query(a);

@@ -210,6 +210,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Draws the cubes that are on the list and in view.
     fn draw_listed(&mut self, id: NodeId, planes: u8) {
+        // Nothing below it is drawn from the list either, whatever marks there are.
         if !self.listed[id.at()] {
             return;
         }
@@ -344,6 +345,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let buffer = &*self.buffer;
             self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
             self.watch.note(move || {
+                // What was compared can still be read after drawing, which refreshes nothing; only that of
+                // one pixel may have changed.
                 let operands = buffer.operands(scene, prim, options);
                 let (backface_culling, window) = (options.backface_culling, None);
                 let rasterized =
@@ -458,6 +461,7 @@ fn question<S: Faces>(
     } else {
         footprint(view, projection, &node.bounds)
     } {
+        // The sphere is that about the wholes already.
         Footprint::Seen(image) if is_sphere || node.whole == node.bounds => {
             Question::Open(image, image.nearest)
         }
@@ -499,6 +503,7 @@ fn front_to_back<S: Space>(
     for (to, child) in order.iter_mut().zip(node.children()) {
         *to = ((index.nodes()[child as usize].octant ^ eye).count_ones(), NodeId(child));
     }
+    // Equally near ones by number, so that every run has the same order.
     order.sort();
     order.into_iter().take(node.children().len()).map(|(_, child)| child)
 }

@@ -35,6 +35,7 @@ impl<S: Faces> From<DepthNote<S>> for Evidence<S> {
 impl<S: Faces> Evidence<S> {
     /// What of it is about the image and its pyramid.
     pub(super) fn depth(&self) -> Option<&DepthNote<S>> {
+        // What a film applies again and the pictures of the pyramid look through.
         if let Self::Depth(note) = self { Some(note) } else { None }
     }
     /// Draws the evidence in the world.
@@ -50,8 +51,11 @@ impl<S: Faces> Evidence<S> {
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Depth(n) => n.draw(scene, view, to),
             Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
+            // The cells that were read for it are notes of their own.
             Self::Cube(CubeNote::Unlisted(_)) => {}
             Self::Worked(n) => {
+                // The world shows whose geometry it is; which unit and when is for the timeline. While a
+                // processor waits there is nothing to show.
                 if let subject @ Subject::Node(node) = n.subject() {
                     to.bounds(Layer::Emphasis, Role::Current, subject, &index.nodes()[node.at()].bounds);
                 }
@@ -84,6 +88,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
     }
     fn subject(&self) -> Subject {
         match self {
+            // A primitive, though the box is that of all its structure holds: below the same cube lie other
+            // structures, which this test does not reject.
             Self::Tested(n) => n.subject(),
             Self::Facing(n) => n.subject(),
             Self::Depth(n) => n.subject(),
@@ -95,6 +101,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
+            // What is hidden needs no claim here: a checker proves it of the verdict, from the whole scene.
             _ => None,
         }
     }
@@ -104,6 +111,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(n) => n.fields(context),
             Self::Depth(n) => n.fields(context),
             Self::Cube(n) => n.fields(context),
+            // No context: a simulated clock is kept nowhere else, so the note holds all.
             Self::Worked(n) => n.fields(),
         }
     }

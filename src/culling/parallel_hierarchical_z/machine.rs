@@ -51,10 +51,15 @@ pub(super) struct Machine {
 impl Default for Machine {
     fn default() -> Self {
         Self {
+            // Fewer than on Pixel-Planes 5 (Section 5: "several dozen" processors, "10-20" renderers): each
+            // has a row in the timeline.
             processors: 4,
             renderers: 4,
+            // Section 4.1: "the best approach is probably a hybrid". Section 5.1: since all regions have to
+            // be available at once, static allocation is "the only solution".
             distribution: Distribution::default(),
             allocation: Allocation::default(),
+            // Section 5.3: to go on while answers are on their way, and the greatest depth of a region.
             overlap: true,
             farthest_first: true,
             // The paper gives no costs. By its Section 5 a processor transforms one primitive at a time and a
@@ -116,6 +121,9 @@ impl Machine {
     }
     /// Declares what operations cost.
     pub fn cost_knobs(&mut self, knobs: &mut dyn Knobs) {
+        // Drawing costs by the primitive: Section 4.2 takes the time to render any of them as "roughly
+        // constant". Work takes a tick at least, so that a unit never begins two jobs in one tick; a message
+        // may take none.
         let mut ticks = |name, meaning, least, value| {
             knobs.integer(
                 Knob::new(name, "ticks", meaning, "Georges 1995, Section 4.2"),
@@ -138,6 +146,7 @@ impl Machine {
 
 /// Ticks of some operations, as many as fit.
 pub(super) fn ticks(each: u32, count: usize) -> u32 {
+    // What does not fit costs the most there is: wrapped around, it would cost little.
     each.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
 }
 
@@ -193,6 +202,7 @@ impl Unit {
 
 impl Worked {
     pub(super) fn subject(&self) -> Subject {
+        // A processor waits for no one structure: its node is a placeholder.
         if self.job == Job::Wait { Subject::None } else { Subject::Node(self.node) }
     }
     pub(super) fn tally(&self, tally: &mut Tally) {
@@ -205,6 +215,7 @@ impl Worked {
         };
         tally.add(busy, 1);
         tally.add(ticks, (self.to - self.from).into());
+        // The frame lasts until the last unit is done, whichever that is.
         tally.at_least("ticks_of_frame", self.to.into());
     }
     pub(super) fn kind(&self) -> &'static str {
@@ -221,8 +232,10 @@ impl Worked {
         vec![
             Field { name: "unit", value: Value::Word(self.unit.name()) },
             integer("node", self.node.0),
+            // Ticks, not seconds: the paper gives no costs, so only proportions mean anything.
             integer("from_ticks", self.from),
             integer("to_ticks", self.to),
+            // 0 for processors, which have no region.
             integer("region", self.region),
             integer("count", self.count),
         ]
@@ -236,12 +249,14 @@ impl Worked {
             Job::DrawFound => {
                 format!("transforms and sends out node {node}, which a renderer saw: {count} primitives")
             }
+            // Section 4.1: a processor "can recombine its own allotment into a tree hierarchy".
             Job::Ask if count > 1 => {
                 format!("asks for the box of node {node}, for {count} of its structures at once")
             }
             Job::Ask => format!("asks for the box of node {node}"),
             Job::Wait => "waits for answers".into(),
             Job::Rasterize => format!("rasterizes {count} primitives of node {node} in region {region}"),
+            // Section 5: the flag "called the 'All Enables Off', or AEO bit".
             Job::Answer if count == 0 => format!(
                 "answers for the box of node {node} in region {region}: all enables off, nothing of it shows"
             ),

@@ -60,6 +60,7 @@ impl Default for Params {
     fn default() -> Self {
         Self {
             machine: Machine::default(),
+            // Section 5.1: each processor draws its visible list first.
             coherence: true,
             // Section 5.1.
             check_interval: 30,
@@ -70,12 +71,16 @@ impl Default for Params {
 }
 
 const CODE: &[CodeLine] = &[
+    // Section 4.1 for the structures, Section 5.1 for the regions.
     CodeLine { label: "Frame:1", text: "Frame(structures, processors, renderers)" },
     CodeLine { label: "Frame:2", text: "  deal the structures in view out to the processors" },
     CodeLine { label: "Frame:3", text: "  give the regions of the screen to the renderers" },
     CodeLine { label: "Frame:4", text: "  all at once: Process(its lists), Render(its regions)" },
+    // Sections 4.2 and 5.1: not in every frame, since a test may take communication.
     CodeLine { label: "Frame:5", text: "  every n frames, for each C on a visible list" },
     CodeLine { label: "Frame:6", text: "    if no pixel shows the box of C, C is invisible" },
+    // Section 5.1, in the orders of Section 4.2. Section 5.3 adds the farthest depths, and that a processor
+    // goes on while it waits.
     CodeLine { label: "Process:1", text: "Process(visible list V, invisible list I)" },
     CodeLine { label: "Process:2", text: "  for each C of V, by decreasing area on the screen" },
     CodeLine { label: "Process:3", text: "    Draw(C)" },
@@ -85,8 +90,11 @@ const CODE: &[CodeLine] = &[
     CodeLine { label: "Process:7", text: "    else send its box to its regions; go on meanwhile" },
     CodeLine { label: "Process:8", text: "  when all regions of C have answered: skip C, unless one saw it" },
     CodeLine { label: "Process:9", text: "    then move C to V; Draw(C)" },
+    // Section 5: processors transform, renderers rasterize.
     CodeLine { label: "Draw:1", text: "Draw(structure C)" },
     CodeLine { label: "Draw:2", text: "  transform its primitives; send each to its regions" },
+    // Sections 5 and 5.1: whether a pixel is left on is the all-enables-off bit after a box was rasterized
+    // without being written.
     CodeLine { label: "Render:1", text: "Render(regions), for each message in order of arrival" },
     CodeLine { label: "Render:2", text: "  primitives: rasterize them" },
     CodeLine { label: "Render:3", text: "  a box: compare its faces with the depths drawn so far" },
@@ -173,6 +181,7 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         watch: &mut O,
     ) {
         watch.event(Event::FrameBegan);
+        // Drawing is simulated as well: what a box is compared with depends on what has arrived by then.
         Simulation::new(frame, buffer, &mut memory.lists, out, watch).run();
     }
 }
@@ -181,9 +190,11 @@ impl<S: Faces> State<S, ParallelHierarchicalZ> for Buffer<S> {
     // A copy of the images costs as much as drawing about this many primitives.
     const KEYFRAME_NOTES: usize = 1 << 14;
     fn begin(&mut self, frame: &Frame<'_, S, ParallelHierarchicalZ>) {
+        // Queries read depths alone: where nobody looks at the image, it need not know its primitives.
         if frame.depths_only { self.clear_depths(frame.view) } else { self.clear(frame.view) }
     }
     fn apply(&mut self, scene: &Scene<S>, note: &Evidence<S>) {
+        // Everything else that is recorded leaves the buffer as it is.
         if let Some(step) = note.depth().and_then(|n| n.step(scene)) {
             self.step(step);
         }
@@ -205,6 +216,7 @@ impl<S: Faces> Shown<S> for ParallelHierarchicalZ {
         match which {
             0 => picture::levels(buffer, view, &reads(), scale),
             1 => picture::stacked(buffer, view, &reads(), scale),
+            // These two are drawn from the notes alone.
             2 => lists(moment.notes),
             _ => timeline::timeline(moment.notes),
         }
@@ -220,6 +232,8 @@ fn lists<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
     let mut lists = picture::Lists::default();
     for note in notes {
         match note {
+            // When a processor takes it, not when its parts arrive; once for each processor that has a share
+            // of it.
             Evidence::Worked(Worked { job: Job::DrawVisible, node, .. }) => {
                 lists.drawn.push((*node, "from a list"))
             }

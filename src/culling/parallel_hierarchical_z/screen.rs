@@ -32,9 +32,13 @@ impl Screen {
         let columns = width.div_ceil(REGION_PX);
         let regions = (columns * height.div_ceil(REGION_PX)) as usize;
         let renderers = machine.renderers as usize;
+        // Loads only order the regions, so those of a window of another size do no harm.
         load.resize(regions, 0);
+        // Section 5.1, static: "the only solution is to have the renderers work on several regions at once".
         let mut holder: Vec<_> = (0..regions).map(|r| Some((r % renderers) as u16)).collect();
         if machine.allocation == Allocation::Dynamic {
+            // Section 5.1, dynamic: "the regions that received the most primitives last frame are assigned
+            // renderers first". Equal ones go by number, so that every run is the same.
             holder.fill(None);
             let mut busiest: Vec<usize> = (0..regions).collect();
             busiest.sort_by_key(|&r| (Reverse(load[r]), r));
@@ -57,11 +61,13 @@ impl Screen {
     }
     /// The pixels of a region.
     pub fn window(&self, region: u32) -> PixelRect {
+        // The last column and row may reach past the image, and are cut.
         let (x, y) = (region % self.columns * REGION_PX, region / self.columns * REGION_PX);
         PixelRect { x0: x, x1: (x + REGION_PX).min(self.width), y0: y, y1: (y + REGION_PX).min(self.height) }
     }
     /// The cell of the pyramid that a region is.
     pub fn cell(&self, region: u32) -> PyramidCell {
+        // Regions and cells of their level are counted alike, from the upper left.
         let (x, y) = ((region % self.columns) as u16, (region / self.columns) as u16);
         PyramidCell { level: REGION_LEVEL, x, y }
     }
@@ -89,6 +95,7 @@ impl Screen {
         if self.busy[renderer as usize] {
             return None;
         }
+        // In a region messages go as they arrived; between regions the one that was made first.
         let held = (0..self.queues.len()).filter(|&k| self.holder[k] == Some(renderer));
         let (message, region) = held.filter_map(|k| Some((*self.queues[k].front()?, k))).min()?;
         self.queues[region].pop_front();
@@ -104,6 +111,7 @@ impl Screen {
     pub fn release(&mut self) -> Vec<u16> {
         let renderers = self.busy.len();
         let free: Vec<usize> = (0..self.queues.len())
+            // A region that nothing was sent to needs no renderer.
             .filter(|&r| self.holder[r].is_none() && !self.queues[r].is_empty())
             .collect();
         let turn = free.into_iter().enumerate().map(|(k, region)| {

@@ -305,6 +305,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Sends a message that is ready after so many ticks.
     fn send(&mut self, region: u32, message: Message, ready: u32) {
         self.messages.push(message);
+        // The number is also the order of making, by which a renderer chooses between its regions.
         let number = self.messages.len() - 1;
         self.after(ready.saturating_add(self.machine.message), What::Arrives(region, number));
     }
@@ -435,6 +436,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn rasterize(&mut self, prims: &[PrimId], window: PixelRect) {
         let options = Options { window: Some(window), ..self.options() };
         for &prim in prims {
+            // Section 5: a renderer compares at every pixel at once, so nothing is tested before, and there
+            // are no operands to record.
             let rasterized = Rasterized {
                 prim,
                 operands: None,

@@ -19,12 +19,14 @@ pub(super) fn timeline<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
     let work: Vec<Worked> =
         notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some(*w) } else { None }).collect();
     let mut to = Drawing::default();
+    // The width is the time so far, so that the first ticks can be told apart as well.
     let Some(end) = work.iter().map(|w| w.to).max() else {
         let text = "No unit of the machine has worked yet at this step.";
         to.text(Layer::Labels, Role::Faint, vec2(0.0, 12.0), 8.5, Anchor::Start, text);
         return finished(to, 20.0, "What every unit of the machine did when");
     };
     let mut units: Vec<Unit> = work.iter().map(|w| w.unit).collect();
+    // Processors above renderers, as units are ordered.
     units.sort();
     units.dedup();
     for (k, unit) in units.iter().enumerate() {
@@ -33,6 +35,7 @@ pub(super) fn timeline<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
     let bottom = TOP_PT + ROW_PT * units.len() as f32;
     let axis = [vec2(LEFT_PT, bottom + 1.0), vec2(place(end, end), bottom + 1.0)];
     to.line(Layer::Evidence, Role::Ink, Subject::None, axis);
+    // Few, since only proportions matter: the costs are parameters.
     for tick in [0, end / 2, end] {
         let at = vec2(place(tick, end), bottom + 11.0);
         to.text(Layer::Labels, Role::Ink, at, 7.5, Anchor::Middle, format!("{tick} ticks"));
@@ -53,6 +56,7 @@ fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
     let mut busy = 0;
     for w in work.iter().filter(|w| w.unit == unit) {
         let role = match w.job {
+            // These two share a look, but never a row: one is of processors, the other of renderers.
             Job::DrawVisible | Job::Rasterize => Role::Visible,
             Job::DrawFound => Role::Current,
             Job::Ask => Role::Evidence,
@@ -60,6 +64,7 @@ fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
             Job::Answer if w.count == 0 => Role::Hidden,
             Job::Answer => Role::Evidence,
         };
+        // Waiting has a bar, so that it is seen, but no share of the work.
         busy += if w.job == Job::Wait { 0 } else { w.to - w.from };
         // The shortest job is still to be seen.
         let (from, till) = (place(w.from, end), place(w.to, end).max(place(w.from, end) + 0.3));
