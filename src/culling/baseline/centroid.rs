@@ -84,6 +84,8 @@ impl<S: Space> Method<S> for Centroid {
         saved: Option<&[u8]>,
         _: &dyn Progress,
     ) -> Result<Option<Whole<S>>, String> {
+        // The paper "needs to sort all of the triangles in S at each frame" (Section 4.5): nothing can be
+        // prepared.
         keeps_nothing(saved)?;
         Ok(Some(Whole::new(scene.clone())))
     }
@@ -98,12 +100,13 @@ impl<S: Space> Method<S> for Centroid {
         watch.event(Event::FrameBegan);
         watch.stage("order");
         let mut queue = in_view(scene, view, params, watch);
-        // All of it, as in the paper, though a selection of the budget's nearest would do: its cost is part of
-        // what is compared. The id breaks ties, so that the order is the same everywhere.
+        // All of it, as in the paper, though a selection of the budget's nearest would do: its cost is part
+        // of what is compared. The id breaks ties, so that the order is the same everywhere.
         queue.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         // Of the scene's primitives, not of those in view: so budgets mean the same from view to view.
         let budget = params.budget.of(scene.live().len());
         watch.stage("draw");
+        // On past the budget, so that all that is left out is decided too.
         for (rank, &(squared, prim)) in queue.iter().enumerate() {
             let fits = rank < budget;
             watch.event(Event::Line(if fits { line::DRAW } else { line::LEAVE_OUT }));

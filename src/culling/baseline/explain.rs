@@ -23,6 +23,8 @@ pub struct Distance<S: Space> {
     prim: PrimId,
     centroid: S::Vector,
     distance: f32,
+    // Kept, not looked up: the rank takes the whole order, and the budget is a parameter. A reader of the
+    // note has the scene and the view only.
     rank: u32,
     budget: u32,
 }
@@ -33,18 +35,22 @@ impl<S: Space> Distance<S> {
         Self {
             prim,
             centroid: middle(scene, prim),
+            // The run compares squares, people read lengths; both have the same order.
             distance: squared.sqrt(),
             rank: rank as u32,
             budget: budget as u32,
         }
     }
     fn sentence(&self) -> String {
+        // From 1, as people count; the field counts from 0.
         let (prim, rank, budget) = (self.prim, self.rank + 1, self.budget);
         let head = format!(
             "The centroid of {} {prim} is {} units from the eye, number {rank} in the order",
             S::PRIM,
             short(self.distance)
         );
+        // Rank and budget decide and nothing else: the sentence names both, so that a student sees that
+        // visibility had no say.
         if self.rank < self.budget {
             format!(
                 "{head}: it is drawn, {} of the budget of {budget} are left.",
@@ -56,12 +62,14 @@ impl<S: Space> Distance<S> {
     }
     fn draw(&self, scene: &Scene<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
         outline(scene, self.prim, to);
+        // What the order is by: the way from the Eye to the centroid, whatever stands between.
         to.line(
             Layer::Evidence,
             Role::Evidence,
             Subject::Prim(self.prim),
             [view.eye.position, self.centroid],
         );
+        // The centroid itself: a large polygon may begin much nearer, which is where this order goes wrong.
         to.push(
             Layer::Evidence,
             Role::Evidence,
@@ -89,6 +97,7 @@ impl<S: Space> Tallied for Evidence<S> {
         match self {
             Self::Tested(n) => n.tally(tally),
             Self::Facing(_) => Facing::tally(tally),
+            // One a primitive in view: the length of the list that is sorted.
             Self::Distance(_) => tally.add("primitives_sorted", 1),
         }
     }
@@ -113,6 +122,7 @@ impl<S: Space> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
+            // To be far away is no proof of being hidden: what the budget leaves out may be visible.
             Self::Distance(_) => None,
         }
     }

@@ -65,6 +65,7 @@ impl<S: Space> Method<S> for Frustum {
     type Params = Params;
     type Index = KdTree<S::Vector>;
     type Memory = ();
+    // Nothing builds up from step to step: a film shows the evidence of each step alone.
     type State = ();
     type Note = Evidence<S>;
     const CARD: Card = Card {
@@ -93,8 +94,10 @@ impl<S: Space> Method<S> for Frustum {
         saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Self::Index>, String> {
+        // Bytes that are passed here were saved for another method: refused, so that the mistake shows.
         keeps_nothing(saved)?;
         progress.report(0.0, "building the kD-tree");
+        // Every primitive lies in one leaf only, so none is drawn twice and none needs a mark.
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         Ok(KdTree::build(boxes, params.tree_height, || progress.cancelled()))
     }
@@ -111,6 +114,8 @@ impl<S: Space> Method<S> for Frustum {
         let frustum = view.frustum();
         let mut walk =
             Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
+        // All planes are open at the root. Each is closed for a whole subtree, where a node lies inside of
+        // it.
         walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
     }
 }
@@ -141,6 +146,8 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let node = &index.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
         self.watch.event(Event::Line(line::TEST));
+        // Lines 2 and 4 by one test: it ends at the first plane that the box lies outside of, or else returns
+        // those that cut it.
         let test = self.frustum.test(&node.bounds, planes);
         self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
         // Lines 2 to 8. A node inside all planes is drawn whole, without a test below it; so is a leaf, since
@@ -151,6 +158,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
                 self.watch.event(Event::DecidedNode(id, Verdict::Outside));
             }
             (FrustumTest::Partial(cutting), Some(children)) => {
+                // Decided before its children are, so that a film shows it open while they are visited.
                 self.watch.event(Event::DecidedNode(id, Verdict::Partial));
                 for child in children {
                     self.watch.event(Event::Line(line::CHILD));
@@ -176,6 +184,8 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
             self.watch.event(Event::Line(line::DRAW));
+            // Facing is a matter of each primitive and says nothing of a node, so it comes last. Each is
+            // decided by name, since the verdict about the node would call all of them visible.
             let away = prim_faces_away(scene, view.eye.position, prim);
             if away {
                 self.watch.note(move || Evidence::Facing(Facing::of(prim)));

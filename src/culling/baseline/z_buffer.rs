@@ -43,6 +43,7 @@ mod line {
 impl<S: Space> Method<S> for ZBuffer {
     type Params = Params;
     type Index = Whole<S>;
+    // Every primitive is decided by itself: nothing is kept from frame to frame, and a film needs no state.
     type Memory = ();
     type State = ();
     type Note = Evidence<S>;
@@ -66,6 +67,7 @@ impl<S: Space> Method<S> for ZBuffer {
         saved: Option<&[u8]>,
         _: &dyn Progress,
     ) -> Result<Option<Whole<S>>, String> {
+        // Bytes that are passed here were saved for another method: refused, so that the mistake shows.
         keeps_nothing(saved)?;
         Ok(Some(Whole::new(scene.clone())))
     }
@@ -78,12 +80,16 @@ impl<S: Space> Method<S> for ZBuffer {
     ) {
         let Frame { scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
+        // No node is entered: there is but one, and its verdict would hold for all or none.
         watch.stage("draw");
         // Without a test there is no evidence: what is drawn is drawn because it is there.
+        // By ascending id and not by depth: the z-buffer needs no order.
         for &prim in scene.live() {
             if params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
                 watch.event(Event::Line(line::SKIP));
                 watch.note(move || Evidence::Facing(Facing::of(prim)));
+                // Facing away counts as outside in every method, and the truth leaves such primitives out
+                // too.
                 watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             } else {
                 watch.event(Event::Line(line::DRAW));

@@ -32,6 +32,7 @@ pub enum Evidence<S: Shape> {
 pub struct Chosen {
     pub occluder: u32,
     pub name: PrimId,
+    // Kept, not looked up: a reader of the note has scene and view, and neither the lists nor the last frame.
     rank: u32,
     area_angle: f32,
     leaf: u32,
@@ -63,6 +64,7 @@ pub struct Related {
     side: i8,
     pub occlusion: Occlusion,
     inside: u64,
+    // How many planes there are: a picture makes them again, but a sentence has no index to make them from.
     edges: u8,
     /// The planes were kept from an earlier frame.
     pub reused: bool,
@@ -97,6 +99,7 @@ impl Related {
             reused,
             behind: relation.behind,
             height: eye_side.height,
+            // The run itself never asks for it: notes are made only where someone listens.
             decisive: relation.decisive(eye_side, seen, depth, margin),
         }
     }
@@ -112,23 +115,29 @@ impl Related {
         let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
         let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
-        // By what decided: the occluder's own plane first, then the plane of the decisive edge, then the margin.
+        // By what decided: the occluder's own plane first, then the plane of the decisive edge, then the
+        // margin.
         let d = self.decisive;
         let why = match self.occlusion {
+            // Section 2: "A can occlude T only if the viewpoint lies in that half-space of A which does not
+            // contain T."
             Occlusion::None if self.behind[1] <= 0.0 => {
                 format!("{who} lies wholly on the eye's side of {by}: no occlusion.")
             }
+            // Region 1 of Figure 2.
             Occlusion::None => format!(
                 "The eye is outside a separating {plane} of {by} and {who}, by {} units: no part of the one \
                  is behind the other.",
                 short(-d.distance as f32)
             ),
+            // A departure: the half-space of the paper says none here, but parts of the box may lie behind.
             Occlusion::Partial if self.behind[0] <= 0.0 => {
                 format!(
                     "The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial \
                      occlusion."
                 )
             }
+            // Region 2 of Figure 2.
             Occlusion::Partial if d.distance < 0.0 => format!(
                 "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, \
                  by {} units: partial occlusion.",
@@ -140,6 +149,7 @@ impl Related {
                 short(d.distance as f32),
                 short(d.needed as f32)
             ),
+            // Region 3 of Figure 2, by the plane with the least to spare: the answer is as sure as that one.
             Occlusion::Full => format!(
                 "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {} units, \
                  where {} are needed: full occlusion.",
@@ -149,6 +159,7 @@ impl Related {
             ),
         };
         let mut why = why + kept;
+        // Some begin with the name of the box, which is in lower case everywhere else.
         if let Some(first) = why.get_mut(..1) {
             first.make_ascii_uppercase();
         }
@@ -181,6 +192,7 @@ impl Joined {
         let mut joined =
             Self { owner, count: 0, candidates: candidates.len() as u32, members: [0; MEMBERS], shared: 0 };
         for (_, candidate) in candidates.iter().enumerate().filter(|(i, _)| members >> i & 1 == 1) {
+            // Beyond the array they are only counted: notes are copied, so their size is fixed.
             if let Some(to) = joined.members.get_mut(joined.count as usize) {
                 *to = candidate.occluder;
             }
@@ -222,13 +234,17 @@ impl<S: Shape> Tallied for Evidence<S> {
         match self {
             Self::Chosen(n) => {
                 tally.add("occluders_active", 1);
+                // How much of the set changes: little while the viewer moves smoothly (Section 3.1).
                 tally.add("occluders_exchanged", n.new.into());
             }
             Self::Tested(n) => n.tally(tally),
             Self::Related(n) => {
                 tally.add("occluders_tested", 1);
+                // Reused against made: what temporal coherence is worth (Section 3), by counts and not by a
+                // clock.
                 tally.add("relations_reused", n.reused.into());
                 tally.add("relations_made", (!n.reused).into());
+                // Apart, since the tests of Section 3.2 come on top of those of the tree.
                 tally.add(if matches!(n.owner, Owner::Node(_)) { "node_tests" } else { "object_tests" }, 1);
             }
             Self::Joined(_) => tally.add("joint_occlusions", 1),
@@ -260,8 +276,10 @@ impl<S: Shape> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
+            // Partial occlusion proves nothing by itself; a joint set is noted only where it hides the box.
             Self::Related(n) => (n.occlusion == Occlusion::Full).then_some(Claim::Hidden),
             Self::Joined(_) => Some(Claim::Hidden),
+            // A choice decides what is tested, not what is hidden.
             Self::Chosen(_) => None,
         }
     }
@@ -269,6 +287,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
         let switch = |name, v| Field { name, value: Value::Switch(v) };
         match self {
             Self::Chosen(n) => vec![
+                // First by the primitive, which the scene has too; occluders are numbered by this index.
                 integer("prim", n.name.0),
                 integer("occluder", n.occluder),
                 integer("rank", n.rank),
@@ -295,8 +314,10 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("tangent_corner", n.decisive.vertex.into()),
                 number("viewpoint_distance_units", n.decisive.distance),
                 number("needed_units", n.decisive.needed),
+                // Below 0 where the test failed, and by how much.
                 number("margin_units", n.decisive.distance - n.decisive.needed),
                 Field {
+                    // "Full occlusion occurs when all of the supporting planes are satisfied" (Section 2).
                     name: "supporting_satisfied",
                     value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)),
                 },
@@ -309,6 +330,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
                     value: Value::List(n.members().iter().map(|&m| m.into()).collect()),
                 },
                 integer("partial_occluders", n.candidates),
+                // "By ignoring the supporting planes through non-silhouette shared edges" (Section 2).
                 integer("shared_edges_ignored", n.shared),
             ],
             Self::Facing(n) => n.fields(context),
@@ -317,6 +339,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
     fn sentence(&self, context: &Context<'_, S>) -> String {
         match self {
             Self::Chosen(n) => format!(
+                // Leaf and direction are named too: the pick is from their list, so that they decide what can
+                // be active.
                 "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of \
                  those listed for leaf {} and direction {}{}.",
                 S::PRIM,
@@ -349,6 +373,7 @@ pub fn draw<S: Shape>(
     to: &mut Drawing<S::Vector>,
 ) {
     let Frame { index, scene, view, .. } = *frame;
+    // The set first, so that what the step is about is drawn over it.
     for &id in active {
         outline(index, id, Layer::Evidence, Role::Occluder, to);
     }
@@ -357,6 +382,7 @@ pub fn draw<S: Shape>(
         Some(Evidence::Facing(n)) => n.draw(scene, view, to),
         Some(Evidence::Chosen(n)) => {
             outline(index, n.occluder, Layer::Emphasis, Role::Current, to);
+            // D of Figure 11, from the Eye to the center of the occluder.
             let center = S::rounded(index.occluders.get(n.occluder).center);
             to.line(Layer::Evidence, Role::Evidence, Subject::Prim(n.name), [view.eye.position, center]);
             label(to, (view.eye.position + center) * 0.5, format!("area-angle {}", short(n.area_angle)));
@@ -376,6 +402,7 @@ pub fn draw<S: Shape>(
 fn outline<S: Shape>(index: &Index<S>, id: u32, layer: Layer, role: Role, to: &mut Drawing<S::Vector>) {
     let points = index.occluders.outline(id);
     let subject = Subject::Prim(index.occluders.name(id));
+    // An outline is closed: a segment would go forth and back.
     if points.len() == 2 {
         to.line(layer, role, subject, points);
     } else {
@@ -392,6 +419,7 @@ fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Dr
     for &id in note.members() {
         for corner in index.occluders.outline(id) {
             let ray = corner - eye;
+            // Where the Eye stands on a corner there is no ray, and nothing may be divided by 0.
             let far = eye + ray * (reach / ray.length().max(f32::MIN_POSITIVE));
             to.line(Layer::Evidence, Role::Faint, Subject::None, [corner, far]);
         }
@@ -422,6 +450,7 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
             draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
         }
     }
+    // Without planes there is no distance, and none would do where the occluder touches the box.
     let d = note.decisive;
     if note.behind[1] > 0.0 && d.needed.is_finite() {
         let side = if d.distance < 0.0 { "outside" } else { "inside" };
@@ -447,6 +476,7 @@ fn draw_plane<S: Shape>(
     let flat = S::Vector::AXES == 2;
     let ends =
         if flat { vec![ends[edge].from] } else { vec![ends[edge].from, ends[(edge + 1) % ends.len()].from] };
+    // A little past the Eye, so that one sees on which side of the plane it is.
     let reach = (S::widened(view.eye.position) - at).length() * 1.15;
     let drawn_out = |p: S::Point| {
         let ray = p - at;
@@ -459,9 +489,11 @@ fn draw_plane<S: Shape>(
     if flat {
         to.line(Layer::Evidence, role, subject, points);
     } else if role == Role::Evidence {
+        // Only the plane that decided is filled: filled planes through all edges would cover it.
         to.push(Layer::Evidence, role, subject, Mark::Area(points));
     } else {
         to.outline(Layer::Evidence, role, subject, points);
     }
+    // The tangent corner of Section 2.1.
     to.push(Layer::Evidence, role, subject, Mark::Dot { at: S::rounded(at), radius_pt: 2.0 });
 }

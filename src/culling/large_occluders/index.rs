@@ -33,6 +33,7 @@ pub struct Index<S: Shape> {
 
 impl Params {
     fn key<S: Space>(&self, scene: &Scene<S>) -> saved::Key {
+        // What the lists depend on. The other parameters change only what a frame does with them.
         saved::Key {
             scene: scene.hash_hex(),
             params: [self.tree_height, self.directions, self.occluders, self.marginal_gain],
@@ -70,8 +71,8 @@ impl<S: Shape> Index<S> {
             return Ok(None);
         };
         let all = Occluders::<S>::new(scene.points(), &faces);
-        // 3. By far the longest step, so its result is what is saved: with the numbers that all polygons have,
-        // which do not depend on the selection.
+        // 3. By far the longest step, so its result is what is saved: with the numbers that all polygons
+        // have, which do not depend on the selection.
         let rest = Part { whole: progress, start: 0.4, length: 0.55 };
         let gain = f64::from(params.marginal_gain) / 100.0;
         let made = match saved {
@@ -99,6 +100,7 @@ impl<S: Shape> Index<S> {
     }
     /// The primitives at and below a node, object by object within each leaf.
     pub fn objects_of(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
+        // The leaves below a node lie side by side, and so do their runs: two searches find the ends.
         let range = self.tree.range(node);
         let start = |i: usize| self.runs.get(i).map_or(self.by_object.len(), |r| r.0 as usize);
         let first = self.runs.partition_point(|r| (r.0 as usize) < range.start);
@@ -117,8 +119,8 @@ impl<S: Shape> Index<S> {
 /// The tree's primitives with those of each leaf sorted by object, and the beginnings of the runs.
 fn runs<S: Space>(scene: &Scene<S>, tree: &KdTree<S::Vector>) -> (Vec<PrimId>, Vec<(u32, ObjectId)>) {
     let mut order = tree.prims_below(NodeId(0)).to_vec();
-    // Leaf by leaf in the order of their ranges, so that runs come out ascending; a node's range is a range of
-    // runs, since it begins and ends with a leaf.
+    // Leaf by leaf in the order of their ranges, so that runs come out ascending; a node's range is a range
+    // of runs, since it begins and ends with a leaf.
     let mut leaves: Vec<Range<usize>> = (0..tree.nodes().len())
         .filter(|&n| tree.nodes()[n].is_leaf())
         .map(|n| tree.range(NodeId(n as u32)))

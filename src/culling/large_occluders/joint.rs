@@ -50,6 +50,7 @@ pub fn jointly<S: Shape>(
     for (i, candidate) in candidates.iter().enumerate() {
         alive |= u64::from(candidate.seen.behind) << i;
     }
+    // Only the first call grows them; every call leaves them at 0.
     scratch.count.resize(occluders.key_count(), [0; 2]);
     scratch.passed.resize(occluders.key_count(), [0; 2]);
     loop {
@@ -60,8 +61,8 @@ pub fn jointly<S: Shape>(
                 scratch.count[key as usize][sense_seen(candidate, sense)] += 1;
             }
         }
-        // 2. Strike out who has a failed edge that none of the others cancels: the k-th of one sense is paired
-        // with the k-th of the other.
+        // 2. Strike out who has a failed edge that none of the others cancels: the k-th of one sense is
+        // paired with the k-th of the other.
         for (i, candidate) in candidates.iter().enumerate().filter(|(i, _)| before >> i & 1 == 1) {
             for (edge, &(key, sense)) in occluders.keys(candidate.occluder).iter().enumerate() {
                 let sense = sense_seen(candidate, sense);

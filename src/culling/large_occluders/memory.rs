@@ -68,12 +68,14 @@ pub enum Owner {
 impl<S: Shape> Memory<S> {
     /// Begins a frame: earlier eye_sides are stale, relations are not.
     pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize) {
+        // Only the first frame grows anything: the memory belongs to one index.
         self.nodes.resize_with(nodes, Vec::new);
         self.below.resize(nodes, false);
         self.objects.resize_with(objects, Vec::new);
         self.near.resize(objects, None);
         self.eye_sides.resize_with(occluders, EyeSide::default);
         self.fresh.resize(occluders, false);
+        // Only what the last frame looked up: most occluders of a scene are far from any one place.
         self.seen.drain(..).for_each(|id| self.fresh[id as usize] = false);
         self.fates.resize(objects, None);
         // "Until the node is no longer involved in the visibility calculation" (Section 3), said of objects:
@@ -101,6 +103,8 @@ impl<S: Shape> Memory<S> {
         // Chosen again only when the object is seen from another direction: a walk past it asks a few times.
         let slot = &mut self.near[object.at()];
         if slot.as_ref().is_none_or(|n| n.0 != direction) {
+            // One buffer for all objects. Only the numbers are kept: the area-angles have served when the
+            // best are found.
             choose(&mut self.list);
             *slot = Some((direction, self.list.iter().map(|l| l.0).collect()));
             self.keeping.push(object);
@@ -124,12 +128,15 @@ impl<S: Shape> Memory<S> {
     /// What [`Memory::eye_side`] computed.
     #[inline]
     pub fn eye_side_of(&self, id: u32) -> &EyeSide<S> {
+        // Not asked whether it is fresh: an occluder gets into a set only after `Walk::can_hide` looked at
+        // it.
         &self.eye_sides[id as usize]
     }
     /// The kept relation to an occluder, if the eye is still on the side it holds for; `near`: where to look
     /// first.
     pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {
-        // A set changes little from frame to frame, so a relation is mostly found at its place or just behind.
+        // A set changes little from frame to frame, so a relation is mostly found at its place or just
+        // behind.
         let kept = self.of(owner);
         let fits = |r: &Relation<S>| r.occluder == occluder && r.side == side;
         let n = kept.len();
@@ -178,6 +185,7 @@ impl<S: Shape> Memory<S> {
             return;
         }
         let Some(children) = tree.nodes()[node.at()].children() else { return };
+        // What the decided node itself keeps stays: the next frame needs it to decide again.
         for child in children {
             self.forget_below(tree, child);
             self.nodes[child.at()].clear();

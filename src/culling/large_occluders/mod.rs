@@ -65,19 +65,24 @@ pub struct Params {
 
 impl Default for Params {
     fn default() -> Self {
-        // The paper's (Section 4): height 8, 32 occluders for each of 8 directions.
+        // The paper's (Section 4): height 8, 32 occluders for each of 8 directions. All parts of the paper
+        // are on; turned off, each shows what it is worth.
         Self {
             tree_height: 8,
             occluders: 32,
             directions: 8,
+            // Section 5 names an adaptive choice of k as future work.
             marginal_gain: 0,
             cache: true,
             detail_objects: true,
+            // An occluder then hides from either side.
             backface_culling: false,
         }
     }
 }
 
+// Figure 9. Lines 2 and 3 of Visible are "Frustum Culling" of Section 3, TestOcclusion follows Section 2, and
+// Gather tests the detail objects of Section 3.2.
 const CODE: &[CodeLine] = &[
     CodeLine { label: "Select:1", text: "S := occluders of P's leaf and direction" },
     CodeLine { label: "Visible:1", text: "Visible(occluders S, node T, viewpoint P)" },
@@ -159,6 +164,7 @@ impl<S: Shape> Method<S> for LargeOccluders {
         knobs.integer(Knob::new("directions", "", meaning, section!("3.1")), 1..=64, &mut params.directions);
         let meaning = "leaves out an occluder whose area-angle is below this share of the sum of the better \
                        ones; 0: never";
+        // The paper investigates "strategies for adaptively choosing k" and names none: this is our own.
         let gain = Knob::new("marginal-gain", "%", meaning, section!("5"));
         knobs.integer(gain, 0..=100, &mut params.marginal_gain);
         let meaning = "keeps planes from frame to frame";
@@ -183,6 +189,8 @@ impl<S: Shape> Method<S> for LargeOccluders {
         watch: &mut O,
     ) {
         watch.event(Event::FrameBegan);
+        // The memory goes over to the next frame; the state is this frame's alone, and is what a film shows
+        // between steps.
         Walk::new(frame, memory, active, out, watch).run();
     }
 }
@@ -193,6 +201,7 @@ pub struct Active(Vec<u32>);
 
 impl Active {
     fn choose(&mut self, occluder: u32) {
+        // The run and its film change the set here and nowhere else, so they cannot drift apart.
         self.0.push(occluder);
     }
 }
@@ -205,6 +214,7 @@ impl<S: Shape> State<S, LargeOccluders> for Active {
         self.0.clear();
     }
     fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
+        // All other notes are about boxes and leave the set as it is.
         if let Evidence::Chosen(n) = note {
             self.choose(n.occluder);
         }

@@ -58,12 +58,18 @@ impl<S: Shape> Occluders<S> {
             if area.is_nan() || area <= 0.0 {
                 continue;
             }
+            // From the sum over all corners: where rounding bent the polygon, a normal from three of them
+            // would depend on which three.
             let (normal, anchor) = (vector * (1.0 / area), corners[0]);
             let heights = corners.iter().map(|c| normal.dot(*c - anchor));
+            // From 0, at which the anchor itself lies.
             let slab = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
+            // The mean of the corners, not the centroid of the area: it serves to choose occluders and to
+            // label them, and no claim rests on it.
             let center =
                 corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
-            // Tables beside each other, not a vector for each: testing reads edges of many occluders in a row.
+            // Tables beside each other, not a vector for each: testing reads edges of many occluders in a
+            // row.
             let (edge, prim) = (made.edges.len() as u32, made.prims.len() as u32);
             for i in 0..corners.len() {
                 let (name, sense) = S::edge_key(&face.corners, i);
@@ -71,6 +77,7 @@ impl<S: Shape> Occluders<S> {
                 made.edges.push(S::edge(&corners, i));
                 made.keys.push((0, sense));
             }
+            // Kept for back-face culling, which asks each of them exactly, and for the name.
             made.prims.extend(&face.prims);
             let (edges, prims) = (edge..made.edges.len() as u32, prim..made.prims.len() as u32);
             made.all.push(Occluder {
@@ -129,6 +136,7 @@ impl<S: Shape> Occluders<S> {
     }
     /// The outline of one, for drawing.
     pub fn outline(&self, id: u32) -> Vec<S::Vector> {
+        // Nothing is lost: the corners were 32 bits wide before they were widened.
         self.edges(id).iter().map(|e| S::rounded(e.from)).collect()
     }
     /// Bytes of the tables.
@@ -151,6 +159,8 @@ impl<S: Shape> Occluders<S> {
 
     /// Whether an occluder's slab cuts or touches a box.
     pub fn cuts(&self, id: u32, bounds: &Aabb<S::Vector>) -> bool {
+        // By the slab and not a plane in it: what lies within is neither before nor behind the occluder for
+        // certain.
         let ([low, high], slab) = (self.heights(id, bounds), self.all[id as usize].slab);
         low <= slab[1] && slab[0] <= high
     }
@@ -162,6 +172,8 @@ impl<S: Shape> Occluders<S> {
         // Axis by axis the lower and the higher end: two corners in place of all.
         let (mut low, mut high) = (0.0, 0.0);
         for axis in 0..S::Vector::AXES {
+            // Relative to the anchor: differences of widened coordinates are exact, so a scene far from the
+            // origin loses nothing.
             let (n, o) = (occluder.normal.get(axis), occluder.anchor.get(axis));
             let (a, b) =
                 (n * (f64::from(bounds.min.get(axis)) - o), n * (f64::from(bounds.max.get(axis)) - o));

@@ -37,6 +37,8 @@ impl<S: Shape> Blockers<S> {
     pub fn new(points: &[S::Vector], polygons: &[Vec<u32>]) -> Self {
         let faces: Vec<Face> =
             polygons.iter().map(|c| Face { corners: c.clone(), prims: Vec::new() }).collect();
+        // Geometry first: the figures of Section 2 have no pixels. The primitives are missing since only a
+        // traversal asks for them.
         Self { occluders: Occluders::new(points, &faces), margin: Margin::GEOMETRIC }
     }
     /// Uses the pixel margin of `view` instead of the geometric one.
@@ -55,10 +57,13 @@ impl<S: Shape> Blockers<S> {
 
     fn candidate(&self, id: u32, bounds: &Aabb<S::Vector>, eye: S::Vector) -> Option<Candidate> {
         let eye_side = EyeSide::of(&self.occluders, id, S::widened(eye), self.margin);
+        // Within the slab, or nearer to it than the margin allows: as in a run it hides nothing.
         if eye_side.side == 0 {
             return None;
         }
         let relation = Relation::new(&self.occluders, id, eye_side.side, bounds, false);
+        // The distance, which the view depth never exceeds: the margin grows with depth, so this errs on the
+        // safe side, and no line of sight is needed.
         let depth = bounds.corners().map(|c| (S::widened(c) - S::widened(eye)).length()).fold(0.0, f64::max);
         let seen = relation.classify(&eye_side, self.occluders.thickness(id), depth, self.margin);
         Some(Candidate { occluder: id, side: eye_side.side, seen })
@@ -103,6 +108,7 @@ impl<S: Shape> Blockers<S> {
         let outline = self.occluders.outline(id as u32);
         let tangents = relation.planes.iter().enumerate().map(|(i, planes)| {
             let Planes::Tangent(pair) = planes else { return None };
+            // Each end of a segment is an edge; an edge of a polygon runs on to the next corner.
             let edge = if outline.len() == 2 {
                 vec![outline[i]]
             } else {
@@ -111,6 +117,8 @@ impl<S: Shape> Blockers<S> {
             Some((*pair).map(|plane| Tangent {
                 vertex: S::rounded(corner::<S>(bounds, plane.vertex)),
                 normal: plane.normal,
+                // From the first corner of the edge, as the run measures: the plane contains it, so it needs
+                // no offset.
                 eye_distance: S::widened(plane.normal).dot(S::widened(eye) - S::widened(edge[0])),
                 edge: edge.clone(),
             }))
@@ -124,6 +132,7 @@ impl<S: Shape> Blockers<S> {
     /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a
     /// number that depends on all of them.
     pub fn make_relations(&self, bounds: &Aabb<S::Vector>, eye: S::Vector, naive: bool) -> f64 {
+        // An Eye within a slab counts as in front: every occluder is to cost one relation.
         let side = |id: u32| EyeSide::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side;
         let arm = |planes: &Planes<S::Vector>| {
             if let Planes::Tangent([plane, _]) = planes { f64::from(plane.normal.get(0)) } else { 1.0 }
@@ -144,6 +153,7 @@ pub struct Kept<S: Shape> {
 impl<S: Shape> Blockers<S> {
     /// The relations of all occluders to boxes, for an eye.
     pub fn keep(&self, boxes: &[Aabb<S::Vector>], eye: S::Vector) -> Kept<S> {
+        // A pixel margin may take a side away, but it cannot turn it round: the geometric one is enough here.
         let side = |id: u32| {
             if EyeSide::of(&self.occluders, id, S::widened(eye), Margin::GEOMETRIC).side < 0 { -1 } else { 1 }
         };
@@ -162,6 +172,8 @@ impl<S: Shape> Blockers<S> {
             .map(|id| EyeSide::of(&self.occluders, id, S::widened(eye), self.margin))
             .collect();
         let mut counts = [0; 2];
+        // As many relations a box as there are occluders, at least 1, since a chunk must not be empty. A
+        // relation for the other side of its occluder says nothing, as in a run.
         for (relations, depth) in kept.relations.chunks(self.len().max(1)).zip(&kept.depths) {
             for (relation, eye_side) in relations.iter().zip(&eye_sides).filter(|(r, s)| r.side == s.side) {
                 let seen = relation.classify(

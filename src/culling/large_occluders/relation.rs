@@ -74,6 +74,7 @@ impl<V: Copy> PlaneList<V> {
             *to = planes;
             self.count += 1;
         } else {
+            // The fifth edge moves the first four, so that they all lie in one place.
             if self.many.is_empty() {
                 self.many.extend_from_slice(&self.few);
             }
@@ -173,6 +174,7 @@ impl Margin {
     pub fn of<S: Shape>(view: &View<S>) -> Self {
         let tan = f64::from(view.eye.fov * 0.5).tan();
         let aspect = f64::from(view.width) / f64::from(view.height.max(1));
+        // The field of view spans the height of an image of space, and the width of one of flatland.
         let (across, pixels) = if Relation::<S>::AXES > 2 {
             (tan * tan * (1.0 + aspect * aspect), view.height)
         } else {
@@ -221,8 +223,8 @@ impl<S: Shape> Relation<S> {
     /// Computes the planes; `naive` looks at every corner of the box instead of the table.
     pub fn new(occluders: &Occluders<S>, id: u32, side: i8, bounds: &Aabb<S::Vector>, naive: bool) -> Self {
         let occluder = occluders.get(id);
-        // Distances behind the slab, not the plane: of a polygon that is planar only up to rounding, what lies
-        // within the slab is neither before nor behind it.
+        // Distances behind the slab, not the plane: of a polygon that is planar only up to rounding, what
+        // lies within the slab is neither before nor behind it.
         let [low, high] = occluders.heights(id, bounds);
         let behind = if side > 0 {
             [occluder.slab[0] - high, occluder.slab[0] - low]
@@ -306,6 +308,7 @@ impl<S: Shape> Relation<S> {
         }
         // Joint occlusion argues with these bits, so they too count only behind the occluder's plane.
         found.inside = if found.behind { inside } else { 0 };
+        // At least one edge here and at most 64, so the shift is sound.
         let all = u64::MAX >> (64 - self.planes.len());
         found.occlusion = if found.inside == all { Occlusion::Full } else { Occlusion::Partial };
         found
@@ -313,7 +316,8 @@ impl<S: Shape> Relation<S> {
 
     /// The operands that decided; for explanations.
     pub fn decisive(&self, eye_side: &EyeSide<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
-        // The same sums as above, for the edge whose test had the least to spare: only explanations pay for it.
+        // The same sums as above, for the edge whose test had the least to spare: only explanations pay for
+        // it.
         let s = self.behind[0];
         let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
         let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;

@@ -25,6 +25,7 @@ pub fn write(key: &Key, selection: &Selection) -> Vec<u8> {
     // Area-angles by their bits, so that a restored selection is the same to the last of them.
     let (leaf_of, starts, lists) = selection.tables();
     let mut bytes = MAGIC.to_vec();
+    // A hash is always equally long, so it needs no length.
     bytes.extend(key.scene.as_bytes());
     let lengths = [leaf_of.len(), starts.len(), lists.len()].map(|n| n as u32);
     let numbers = key.params.iter().chain(&lengths).chain(leaf_of).chain(starts).copied();
@@ -71,6 +72,8 @@ pub fn read(bytes: &[u8], key: &Key, nodes: usize, occluders: usize) -> Result<S
         return Err(damaged());
     }
     let pairs = words[leaf_of + starts..].chunks_exact(2).map(|w| (w[0], f32::from_bits(w[1]))).collect();
+    // A right sum says that nothing was damaged, and not that the numbers fit: each that serves as a place is
+    // checked. The directions themselves are made again from how many there are.
     let tables = (words[..leaf_of].to_vec(), words[leaf_of..leaf_of + starts].to_vec(), pairs);
     Selection::of_tables(params[1], tables, nodes, occluders).ok_or_else(damaged)
 }

@@ -21,8 +21,8 @@ use crate::index::KdTree;
 use crate::scene::Progress;
 
 /// How many times as many occluders as are active a leaf's list holds. The list is ranked from the middle of
-/// the leaf; from elsewhere in it the ranks differ, but what is largest from there is rarely beyond four times
-/// the set. Each further one costs an area-angle a frame and 8 bytes for each leaf and direction.
+/// the leaf; from elsewhere in it the ranks differ, but what is largest from there is rarely beyond four
+/// times the set. Each further one costs an area-angle a frame and 8 bytes for each leaf and direction.
 const SPARE: u32 = 4;
 /// How many it holds at least: detail objects pick from the same list, and a small set of the Eye's would
 /// leave them none that are near.
@@ -50,6 +50,8 @@ pub struct Selection {
 pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
     let toward = occluder.center - from;
     let distance = toward.length();
+    // The amount without the sign of the paper, which makes only the front count: here occluders hide from
+    // both sides. At the very center no angle is defined, and 0 keeps the occluder out.
     let power = if S::Vector::AXES == 2 { distance } else { distance * distance };
     if power > 0.0 { occluder.area * (occluder.normal.dot(toward) / distance).abs() / power } else { 0.0 }
 }
@@ -58,6 +60,7 @@ pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
 /// that itself looks up to half a step beside the direction.
 fn cone(directions: u32) -> f64 {
     let off = std::f64::consts::PI * (1.0 / 3.0 + 1.0 / f64::from(directions.max(1)));
+    // With one direction its share is the whole circle, so everything counts for it.
     if off < std::f64::consts::PI { cosine(off) } else { -1.0 }
 }
 
@@ -82,6 +85,8 @@ fn direction(i: u32, directions: u32) -> [f64; 2] {
 
 /// The order of ranked occluders: the larger area-angle first, of equals the lower number.
 fn better(a: &(u32, f32), b: &(u32, f32)) -> std::cmp::Ordering {
+    // Like walls of a building have equal area-angles: the number decides, so that every build chooses the
+    // same.
     b.1.total_cmp(&a.1).then(a.0.cmp(&b.0))
 }
 
@@ -136,6 +141,7 @@ impl Selection {
                 return None;
             }
             let ranked: Vec<_> = some
+                // Collected in the order of the leaves, whichever is ranked first.
                 .par_iter()
                 .map(|(_, cell)| {
                     rank::<S>(occluders, &tree.nodes()[0].bounds, cell, [directions, most], gain)
@@ -153,6 +159,7 @@ impl Selection {
 
     /// The number of the direction nearest to a line of sight.
     pub fn direction_of<S: Shape>(&self, sight: S::Point) -> u32 {
+        // The ways are of unit length, and the length of the sight is the same in every comparison.
         let alike = |way: &[f64; 2]| along::<S>(sight, *way);
         let mut best = 0;
         for (i, way) in self.directions.iter().enumerate().skip(1) {
@@ -181,6 +188,8 @@ impl Selection {
         nodes: usize,
         occluders: usize,
     ) -> Option<Self> {
+        // All that `list` takes for granted: slices in order and within the lists, two starts for every leaf
+        // and direction, and occluders that exist.
         let ascending = starts.windows(2).all(|w| w[0] <= w[1]) && starts.first() == Some(&0);
         let whole = starts.last().is_some_and(|&end| end as usize == lists.len());
         let leaves = leaf_of.iter().max().map_or(0, |&most| most as usize + 1);
@@ -201,6 +210,7 @@ impl Selection {
     /// Every occluder that some list names, ascending.
     pub fn named(&self) -> Vec<u32> {
         let mut all: Vec<u32> = self.lists.iter().map(|l| l.0).collect();
+        // Ascending, for `renumbered` searches in it.
         all.sort_unstable();
         all.dedup();
         all
@@ -223,6 +233,7 @@ pub fn leaf_at<S: Shape>(tree: &KdTree<S::Vector>, point: S::Vector) -> NodeId {
     let mut at = NodeId(0);
     while let Some([low, high]) = tree.nodes()[at.at()].children() {
         let node = &tree.nodes()[at.at()];
+        // A point on the plane goes to the lower half, so that it lies in one leaf only.
         at = if point.get(node.axis as usize) <= node.split { low } else { high };
     }
     at
@@ -241,6 +252,7 @@ fn cells<S: Shape>(tree: &KdTree<S::Vector>) -> Vec<(NodeId, Aabb<S::Vector>)> {
         let cut = |v: S::Vector| {
             S::Vector::from_fn(|a| if a == node.axis as usize { node.split } else { v.get(a) })
         };
+        // The lower half is pushed last and so comes first: leaves are numbered from low to high.
         open.push((high, Aabb { min: cut(cell.min), max: cell.max }));
         open.push((low, Aabb { min: cell.min, max: cut(cell.max) }));
     }
@@ -260,6 +272,7 @@ fn rank<S: Shape>(
     let has_depth = |id: u32| {
         let [low, high] = occluders.heights(id, whole);
         let occluder = occluders.get(id);
+        // How far the scene reaches on the side that the leaf does not lie on.
         (if occluder.normal.dot(from - occluder.anchor) > 0.0 { -low } else { high }) > enough
     };
     // Once for the leaf; the directions share the order and differ in what counts.
@@ -288,7 +301,7 @@ fn rank<S: Shape>(
     (0..directions).map(list).collect()
 }
 
-/// Whether some corner of an occluder, the middle of an edge, or its center lies within a cone.
+/// Whether some corner of an occluder, its center, or the middle between the two lies within a cone.
 fn is_toward<S: Shape>(
     occluders: &Occluders<S>,
     id: u32,
@@ -296,6 +309,7 @@ fn is_toward<S: Shape>(
     toward: [f64; 2],
     cosine: f64,
 ) -> bool {
+    // A few points stand for the polygon: where they miss, some culling is lost, and never anything visible.
     let center = occluders.get(id).center;
     let within = |p: S::Point| {
         let v = p - from;

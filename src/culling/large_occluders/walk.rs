@@ -89,8 +89,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let index = self.index;
         let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
-        // A departure: the paper takes the list as it is. A leaf may be large, so of its list, which is longer
-        // than k, those are taken that look largest from the Eye itself.
+        // A departure: the paper takes the list as it is. A leaf may be large, so of its list, which is
+        // longer than k, those are taken that look largest from the Eye itself.
         let mut list = Vec::new();
         largest_from(
             &index.occluders,
@@ -160,7 +160,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 FrustumTest::Inside => {}
             }
         }
-        // The sets of all nodes on the way down lie one after the other, and this node's is cut off at the end.
+        // The sets of all nodes on the way down lie one after the other, and this node's is cut off at the
+        // end.
         self.watch.event(Event::Line(line::TEST));
         let end = self.sets.len();
         match self.test_occlusion(Owner::Node(id), &node.bounds, set) {
@@ -300,8 +301,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
     }
 
-    /// 3. Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out of
-    /// view or that the occluders near them hide.
+    /// 3. Draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out
+    /// of view or that the occluders near them hide.
     fn gather(&mut self, id: NodeId, cutting: u8) {
         let index = self.index;
         if !self.params.detail_objects {

@@ -65,6 +65,7 @@ pub struct Transferred<V> {
     pub held: u32,
     pub most: u32,
     /// What A adds: |A| / ρ_max, or the part of it that faces the Eye.
+    // Kept besides the two, whose quotient it is only where every primitive counts one.
     pub share: f32,
     /// v, unit vector from the Eye to the center of B.
     pub sight: V,
@@ -97,6 +98,7 @@ impl Origin {
 impl<V> Transferred<V> {
     /// ρ(B) before the penalty.
     pub fn sum(&self) -> f32 {
+        // Not kept: the same operations on the same operands give what the run had, to the last bit.
         self.share + self.along * self.of_a
     }
 }
@@ -164,10 +166,13 @@ impl<S: Cellular> Evidence<S> {
     /// Changes the front as the run did, which calls the same functions where it records these notes.
     pub fn apply(&self, front: &mut Front) {
         match self {
+            // As in `Walk::grow_from`: where a front begins, nothing was handed on.
             Self::Seeded(n) => front.put(n.cell, 0.0, true),
+            // B keeps its value and, what matters among equals, its time stamp.
             Self::Transferred(n) if n.keeps => {}
             Self::Transferred(n) => front.put(n.b, n.solidity, n.star_shaped),
             Self::Projected(n) => front.project(n.cell),
+            // One that is not hidden leaves by the note of its projection.
             Self::Queried(n) if n.answer.is_hidden => front.leave_out(n.cell),
             _ => {}
         }
@@ -183,10 +188,12 @@ impl<S: Cellular> Tallied for Evidence<S> {
             Self::Transferred(n) => {
                 tally.add("solidities_updated", 1);
                 tally.add("penalties", (!n.star_shaped).into());
+                // Those for which Figure 4 has to remove and reinsert.
                 tally.add("cells_requeued", (n.before.is_some() && !n.keeps).into());
             }
             Self::Projected(n) => {
                 tally.add("cells_projected", 1);
+                // Each costs a step of the traversal and none of the budget.
                 tally.add("empty_cells_projected", (n.held == 0).into());
             }
             Self::Queried(n) => {
@@ -252,6 +259,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Tested(n) => n.fields(context),
             Self::Facing(n) => n.fields(context),
             Self::Transferred(n) => vec![
+                // By their nodes, the numbers by which every view and trace names cells.
                 integer("from_node", node_of(n.a).0),
                 integer("node", node_of(n.b).0),
                 integer("held", n.held),
@@ -261,6 +269,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 Field { name: "normal", value: axes(n.normal) },
                 number("alignment", n.along.into()),
                 number("from_solidity", n.of_a.into()),
+                // Before the penalty; `solidity` is after it.
                 number("transferred", n.sum().into()),
                 switch("star_shaped", n.star_shaped),
                 number("solidity", n.solidity.into()),
@@ -278,6 +287,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("node", node_of(n.cell).0),
                 number("solidity", n.solidity.into()),
                 number("nearest", n.answer.nearest.into()),
+                // 0 where no cell was read: the box covers no pixel or reaches the near plane.
                 number("held", n.answer.decisive.map_or(0.0, |(_, held)| held.into())),
                 integer("reads", n.answer.reads),
                 switch("hidden", n.answer.is_hidden),
@@ -308,6 +318,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence(context),
             Self::Transferred(n) => transfer_sentence::<S>(n),
             Self::Projected(n) => format!(
+                // "Now": the others were drawn with an earlier cell, were culled, or found no budget.
                 "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} \
                  {prims}s that meet it are drawn now, {} of the budget are left.",
                 node_of(n.cell),
@@ -326,6 +337,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 short(100.0 * n.most),
                 if n.share > n.most { "the budget grows by half" } else { "that is enough" }
             ),
+            // Not the same to a student: a spent budget may leave out what is visible, an empty front has
+            // left nothing in view.
             Self::Ended(n) if n.spent => format!("The budget is spent after {} cells.", n.cells),
             Self::Ended(n) => {
                 format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left)
@@ -359,6 +372,7 @@ fn seed_sentence(n: &Seeded) -> String {
 fn comparison_sentence<S: Cellular>(n: &Compared) -> String {
     let name = format!("The {} {}", S::PRIM, n.prim);
     let end = if n.is_hidden { "it is hidden" } else { "it is drawn" };
+    // Buffers hold 1/w; sentences give depths, of which the greater is the farther.
     match n.depths.map(|depths| depths.map(|depth| short(1.0 / depth))) {
         Some([nearest, held]) => format!(
             "{name} begins at depth {nearest}, and the farthest that is drawn where it would show is at \
@@ -380,6 +394,7 @@ fn query_sentence(n: &Queried) -> String {
                 depth(held)
             )
         }
+        // It is in view, but nothing of it could be drawn.
         (true, None) => format!("Node {node} covers no pixel's center: it is hidden."),
         (false, Some((_, held))) => {
             format!(
@@ -397,6 +412,8 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let (a, b) = (node_of(n.a), node_of(n.b));
     // The formula of line 1 with names, then with numbers.
     let part = if n.along == 1.0 { "ρ(A)" } else { "(v · n) ρ(A)" };
+    // The same division as the run's: equal results say how primitives were counted, or that it does not
+    // matter.
     let (name, share) = if n.share == n.held as f32 / n.most.max(1) as f32 {
         ("|A| / ρ_max", format!("{} / {}", n.held, n.most))
     } else {
@@ -405,6 +422,7 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let product =
         if n.along == 1.0 { short(n.of_a) } else { format!("{} × {}", short(n.along), short(n.of_a)) };
     let terms = format!("{share} + {product} = {}", short(n.sum()));
+    // Why a penalty is due, in terms of the ray that the picture shows.
     let star = if n.star_shaped {
         String::new()
     } else {
@@ -414,6 +432,7 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
             short(n.solidity)
         )
     };
+    // Old and new value together explain why a cell moves in the queue.
     let before = match n.before {
         Some(v) if n.keeps => format!(" It keeps the {} that it has in the front.", short(v)),
         Some(v) => format!(" It had {} in the front.", short(v)),
@@ -476,6 +495,7 @@ pub fn draw<S: Cellular + Faces>(
         }
         Some(Evidence::Compared(n)) => evidence::outline(scene, n.prim, to),
         Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),
+        // About all cells, so there is no place to point at.
         Some(Evidence::Bounded(_) | Evidence::Ended(_)) | None => {}
     }
 }
@@ -519,6 +539,8 @@ fn outline<S: Cellular>(
     to: &mut Drawing<S::Vector>,
 ) {
     debug_assert_eq!(cell_of(node_of(cell)), Some(cell), "a cell and its node name each other");
+    // By the edges of the cell: the boxes of tetrahedra overlap, and the faces matter that solidity goes
+    // through.
     for edge in index.cells.any().edges(cell) {
         to.line(layer, role, Subject::Node(node_of(cell)), edge);
     }

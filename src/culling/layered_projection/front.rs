@@ -29,6 +29,7 @@ const GONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 struct Entry {
     solidity: f32,
+    // The time stamp of Section 4.2. It also gives a stale entry away: the cell has a later one.
     turn: u32,
     cell: CellId,
 }
@@ -37,6 +38,9 @@ impl Ord for Entry {
     /// The heap's greatest is the least solid. Ties leave first in, first out, by the time stamp of
     /// Section 4.2.
     fn cmp(&self, other: &Self) -> Ordering {
+        // Both the other way round, since the heap has its greatest on top. Empty cells that the Eye looks
+        // through all have solidity 0: without the time stamp they would leave as the heap happens to lie,
+        // and the front would not grow evenly around the Eye.
         other.solidity.total_cmp(&self.solidity).then(other.turn.cmp(&self.turn))
     }
 }
@@ -47,6 +51,8 @@ impl PartialOrd for Entry {
 }
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
+        // Equality has to follow the order; of two entries of one frame it is never true, since no turn comes
+        // twice.
         self.cmp(other).is_eq()
     }
 }
@@ -87,6 +93,7 @@ impl Front {
 
     /// Empties it for so many cells.
     pub fn clear(&mut self, cells: usize) {
+        // The buffers stay, so that a frame begins without new memory.
         self.heap.clear();
         self.cells.clear();
         self.cells.resize(cells, Place::default());
@@ -113,6 +120,7 @@ impl Front {
     pub fn put(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
         self.turns += 1;
         self.cells[cell.at()] = Place { solidity, turn: self.turns, is_star_shaped };
+        // The old entry stays where it is: finding it would take a walk through the heap.
         self.heap.push(Entry { solidity, turn: self.turns, cell });
         self.drop_stale();
     }
@@ -124,10 +132,12 @@ impl Front {
     /// Takes out a cell that is not projected.
     #[inline]
     pub fn leave_out(&mut self, cell: CellId) {
+        // No entry has this turn, so that of the cell is stale from here on.
         self.cells[cell.at()].turn = GONE;
         self.drop_stale();
     }
     fn drop_stale(&mut self) {
+        // Each entry is dropped once at most, so this costs no more than putting it in did.
         while self.heap.peek().is_some_and(|entry| !self.is_current(entry)) {
             self.heap.pop();
         }
@@ -137,6 +147,7 @@ impl Front {
         self.cells[entry.cell.at()].turn == entry.turn
     }
     fn waiting(&self) -> impl Iterator<Item = &Entry> {
+        // Stale entries below the top are passed over, since a reader may not remove them.
         self.heap.iter().filter(|entry| self.is_current(entry))
     }
     /// How many cells wait. O(entries of the heap).

@@ -32,6 +32,7 @@ impl<S: Cellular> Index<S> {
         // 1. and 2.: assigning takes the larger part of the time, so it gets the larger part of the bar.
         progress.report(0.0, "dividing space into cells");
         let cells = Cells::build(scene, params, &Part { whole: progress, start: 0.0, length: 0.3 })?;
+        // "A naive assignment" (Section 4.3): every cell that a primitive meets lists it.
         let assignment =
             Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.7 })?;
         Some(Self::of(scene, params, cells, assignment))
@@ -41,6 +42,8 @@ impl<S: Cellular> Index<S> {
     /// # Errors
     /// Why they do not fit the scene and the parameters.
     pub fn restore(scene: &Arc<Scene<S>>, params: &Params, bytes: &[u8]) -> Result<Self, String> {
+        // The key comes from what was asked for, so the bytes have to prove that they fit. ρ_max is not among
+        // them: it is counted again.
         let (cells, assignment) = saved::read(bytes, &Key::of(scene, params), scene)?;
         Ok(Self::of(scene, params, cells, assignment))
     }
@@ -58,6 +61,7 @@ impl<S: Cellular> Index<S> {
 
 /// The node that stands for a cell.
 pub fn node_of(cell: CellId) -> NodeId {
+    // 0 is the root.
     NodeId(cell.0 + 1)
 }
 
@@ -87,6 +91,7 @@ impl<S: Cellular> Hierarchy<S> for Index<S> {
         cell_of(node).map_or(self.assignment.all(), |cell| self.assignment.own(cell))
     }
     fn held(&self, node: NodeId) -> usize {
+        // |c|, which solidity is about: shared primitives count in each of their cells.
         cell_of(node).map_or(self.assignment.all().len(), |cell| self.assignment.held(cell) as usize)
     }
     fn edges(&self, node: NodeId) -> Option<Vec<[<S as Space>::Vector; 2]>> {
@@ -96,6 +101,7 @@ impl<S: Cellular> Hierarchy<S> for Index<S> {
         }
     }
     fn save(&self) -> Option<Vec<u8>> {
+        // Made when asked for: kept as bytes too, the tables would take twice the memory.
         Some(saved::write(&self.key, &self.cells, &self.assignment))
     }
     fn bytes(&self) -> usize {

@@ -124,11 +124,13 @@ impl Default for Params {
             budget: Budget::Percent(10.0),
             // The paper's (Section 4.3, footnote 4).
             leaf_size: 5,
+            // This and `update` are not the paper's, but find more (see the module).
             transfer: Transfer::Whole,
             // The paper gives none. A third of a full cell: enough that a cell is not taken behind an
             // occluder, little enough that it is not taken after all others.
             penalty: 30.0,
             update: Update::StarShaped,
+            // The extensions of Section 6 are off: by default the method is that of Sections 3 and 4.
             occupancy: Occupancy::Count,
             seeds: 1,
             queries: false,
@@ -139,6 +141,8 @@ impl Default for Params {
     }
 }
 
+// Figures 4 and 5. Line 7 also asks for the view: Section 4.2 culls by the frustum without saying in which
+// line.
 const CODE: &[CodeLine] = &[
     CodeLine { label: "RenderingLoop:1", text: "while the front F is not empty" },
     CodeLine { label: "RenderingLoop:2", text: "  c := the cell of least solidity of F" },
@@ -180,6 +184,7 @@ macro_rules! section {
 impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     type Params = Params;
     type Index = Index<S>;
+    // Solidity depends on the Eye and is found anew in every frame, as in the paper.
     type Memory = ();
     type State = Front;
     type Note = Evidence<S>;
@@ -208,6 +213,7 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         progress: &dyn Progress,
     ) -> Result<Option<Index<S>>, String> {
         match saved {
+            // Bytes that do not fit are an error, not a reason to build in silence: building may take long.
             Some(bytes) => Index::restore(scene, params, bytes).map(Some),
             None => Ok(Index::build(scene, params, progress)),
         }
@@ -267,10 +273,10 @@ fn extension_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
 }
 
 impl<S: Cellular + Faces> State<S, LayeredProjection> for Front {
-    // A copy takes up to 28 bytes a cell, a note with its events about 100. So with 100,000 cells (the paper's
-    // largest scene has 60,000, Section 5.1) all keyframes together take less memory than the film, however
-    // long it is; `tests` holds it to that. Replaying this many notes takes some milliseconds, so that
-    // seeking stays within one displayed frame.
+    // A copy takes up to 28 bytes a cell, a note with its events about 100. So with 100,000 cells (the
+    // paper's largest scene has 60,000, Section 5.1) all keyframes together take less memory than the film,
+    // however long it is; `tests` holds it to that. Replaying this many notes takes some milliseconds, so
+    // that seeking stays within one displayed frame.
     const KEYFRAME_NOTES: usize = 1 << 15;
     fn begin(&mut self, frame: &Frame<'_, S, LayeredProjection>) {
         self.clear(frame.index.count());
@@ -285,6 +291,7 @@ impl<S: Cellular + Faces> Shown<S> for LayeredProjection {
         explain::draw(moment.state, &moment.frame, moment.note, to);
     }
     const PICTURES: &'static [&'static str] = picture::PICTURES;
+    // No picture shows depths, so their scale is not used.
     fn picture(moment: &Moment<'_, S, Self>, which: usize, _: DepthScale) -> Drawing {
         picture::picture(moment.state, moment.notes, which)
     }

@@ -33,6 +33,7 @@ fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
     heading(&mut to, 0.0, format!("The front, least solid first: {count} cells"));
     heading(&mut to, 300.0, format!("Projected, the latest first: {}", front.projected().len()));
     // On the left the queue; bars are relative to the longest one shown.
+    // Not 0, since widths are divided by it: all cells of a front may have solidity 0.
     let most = queue.iter().map(|q| q.solidity).fold(f32::MIN_POSITIVE, f32::max);
     for (row, queued) in queue.iter().enumerate() {
         let y = TOP_PT + ROW_PT * row as f32;
@@ -45,6 +46,7 @@ fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
             format!("{}. node {}: {}{how}", row + 1, node_of(queued.cell), short(queued.solidity)),
         );
         let width = 110.0 * queued.solidity / most;
+        // In two colors, since a penalized cell waits for where it is and not only for what stands before it.
         let role = if queued.is_star_shaped { Role::Undecided } else { Role::Hidden };
         bar(&mut to, role, Subject::Node(node_of(queued.cell)), [150.0, y - 7.0, 150.0 + width.max(0.5), y]);
     }
@@ -85,10 +87,12 @@ fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
     let width = (right - left) / taken.len().div_ceil(each).max(1) as f32;
     // One bar for several cells if there are too many; a chunk draws if one of its cells does.
     for (at, some) in taken.chunks(each).enumerate() {
+        // The most solid, not their mean, which would flatten the steps between layers.
         let Some(tallest) = some.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
         let draws = some.iter().any(|t| t.2 > 0);
         let x = left + width * at as f32;
         let y = bottom - (bottom - top) * tallest.1 / most;
+        // A cell that draws nothing costs no budget: those bars show the price of the traversal alone.
         let role = if draws { Role::Visible } else { Role::Outside };
         bar(
             &mut to,

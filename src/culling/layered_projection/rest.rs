@@ -37,6 +37,7 @@ impl<S: Faces> Rest<S> {
     }
     /// Whether a box is hidden; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
+        // Nobody listens to single reads: the walk notes the answer as a whole.
         hides(&mut self.buffer, bounds, Nobody)
     }
     /// Draws these primitives, not yet among the frame's, and returns the hidden ones of them.
@@ -47,6 +48,8 @@ impl<S: Faces> Rest<S> {
     /// What [`Rest::draw`] compared for a primitive: its nearest depth, and the farthest that is drawn where
     /// it would show, `1/w`. `None` where the view volume cuts it or it covers no pixel.
     pub fn depths(&self, scene: &Scene<S>, prim: PrimId) -> Option<[f32; 2]> {
+        // Right also after the primitive was drawn, as long as it is no single pixel: until the pyramid is
+        // refreshed it holds what it held.
         let (extent, held) = self.buffer.operands(scene, prim, &Options::default())?;
         Some([extent.nearest, held])
     }
@@ -81,6 +84,7 @@ impl<S: Faces> Doubt<'_, S> {
 
     /// Marks what the contents of a box could change.
     pub fn of_box(&mut self, bounds: &Aabb<S::Vector>) {
+        // Without bounds in the image it could change any pixel.
         self.is_all |= !self.is_bounded(bounds);
     }
     /// Marks what a primitive could change; whether that is known.

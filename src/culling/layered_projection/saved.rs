@@ -2,8 +2,8 @@
 //! against scene and parameters.
 //!
 //! Little-endian: the magic with the version, SHA-256 of the scene in hex, the parameters that the cells
-//! depend on, six tables with their lengths (the points or the region, the cells, four of the assignment), and
-//! SHA-256 of all that.
+//! depend on, six tables with their lengths (the points or the region, the cells, four of the assignment),
+//! and SHA-256 of all that.
 
 use sha2::{Digest, Sha256};
 
@@ -31,12 +31,14 @@ pub struct Key {
 
 impl Key {
     pub fn of<S: Cellular>(scene: &Scene<S>, params: &Params) -> Self {
+        // Only what cells and assignment depend on: budgets and penalties are a matter of the frame.
         // Only one of the tessellations depends on the seed.
         let seed = if params.tessellation == CellKind::Delaunay { params.seed } else { 0 };
         let tessellation = params.tessellation.number() as u32;
         Self { scene: scene.hash_hex(), params: [tessellation, params.leaf_size, seed] }
     }
     fn describe(params: [u32; 3]) -> String {
+        // The numbers come out of a file, so the first of them may stand for no tessellation.
         let [tessellation, leaf_size, seed] = params;
         format!(
             "tessellation={} leaf-size={leaf_size} seed={seed}",
@@ -107,6 +109,7 @@ pub fn read<S: Cellular>(
     }
     let (lengths, mut words) = words.split_first_chunk::<TABLES>().ok_or_else(damaged)?;
     let mut tables: [Vec<u32>; TABLES] = Default::default();
+    // Table by table, so that no length reaches past the words that there are.
     for (table, length) in tables.iter_mut().zip(lengths) {
         let (here, rest) = words.split_at_checked(*length as usize).ok_or_else(damaged)?;
         (*table, words) = (here.to_vec(), rest);
@@ -127,6 +130,7 @@ fn cells_of<S: Cellular>(tessellation: u32, points: &[u32], cells: &[u32]) -> Op
     let point = |p: &[u32]| S::Vector::from_fn(|a| f32::from_bits(p[a]));
     let points: Vec<S::Vector> = points.chunks_exact(S::Vector::AXES).map(point).collect();
     if CellKind::ALL.get(tessellation as usize) == Some(&CellKind::Delaunay) {
+        // Four corners and four neighbors, in flatland too, where the last of each is not used.
         let (rows, []) = cells.as_chunks::<8>() else { return None };
         let simplex = |[a, b, c, d, e, f, g, h]: &[u32; 8]| Simplex {
             vertices: [*a, *b, *c, *d],
@@ -134,6 +138,7 @@ fn cells_of<S: Cellular>(tessellation: u32, points: &[u32], cells: &[u32]) -> Op
         };
         return SimplexCells::of_tables(points, rows.iter().map(simplex).collect()).map(Cells::Simplices);
     }
+    // Boxes come out of a tree, so its region and splits say all of them.
     let (&[min, max], (rows, [])) = (&points[..], cells.as_chunks::<2>()) else { return None };
     let nodes: Vec<(u32, f32)> = rows.iter().map(|[axis, split]| (*axis, f32::from_bits(*split))).collect();
     BoxCells::of_tables(Aabb { min, max }, &nodes).map(Cells::Boxes)

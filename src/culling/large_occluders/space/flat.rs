@@ -29,6 +29,7 @@ impl Shape for Flat {
         scene.convex_polygons(progress)
     }
     fn area(corners: &[DVec2]) -> DVec2 {
+        // A quarter turn counter-clockwise, which keeps the length of the segment.
         (corners[1] - corners[0]).perp()
     }
     fn edge(corners: &[DVec2], i: usize) -> Edge<DVec2> {
@@ -65,6 +66,7 @@ const TANGENTS: [Option<[u8; 2]>; 9] = [
     Some([0, 3]),
     // Beside it.
     Some([0, 2]),
+    // On or in the box every line through the point meets it.
     None,
     Some([1, 3]),
     // Above it.

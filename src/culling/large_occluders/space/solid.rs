@@ -36,6 +36,8 @@ impl Shape for Solid {
         scene.convex_polygons(progress)
     }
     fn area(corners: &[DVec3]) -> DVec3 {
+        // A fan from the first corner: differences are exact, where products of the coordinates themselves
+        // would cancel far from the origin.
         let origin = corners[0];
         corners.windows(2).map(|w| (w[0] - origin).cross(w[1] - origin)).sum::<DVec3>() * 0.5
     }
@@ -44,6 +46,8 @@ impl Shape for Solid {
         Edge { from, along: to - from }
     }
     fn edge_key(corners: &[u32], i: usize) -> ([u32; 2], bool) {
+        // Two polygons beside each other run along their edge in opposite senses: the pair names the edge,
+        // the sense is told apart.
         let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
         ([a.min(b), a.max(b)], a < b)
     }
@@ -60,6 +64,8 @@ impl Shape for Solid {
         let silhouette = silhouette(edge.from, bounds);
         let bits = sides(silhouette, edge, bounds);
         match TOUCHING[usize::from(silhouette.count == 6)][bits] {
+            // All signs alike: the edge, seen as a point, lies inside the outline, so its line meets the box.
+            // Which sign it is depends on whether the edge runs toward the box or away from it.
             [NONE, _] if silhouette.count == 0 || bits == 0 || bits + 1 == 1 << silhouette.count => None,
             // Signs that no convex outline has: two lines so close that rounding swapped them.
             [NONE, _] => tangents_naive(edge, bounds),
@@ -97,6 +103,8 @@ fn sides(silhouette: &Silhouette, edge: &Edge<DVec3>, bounds: &Aabb<Vec3>) -> us
     for (i, line) in silhouette.lines[..silhouette.count].iter().enumerate() {
         let [b, c] = line.axes;
         let arm = |axis: usize| side(bounds, line.corner, axis) - edge.from[axis];
+        // Exact differences and two rounded products: a wrong sign takes a near tie, which the bound
+        // `ROUNDING` of a relation covers.
         bits |= usize::from((edge.along[b] * arm(c) > edge.along[c] * arm(b)) != line.flip) << i;
     }
     bits
@@ -125,6 +133,7 @@ const fn silhouettes() -> [Silhouette; 27] {
     let mut all = [Silhouette { lines: [Line { corner: 0, axes: [0, 0], flip: false }; 6], count: 0 }; 27];
     let mut code = 0;
     while code < 27 {
+        // 13 is 1 + 3 + 9, inside all three slabs: from there the box has no outline.
         if code != 13 {
             all[code] = outline([code % 3, code / 3 % 3, code / 9]);
         }
@@ -155,6 +164,7 @@ const fn outline(codes: [usize; 3]) -> Silhouette {
             Line { corner: at, axes: [(axis + 1) % 3, (axis + 2) % 3], flip: at >> axis & 1 == 1 };
         all.count += 1;
         at ^= 1 << axis;
+        // Closed after 4 edges where one face is seen, after 6 where two or three are.
         if at == start || all.count == 6 {
             break;
         }
@@ -204,6 +214,7 @@ const fn touching(count: usize) -> [[u8; 2]; 64] {
             }
             i += 1;
         }
+        // A line through a convex outline changes sides twice. Other codes come from rounding and stay empty.
         if changes == 2 {
             all[bits] = found;
         }
