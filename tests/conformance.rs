@@ -365,19 +365,20 @@ fn nothing_visible_is_missed_in_space() {
     nothing_visible_is_missed(&solid_scenes());
 }
 
-/// Scenes where sizes, distances or differences vanish: one primitive, all at one place, all alike, all in one
-/// plane (line), and corners on a coarse grid, where dividing planes fall.
+/// A corner of a primitive by its number, with whole numbers at random below a bound.
+type Corner<'a, V> = &'a mut dyn FnMut(&mut dyn FnMut(u32) -> f32, u32) -> V;
+
+/// Scenes where sizes, distances or differences vanish: one primitive, all at one place, all alike, all in
+/// one plane (line), and corners on a coarse grid, where dividing planes fall.
 fn degenerate<S: Space>(make: fn([u32; 3]) -> S::Corners) -> Vec<Arc<Scene<S>>> {
     let mut rng = Pcg32::new(9, 71);
     let mut grid = move |n: u32| (rng.next_u32() % n) as f32;
-    let mut scene =
-        |name: &str, n: u32, corner: &mut dyn FnMut(&mut dyn FnMut(u32) -> f32, u32) -> S::Vector| {
-            let points =
-                (0..n * S::CORNERS as u32).map(|k| corner(&mut grid, k % S::CORNERS as u32)).collect();
-            let first = |k: u32| k * S::CORNERS as u32;
-            let prims = (0..n).map(|k| make([first(k), first(k) + 1, first(k) + 2])).collect();
-            Arc::new(Scene::new(Parts::simple(name, points, prims)).expect("a valid scene"))
-        };
+    let mut scene = |name: &str, n: u32, corner: Corner<'_, S::Vector>| {
+        let points = (0..n * S::CORNERS as u32).map(|k| corner(&mut grid, k % S::CORNERS as u32)).collect();
+        let first = |k: u32| k * S::CORNERS as u32;
+        let prims = (0..n).map(|k| make([first(k), first(k) + 1, first(k) + 2])).collect();
+        Arc::new(Scene::new(Parts::simple(name, points, prims)).expect("a valid scene"))
+    };
     let apart = |corner: u32| S::Vector::from_fn(|a| if a as u32 == corner { 1.0 } else { 0.25 });
     vec![
         scene("one primitive", 1, &mut |_, corner| apart(corner)),

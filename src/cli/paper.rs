@@ -20,8 +20,8 @@ use crate::scene::{AnyScene, LoadOptions, Part};
 #[command(
     after_help = "Example:\n  cullscope paper coorg-teller-table-1\n  cullscope paper coorg-teller-table-3 \
                   --scene generate:city --format text,csv,svg --out tables\n  cullscope paper --list\n  \
-                  cullscope paper coorg-teller\n\nA file for each format but text, which is printed. Times are wall clock on one thread; \
-                  measure with a release build."
+                  cullscope paper coorg-teller\n\nA file for each format but text, which is printed. Times \
+                  are wall clock on one thread; measure with a release build."
 )]
 pub(super) struct Args {
     /// Which tables; --list names them. The key of a paper lists its figures and tables instead

@@ -227,7 +227,10 @@ mod tests {
         }
     }
 
-    fn check<V: Vector>(fault: fn(&KdTree<V>, &[(PrimId, Aabb<V>)]) -> Option<String>) {
+    /// [`Hierarchy::fault`] of a space.
+    type Fault<V> = fn(&KdTree<V>, &[(PrimId, Aabb<V>)]) -> Option<String>;
+
+    fn check<V: Vector>(fault: Fault<V>) {
         let mut dice = Dice::new(7);
         for case in 0..300 {
             let n = 1 + dice.below(300) as usize;
@@ -241,8 +244,8 @@ mod tests {
 
     #[test]
     fn random_builds_are_well_formed_in_two_three_and_four_dimensions() {
-        check::<Vec2>(|tree, boxes| Hierarchy::<Flat>::fault(tree, boxes));
-        check::<Vec3>(|tree, boxes| Hierarchy::<Solid>::fault(tree, boxes));
+        check::<Vec2>(Hierarchy::<Flat>::fault);
+        check::<Vec3>(Hierarchy::<Solid>::fault);
         // No scene has four dimensions.
         check::<Vec4>(|_, _| None);
     }

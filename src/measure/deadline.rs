@@ -112,8 +112,8 @@ impl<S: Drawable> Paced<S> {
         self.drawn.push((*view, frame.list.prims.len() as u32));
         frame.list
     }
-    /// As [`Paced::cull`], with the time of each stage of the frame by name, milliseconds; a frame that ends at
-    /// a deadline draws as it culls, and has one stage.
+    /// As [`Paced::cull`], with the time of each stage of the frame by name, milliseconds; a frame that ends
+    /// at a deadline draws as it culls, and has one stage.
     pub fn stages_ms(&mut self, view: &View<S>) -> (DrawList<S>, BTreeMap<&'static str, f64>) {
         let mut stages = BTreeMap::new();
         if time_of(&*self.run).is_some() {

@@ -31,8 +31,8 @@ pub trait Reel: Send + Sync {
     /// What event `at` is about; of evidence, what it was gathered about.
     fn subject(&self, at: usize) -> Subject;
     /// The evidence on which the decision that is event `at` rests: the latest before it about the same node
-    /// or primitive, the primitive's object, or the node that is being visited; of several the one that claims
-    /// the verdict. `None` if `at` is no decision, or rests on none.
+    /// or primitive, the primitive's object, or the node that is being visited; of several the one that
+    /// claims the verdict. `None` if `at` is no decision, or rests on none.
     fn evidence_of(&self, at: usize) -> Option<usize>;
     /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
     /// Lines of pseudocode, queueing and leaving the node that was decided change nothing about that.
@@ -65,7 +65,8 @@ pub trait Film<S: Space>: Reel {
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
 }
 
-/// The evidence of a film of method `M`, with the event that each piece is; nothing if it is another method's.
+/// The evidence of a film of method `M`, with the event that each piece is; nothing if it is another
+/// method's.
 pub fn notes<S: Space, M: Method<S>>(film: &dyn Film<S>) -> impl Iterator<Item = (usize, &M::Note)> {
     let own = film.as_any().downcast_ref::<Footage<S, M>>();
     own.into_iter().flat_map(|footage| {
@@ -227,8 +228,8 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
                     let around = open.iter().rev().map(|n| of_node[n.at()]).find(|at| *at != NONE);
                     let own = [of_prim[prim.at()], of_object[self.scene.object_of(prim).at()]];
                     let known = own.into_iter().chain(around).filter(|at| *at != NONE);
-                    // An object may have been decided for good in another node: what claims the verdict counts
-                    // before what came later.
+                    // An object may have been decided for good in another node: what claims the verdict
+                    // counts before what came later.
                     let claims = known.clone().filter(|at| self.claims(*at, verdict));
                     claims.max().or(known.max()).unwrap_or(NONE)
                 }

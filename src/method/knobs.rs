@@ -272,7 +272,8 @@ impl Knobs for Apply<'_> {
             if ends {
                 Budget::EXPECTED.to_owned()
             } else {
-                "a number of primitives such as 2000 or a share such as 10%: this method cannot be ended at a time"
+                "a number of primitives such as 2000 or a share such as 10%: this method cannot be ended at \
+                 a time"
                     .to_owned()
             }
         };

@@ -1,6 +1,6 @@
 //! The papers: what they show, made anew, and what they measured, measured anew. One paper, one folder:
-//! `figures` run methods and draw what their films say, and know no clock; `tables` run methods and take times,
-//! and draw no worlds.
+//! `figures` run methods and draw what their films say, and know no clock; `tables` run methods and take
+//! times, and draw no worlds.
 //!
 //! A paper's numbers stand where they are compared, with its figures and tables; its title and DOI stand on
 //! the card of its method.

@@ -20,7 +20,8 @@ use super::simd::{self, Lanes, Work};
 use crate::geometry::PixelRect;
 
 /// Level of the values that stand for one tile: 16 pixels are one AVX-512 vector a row, and 256 depths are
-/// 1 KiB. Smaller tiles would be refreshed more often, larger ones would redo more pixels that have not changed.
+/// 1 KiB. Smaller tiles would be refreshed more often, larger ones would redo more pixels that have not
+/// changed.
 const TILE_LEVEL: u32 = 4;
 /// Side of a tile in pixels.
 const TILE_PX: u32 = 1 << TILE_LEVEL;

@@ -9,7 +9,7 @@ pub struct StandIn<V> {
     pub node: NodeId,
     /// The box.
     pub bounds: Aabb<V>,
-    /// Linear color and coverage of each face, premultiplied: two faces an axis, the lower one first; four are
-    /// used in flatland.
+    /// Linear color and coverage of each face, premultiplied: two faces an axis, the lower one first; four
+    /// are used in flatland.
     pub faces: [[f32; 4]; 6],
 }

@@ -134,7 +134,7 @@ mod tests {
     fn signs_are_those_of_exact_expansions() {
         let mut dice = Dice::new(3);
         let (mut ties, mut inside) = (0, 0);
-        for case in 0..4000 {
+        for case in 0..6000 {
             // Small grids, where ties abound; large ones; numbers of very different size; and no grid at all.
             let mut number = || {
                 let v = dice.bits();

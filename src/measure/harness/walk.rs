@@ -12,8 +12,8 @@ use crate::scene::{Part, Progress, Scene, figure_eight_path};
 
 /// How [`times_of`] takes times, as a note under a table.
 pub const WALK_TIMES: &str = "Wall-clock times on one thread, interleaved; of each frame the median of three \
-                              rounds, then the mean over the frames of a walk, at walking speed where no other \
-                              is named.";
+                              rounds, then the mean over the frames of a walk, at walking speed where no \
+                              other is named.";
 /// Stretches that a long walk is measured on, evenly spaced.
 const STRETCHES: usize = 8;
 /// Frames before each stretch that are culled and not measured, so that what is kept from frame to frame is

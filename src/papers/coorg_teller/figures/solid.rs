@@ -163,15 +163,18 @@ const POLYGON: [Vec3; 4] = [
     Vec3::new(-1.3, 1.1, 0.0),
 ];
 
-/// The box of Figure 6, and the supporting and the separating plane through each edge of the occluder.
-fn planes_of_polygon() -> (Aabb<Vec3>, Vec<Option<[Tangent<Vec3>; 2]>>) {
+/// The supporting and the separating plane through an edge.
+type Planes = [Tangent<Vec3>; 2];
+
+/// The box of Figure 6, and the planes through each edge of the occluder.
+fn planes_of_polygon() -> (Aabb<Vec3>, Vec<Option<Planes>>) {
     let target = bounds([-0.9, -0.8, -4.6], [0.8, 0.8, -3.0]);
     let blockers = Blockers::<Solid>::new(&POLYGON, &[vec![0, 1, 2, 3]]);
     (target, blockers.planes(0, &target, Vec3::new(0.0, 0.0, 4.0)))
 }
 
 /// Draws the occluder, the box, and both planes through an edge.
-fn draw_planes(target: &Aabb<Vec3>, [supporting, separating]: &[Tangent<Vec3>; 2]) -> Drawing<Vec3> {
+fn draw_planes(target: &Aabb<Vec3>, [supporting, separating]: &Planes) -> Drawing<Vec3> {
     let mut world = Drawing::default();
     world.push(Layer::Scene, Role::Occluder, Subject::None, Mark::Area(POLYGON.to_vec()));
     for (tangent, role, before, past) in

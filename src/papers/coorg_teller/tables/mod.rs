@@ -1,6 +1,6 @@
 //! The tables of Coorg and Teller, Section 4, and what Section 5 leaves open. They walk the scene's path
-//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a frame
-//! where the method remembers.
+//! `figure 8` (where a scene has none, one through its middle), at [`crate::geometry::WALKING_STEP_M`] a
+//! frame where the method remembers.
 
 mod both;
 mod nodes;

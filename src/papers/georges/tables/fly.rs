@@ -1,5 +1,5 @@
-//! A flight along the scene's own path: everything drawn, view-frustum culling and obscuration culling in turn
-//! at each frame.
+//! A flight along the scene's own path: everything drawn, view-frustum culling and obscuration culling in
+//! turn at each frame.
 
 use std::sync::Arc;
 

@@ -15,8 +15,9 @@ use crate::truth::missing;
 
 /// Side of an image, pixels.
 const SIDE: u32 = 240;
-/// The orders: name, method, and its settings.
-const ORDERS: [(&str, &str, &[(&str, &str)]); 3] = [
+/// An order of drawing: its name, the method, and its settings.
+type Order = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
+const ORDERS: [Order; 3] = [
     ("centroid", CENTROID, &[("budget", "10%")]),
     ("octree", LAYERED_PROJECTION, &[("budget", "10%"), ("tessellation", "octree"), ("leaf-size", "5")]),
     ("Delaunay", LAYERED_PROJECTION, &[("budget", "10%"), ("tessellation", "delaunay"), ("leaf-size", "5")]),

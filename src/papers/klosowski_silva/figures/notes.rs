@@ -19,7 +19,8 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Applies the notes of a film to a front, as the film itself does, until one more cell would be projected.
+    /// Applies the notes of a film to a front, as the film itself does, until one more cell would be
+    /// projected.
     pub fn after(film: &dyn Film<Flat>, cells: usize) -> Self {
         let mut front = Front::default();
         front.clear(film.hierarchy().node_count() - 1);
