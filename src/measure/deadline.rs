@@ -130,6 +130,8 @@ impl<S: Drawable> Paced<S> {
             }
             last = name.map(|name| (name, now));
         };
+        // Until the method names its first stage, the state of the frame is cleared.
+        next(Some("clear"));
         let list = self.run.stages(view, &mut |name| next(Some(name)));
         next(None);
         (list, stages)
@@ -233,6 +235,24 @@ mod tests {
     fn frames_end_at_their_deadline_and_films_show_them() {
         ends(&samples::soup::<Flat>(1, 3000));
         ends(&samples::soup::<Solid>(1, 3000));
+    }
+
+    fn names_its_stages<S: Methods + Drawable>(scene: &Arc<Scene<S>>) {
+        let view = random_views(scene, 1, 3)[0];
+        for entry in S::methods() {
+            let ready =
+                || entry.ready(scene, &Settings::default(), &Quiet).expect("defaults").expect("ready");
+            let (list, stages) = Paced::new(ready(), scene).stages_ms(&view);
+            let key = entry.card().key;
+            assert_eq!(list, ready().cull(&view), "{key}: the same frame");
+            assert!(stages.len() > 1 && stages.values().all(|ms| *ms >= 0.0), "{key}: {stages:?}");
+        }
+    }
+
+    #[test]
+    fn every_method_names_the_stages_of_its_frames() {
+        names_its_stages(&samples::soup::<Flat>(2, 200));
+        names_its_stages(&samples::soup::<Solid>(2, 200));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The explorer's window: panels that read [`State`] and answer in commands.
 //!
 //! A panel is `fn(&State, &mut Ui, &mut Answers)`: it shows the state and adds the commands that the person
-//! gives. What only the screen needs (cached drawings, half-typed text) is kept in [`cache::Cache`],
+//! gives. What only the screen needs (cached drawings, half-typed text) is kept in `cache::Cache`,
 //! and each panel is given its part.
 
 mod cache;

@@ -12,11 +12,11 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let size = ui.ctx().content_rect().size();
     let width = (size.x * 0.8).min(860.0);
     ui.set_width(width);
-    ui.heading("Tables of the paper");
+    ui.heading("Tables of the papers");
     let on = state
         .staged()
-        .map_or("on a generated building and city".to_owned(), |s| format!("on {}", s.scene().name()));
-    ui.label(format!("Coorg and Teller 1997, measured {on}, beside the paper's own figures."));
+        .map_or("on generated scenes like the paper's".to_owned(), |s| format!("on {}", s.scene().name()));
+    ui.label(format!("Measured {on}, beside the paper's own figures."));
     choices(state, width, ui, answers);
     let Some(measured) = state.measured.clone() else { return };
     ui.separator();

@@ -301,8 +301,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
     }
 
-    /// Step 3: draws the primitives of a node that the planes `cutting` cut, but for detail objects that are out
-    /// of view or that the occluders near them hide.
+    /// Step 3: draws the primitives of a node that the planes `cutting` cut, but for detail objects that are
+    /// out of view or that the occluders near them hide.
     fn gather(&mut self, id: NodeId, cutting: u8) {
         let index = self.index;
         if !self.params.detail_objects {

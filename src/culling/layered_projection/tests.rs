@@ -522,3 +522,19 @@ fn keyframes_take_less_memory_than_the_film() {
         assert!(copy < recorded(note), "{copy} bytes a keyframe, {} recorded", recorded(note));
     }
 }
+
+#[test]
+fn a_penalty_is_a_real_number_in_its_range() {
+    let knobs = |text: &str| {
+        Flat::method("layered-projection").expect("listed").knobs(&settings(&[("penalty", text)]))
+    };
+    let printed = |text: &str| {
+        let all = knobs(text).expect("it fits");
+        all.into_iter().find(|(knob, _)| knob.name == "penalty").map(|(_, value)| value.to_string())
+    };
+    assert_eq!((printed("30"), printed("2.5")), (Some("30".into()), Some("2.5".into())));
+    for text in ["-1", "1001", "NaN", "inf", "much"] {
+        let error = knobs(text).expect_err("refused").to_string();
+        assert_eq!(error, format!("`penalty={text}`: expected a number from 0 to 1000"));
+    }
+}

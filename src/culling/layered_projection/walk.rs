@@ -287,8 +287,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Step 2: the cell that holds the Eye, or else the one closest to it (`findCell`, Section 4.2). A departure:
-    /// of those in view, since the front does not grow over cells that are not.
+    /// Step 2: the cell that holds the Eye, or else the one closest to it (`findCell`, Section 4.2). A
+    /// departure: of those in view, since the front does not grow over cells that are not.
     fn seed(&mut self) -> Option<Seeded> {
         let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else {
             return self.nearest_unreached();
