@@ -326,7 +326,7 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                 for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
                     let list = run.cull(&view);
                     let mut target = Target::new(&view);
-                    S::draw(&mut target, scene, &view, &list.prims, &Options::default());
+                    list.draw(&mut target, scene, &view, &Options::default());
                     let judged = truth.judge(scene, &view, &list.prims, &target);
                     if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());

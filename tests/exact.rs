@@ -61,7 +61,7 @@ fn look<S: Methods + Drawable>(
         let (list, cull_ms) = timed(|| run.cull(view));
         let draw = || {
             target.clear(view);
-            S::draw(&mut target, scene, view, &list.prims, &Options::default());
+            list.draw(&mut target, scene, view, &Options::default());
         };
         let draw_ms = timed(draw).1;
         let (judged, all_ms) = timed(|| truth.judge(scene, view, &list.prims, &target));

@@ -141,7 +141,7 @@ fn frames<S: World>(
         let ((list, stages_ms), cull_ms) = timed(|| run.stages_ms(view));
         let ((), draw_ms) = timed(|| {
             target.clear(view);
-            S::draw(&mut target, scene, view, &list.prims, &options);
+            list.draw(&mut target, scene, view, &options);
         });
         if let Some(path) = &args.image {
             let rgba = shade(&target, scene, view, background);

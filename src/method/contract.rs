@@ -6,7 +6,7 @@ use super::{Card, Knobs, Note, Observer};
 use crate::drawing::Drawing;
 use crate::geometry::{PrimId, Space, View};
 use crate::index::Hierarchy;
-use crate::raster::{DepthScale, StandIn};
+use crate::raster::{DepthScale, Drawable, Options, StandIn, Target};
 use crate::scene::{Progress, Scene};
 
 /// What a frame draws.
@@ -30,6 +30,14 @@ impl<S: Space> DrawList<S> {
         let mut ids = self.prims.clone();
         ids.sort_unstable();
         ids
+    }
+}
+
+impl<S: Drawable> DrawList<S> {
+    /// Draws the primitives into an image of a view. Stand-ins own no pixel of an item buffer: whoever shades
+    /// the image paints them over it.
+    pub fn draw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
+        S::draw(target, scene, view, &self.prims, options);
     }
 }
 
