@@ -104,6 +104,12 @@ impl Term {
     }
 }
 
+/// Whether a name of ours, which is ASCII, has a lower-case word in it. Allocates nothing, since every event is
+/// tested.
+fn has(name: &str, word: &str) -> bool {
+    word.is_empty() || name.as_bytes().windows(word.len()).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
+}
+
 /// A filter bound to a film.
 pub struct Applied<'a> {
     filter: &'a Filter,
@@ -129,7 +135,7 @@ impl Applied<'_> {
         let (reel, depth) = (self.film.reel, || self.film.moves.depth(at));
         let subject = reel.subject(at);
         match term {
-            Term::Kind(kind) => reel.kind(at).to_lowercase().contains(kind),
+            Term::Kind(kind) => has(reel.kind(at), kind),
             Term::Verdict(verdict) => event.verdict().is_some_and(|v| v.name().starts_with(verdict.as_str())),
             Term::Node(n) => subject == Subject::Node(NodeId(*n)),
             Term::Prim(p) => subject == Subject::Prim(PrimId(*p)),
@@ -146,7 +152,7 @@ impl Applied<'_> {
             Term::Deeper(d) => depth() > *d,
             Term::Shallower(d) => depth() < *d,
             Term::Word(word) => {
-                reel.kind(at).to_lowercase().contains(word)
+                has(reel.kind(at), word)
                     || event.verdict().is_some_and(|v| v.name().contains(word.as_str()))
                     || word.parse().is_ok_and(|id: u32| match subject {
                         Subject::Node(n) => n.0 == id,
