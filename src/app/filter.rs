@@ -104,8 +104,8 @@ impl Term {
     }
 }
 
-/// Whether a name of ours, which is ASCII, has a lower-case word in it. Allocates nothing, since every event is
-/// tested.
+/// Whether a name of ours, which is ASCII, has a lower-case word in it. Allocates nothing, since every event
+/// is tested.
 fn has(name: &str, word: &str) -> bool {
     word.is_empty() || name.as_bytes().windows(word.len()).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
 }
