@@ -9,7 +9,11 @@
 //! - truth ⊆ answer, and the same image, if the method says that it is conservative;
 //! - it culls at least what it culled before (culling nothing is conservative too);
 //! - every certificate is accepted by the independent checker;
-//! - every index keeps the contract of its trait, over degenerate scenes too.
+//! - every index keeps the contract of its trait, over degenerate scenes too;
+//! - what a film says is true: lines, evidence, sentences ([`spoken`]).
+
+#[path = "conformance/spoken.rs"]
+mod spoken;
 
 use std::path::Path;
 use std::sync::Arc;

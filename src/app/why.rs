@@ -150,7 +150,8 @@ fn evidence(film: Reading<'_>, at: usize) -> Vec<Because> {
 /// A verdict in a sentence.
 pub fn spoken(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Outside => "outside the view (or faces away)",
+        Verdict::Outside => "outside the view",
+        Verdict::FacesAway => "turned away from the eye",
         Verdict::Hidden => "hidden",
         Verdict::Presumed => "left out as hidden, which is not proven",
         Verdict::Partial => "partly in view",

@@ -7,6 +7,30 @@ pub struct CodeLine {
     pub label: &'static str,
     /// The text, indented by two spaces a level.
     pub text: &'static str,
+    /// What the paper's line says where this one departs from it, or empty.
+    pub paper: &'static str,
+}
+
+impl CodeLine {
+    /// A line as the paper has it, or as it would have it.
+    pub const fn new(label: &'static str, text: &'static str) -> Self {
+        Self { label, text, paper: "" }
+    }
+    /// A line in whose place the paper's says something else.
+    pub const fn departing(label: &'static str, text: &'static str, paper: &'static str) -> Self {
+        Self { label, text, paper }
+    }
+}
+
+/// Where a method differs from its paper on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Departure {
+    /// The section of the paper, such as `3.1`.
+    pub section: &'static str,
+    /// What is done instead, beginning in lower case, without a full stop.
+    pub what: &'static str,
+    /// Why, likewise.
+    pub why: &'static str,
 }
 
 /// The number of the line with this label. Evaluated when a method's line constants are compiled, so a label
@@ -45,6 +69,12 @@ pub struct Card {
     pub doi: &'static str,
     /// Whether its answer includes every visible primitive, with the default parameters.
     pub conservative: bool,
-    /// Its pseudocode; `Event::Line(i)` refers to line `i`.
+    /// Its pseudocode; `Event::Line(i)` refers to line `i`. Which of the lines belong to some parameters:
+    /// [`super::Method::has_line`].
     pub code: &'static [CodeLine],
+    /// Kinds of events ([`super::Reel::kind`]; of a decision `NodeDecided` or `PrimDecided` with its verdict,
+    /// such as `NodeDecided hidden`), and the labels of the lines at which they stand.
+    pub stands: &'static [(&'static str, &'static [&'static str])],
+    /// Where it differs from its paper on purpose.
+    pub departures: &'static [Departure],
 }

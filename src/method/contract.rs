@@ -108,6 +108,11 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
     fn is_conservative(_: &Self::Params) -> bool {
         Self::CARD.conservative
     }
+    /// Whether line `line` of the pseudocode belongs to these parameters; the others are not shown. Each
+    /// that belongs to them is reached in some frame.
+    fn has_line(_: &Self::Params, _line: u8) -> bool {
+        true
+    }
 }
 
 /// Refuses a saved preprocess, for methods that keep none.

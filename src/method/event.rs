@@ -10,8 +10,10 @@ use crate::geometry::{NodeId, PrimId};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Verdict {
-    /// Not in the view volume, or facing away.
+    /// Not in the view volume.
     Outside,
+    /// One-sided, and turned away from the eye.
+    FacesAway,
     /// In the view volume, behind something.
     Hidden,
     /// Left out as hidden, though not proven: something that the method does not count may show it.
@@ -31,6 +33,7 @@ impl Verdict {
     pub fn name(self) -> &'static str {
         match self {
             Self::Outside => "outside",
+            Self::FacesAway => "faces-away",
             Self::Hidden => "hidden",
             Self::Presumed => "presumed",
             Self::Partial => "partial",

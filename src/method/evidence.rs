@@ -1,7 +1,7 @@
 //! Evidence that several methods record: a box against the frustum, a primitive's orientation; and how
 //! evidence in general is worded and drawn.
 
-use super::{Claim, Context, Field, Tally, Value};
+use super::{Claim, Compared, Context, Field, Tally, Value};
 use crate::drawing::words::{self, Room};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View, faces_away};
@@ -99,6 +99,17 @@ impl<S: Space> Tested<S> {
             error: test.error.into(),
             bounds: self.bounds,
         })
+    }
+    /// The corner that decided, against the bound on its rounding error.
+    pub(crate) fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        let tests = self.tests(&context.view.frustum());
+        let test = self.decisive(&tests)?;
+        let (name, found, error) = match self.found {
+            Found::Outside(_) => ("farthest corner", test.far_corner, -test.error),
+            _ => ("nearest corner", test.near_corner, 0.0),
+        };
+        let bound = if matches!(self.found, Found::Outside(_)) { "rounding" } else { "the plane" };
+        Some(Compared::of((name, found.into()), (bound, error.into())))
     }
     /// What kind of note this is.
     pub(crate) fn kind(&self) -> &'static str {
@@ -240,6 +251,10 @@ impl Facing {
     pub(crate) fn claim<S: Space>(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         let eye_distance = self.eye_distance(context);
         (eye_distance < 0.0).then(|| Claim::FacesAway { eye_distance: eye_distance.into() })
+    }
+    /// The eye's distance from the plane, against the plane.
+    pub(crate) fn compared<S: Space>(&self, context: &Context<'_, S>) -> Option<Compared> {
+        Some(Compared::of(("eye above the plane", self.eye_distance(context).into()), ("the plane", 0.0)))
     }
     #[inline]
     pub(crate) fn tally(tally: &mut Tally) {

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::{
-    Card, Claim, Context, Event, Field, Frame, Knob, KnobValue, Method, Moment, Note, Recorder, Shown, State,
-    Verdict,
+    Card, Claim, Compared, Context, Event, Field, Frame, Knob, KnobValue, Method, Moment, Note, Recorder,
+    Shown, State, Verdict,
 };
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, Space, View};
@@ -28,14 +28,19 @@ pub trait Reel: Send + Sync {
     fn bytes(&self) -> usize;
     /// The kind of event `at < events().len()`; of evidence, that of the note.
     fn kind(&self, at: usize) -> &'static str;
-    /// What event `at` is about; of evidence, what it was gathered about.
+    /// What event `at` is about; of evidence, what it was gathered about; of a line of pseudocode, what the
+    /// event is about that comes of it.
     fn subject(&self, at: usize) -> Subject;
+    /// Whether a line of the pseudocode belongs to the parameters of this recording.
+    fn has_line(&self, line: u8) -> bool;
+    /// The two numbers whose comparison gave the result of the evidence that is event `at`.
+    fn compared(&self, at: usize) -> Option<Compared>;
     /// The evidence on which the decision that is event `at` rests: the latest before it about the same node
-    /// or primitive, the primitive's object, or the node that is being visited; of several the one that
+    /// or primitive, the primitive's object, or else the nearest open node around it; of several the one that
     /// claims the verdict. `None` if `at` is no decision, or rests on none.
     fn evidence_of(&self, at: usize) -> Option<usize>;
     /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
-    /// Lines of pseudocode, queueing and leaving the node that was decided change nothing about that.
+    /// Queueing, leaving the node that was decided, and lines about the same change nothing about that.
     fn evidence_at(&self, step: usize) -> Option<usize>;
     /// The kind and the operands of event `at`, for traces and the inspector.
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
@@ -183,14 +188,11 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
     /// Whether the note that is event `at` claims what a verdict says.
     fn claims(&self, at: u32, verdict: Verdict) -> bool {
         let Event::Noted(i) = self.recorder.events[at as usize] else { return false };
+        let claim = |i: u32| self.recorder.notes[i as usize].claim(&self.context());
         match verdict {
-            Verdict::Outside => matches!(
-                self.recorder.notes[i as usize].claim(&self.context()),
-                Some(Claim::Outside { .. } | Claim::FacesAway { .. })
-            ),
-            Verdict::Hidden => {
-                matches!(self.recorder.notes[i as usize].claim(&self.context()), Some(Claim::Hidden))
-            }
+            Verdict::Outside => matches!(claim(i), Some(Claim::Outside { .. })),
+            Verdict::FacesAway => matches!(claim(i), Some(Claim::FacesAway { .. })),
+            Verdict::Hidden => matches!(claim(i), Some(Claim::Hidden)),
             _ => false,
         }
     }
@@ -222,7 +224,12 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
                     open.pop();
                     continue;
                 }
-                Event::DecidedNode(node, _) => of_node[node.at()],
+                Event::DecidedNode(node, _) if of_node[node.at()] != NONE => of_node[node.at()],
+                // What was found of a node holds for all below it: a node that lies inside of all planes
+                // saves its children the test.
+                Event::DecidedNode(..) => {
+                    open.iter().rev().map(|n| of_node[n.at()]).find(|at| *at != NONE).unwrap_or(NONE)
+                }
                 Event::DecidedPrim(prim, verdict) => {
                     // The node that is visited stands for what it holds.
                     let around = open.iter().rev().map(|n| of_node[n.at()]).find(|at| *at != NONE);
@@ -266,9 +273,22 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
         }
     }
     fn subject(&self, at: usize) -> Subject {
+        // A line is about what comes of it.
+        let events = &self.recorder.events;
+        let done = events[at..].iter().find(|e| !matches!(e, Event::Line(_)));
+        match done {
+            Some(Event::Noted(i)) => self.recorder.notes[*i as usize].subject(),
+            Some(event) => event.subject(),
+            None => Subject::None,
+        }
+    }
+    fn has_line(&self, line: u8) -> bool {
+        M::has_line(&self.params, line)
+    }
+    fn compared(&self, at: usize) -> Option<Compared> {
         match self.recorder.events[at] {
-            Event::Noted(i) => self.recorder.notes[i as usize].subject(),
-            event => event.subject(),
+            Event::Noted(i) => self.recorder.notes[i as usize].compared(&self.context()),
+            _ => None,
         }
     }
     fn evidence_of(&self, at: usize) -> Option<usize> {
@@ -286,11 +306,17 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
                 || matches!(event, Event::Left(_)) && left == 1
         };
         let at = events.len().checked_sub(1 + events.iter().rev().take_while(&mut passes).count())?;
-        match events[at] {
+        let evidence = match events[at] {
             Event::Noted(_) => Some(at),
             Event::DecidedNode(..) | Event::DecidedPrim(..) => self.evidence_of(at),
             _ => None,
-        }
+        };
+        // A line goes on with what was found only if it is about the same.
+        let goes_on = |found: &usize| match events.last() {
+            Some(Event::Line(_)) => self.subject(events.len() - 1) == self.subject(*found),
+            _ => true,
+        };
+        evidence.filter(goes_on)
     }
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
         let fields = match self.recorder.events[at] {
@@ -363,6 +389,7 @@ fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String 
             format!("Node {node} is outside the view and dropped with all below it: {below}.")
         }
         Verdict::Hidden => format!("Node {node} is hidden and dropped with all below it: {below}."),
+        Verdict::FacesAway => format!("Node {node} faces away and is dropped with all below it: {below}."),
         Verdict::Presumed => {
             format!("Node {node} is taken to be hidden and dropped with all below it: {below}. Not proven.")
         }
@@ -380,7 +407,8 @@ fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String 
 fn prim_sentence<S: Space>(prim: u32, verdict: Verdict) -> String {
     let name = S::PRIM;
     match verdict {
-        Verdict::Outside => format!("The {name} {prim} is not drawn: it is outside the view or faces away."),
+        Verdict::Outside => format!("The {name} {prim} is not drawn: it is outside the view."),
+        Verdict::FacesAway => format!("The {name} {prim} is not drawn: it faces away from the eye."),
         Verdict::Hidden => format!("The {name} {prim} is hidden and not drawn."),
         Verdict::Presumed => format!("The {name} {prim} is taken to be hidden, not proven, and not drawn."),
         Verdict::Partial => format!("The {name} {prim} is undecided."),

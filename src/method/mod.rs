@@ -14,14 +14,14 @@ mod tests;
 mod words;
 
 pub(crate) use card::line;
-pub use card::{Card, CodeLine};
+pub use card::{Card, CodeLine, Departure};
 pub(crate) use contract::keeps_nothing;
 pub use contract::{DrawList, Frame, Limit, Method, Moment, Shown, State};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use film::{Film, Reel, notes};
 pub(crate) use knobs::backface_knob;
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings};
-pub use note::{Claim, Context, Field, Note, Value};
+pub use note::{Claim, Compared, Context, Field, Note, Value};
 pub use run::{Entry, Recording, RestoreError, Run};
 pub(crate) use run::{Of, params};
 pub use words::Words;

@@ -1,7 +1,11 @@
 //! Evidence: the operands of the tests that a method makes, and what it claims because of them.
 
+use std::cmp::Ordering;
+use std::fmt;
+
 use super::event::Tallied;
 use crate::drawing::Subject;
+use crate::drawing::words::{self, Room};
 use crate::geometry::{Aabb, Space, View};
 use crate::scene::Scene;
 
@@ -64,6 +68,38 @@ impl<V> Claim<V> {
     }
 }
 
+/// The two numbers that a test compared, each by name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compared {
+    /// The one that was found, such as the distance of a corner.
+    pub found: (&'static str, f64),
+    /// How it relates to the other: `<`, `≤`, `=`, `≥` or `>`.
+    pub sign: &'static str,
+    /// The one that it is compared with, such as the margin that is needed.
+    pub with: (&'static str, f64),
+}
+
+impl Compared {
+    /// A number that was found against the one that it is compared with; the sign follows from both, but for
+    /// equal ones.
+    pub fn of(found: (&'static str, f64), with: (&'static str, f64)) -> Self {
+        let sign = match found.1.partial_cmp(&with.1) {
+            Some(Ordering::Less) => "<",
+            Some(Ordering::Greater) => ">",
+            _ => "=",
+        };
+        Self { found, sign, with }
+    }
+}
+
+impl fmt::Display for Compared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let short = |v: f64| words::short(v as f32, Room::Sentence);
+        let (found, with) = (short(self.found.1), short(self.with.1));
+        write!(f, "{} {found} {} {with} {}", self.found.0, self.sign, self.with.0)
+    }
+}
+
 /// What evidence is read against: a note keeps what a run found, not what any reader can look up.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a, S: Space> {
@@ -81,6 +117,10 @@ pub trait Note<S: Space>: Tallied + Copy + Send + Sync + 'static {
     fn subject(&self) -> Subject;
     /// What it claims of its subject; `None` if it proves nothing by itself.
     fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        None
+    }
+    /// The two numbers whose comparison gave the result; `None` if none decided.
+    fn compared(&self, _: &Context<'_, S>) -> Option<Compared> {
         None
     }
     /// Operands and results by name, for the trace and the inspector. Programs read the note itself.

@@ -49,6 +49,8 @@ impl Method<Flat> for Remember {
         doi: "",
         conservative: true,
         code: &[],
+        stands: &[],
+        departures: &[],
     };
 
     fn knobs((): &mut (), _: &mut dyn Knobs) {}

@@ -50,8 +50,9 @@ pub struct Counts {
 
 impl Counts {
     /// The order of [`Counts::prims`].
-    pub const VERDICTS: [Verdict; 7] = [
+    pub const VERDICTS: [Verdict; 8] = [
         Verdict::Outside,
+        Verdict::FacesAway,
         Verdict::Hidden,
         Verdict::Presumed,
         Verdict::Partial,

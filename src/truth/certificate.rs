@@ -108,13 +108,16 @@ pub fn check_film<S: Drawable>(film: &dyn Film<S>) -> Result<usize, Rejection> {
         checker.check(certificate)?;
     }
     for (at, event) in film.events().iter().enumerate() {
-        if event.verdict() != Some(Verdict::Outside) {
-            continue;
-        }
+        let Some(verdict @ (Verdict::Outside | Verdict::FacesAway)) = event.verdict() else { continue };
         // The evidence of a decision says itself that its subject, or the object of that, is outside.
         let evidence = film.evidence_of(at).and_then(|evidence| film.claim(evidence));
-        if !matches!(evidence, Some(method::Claim::Outside { .. } | method::Claim::FacesAway { .. })) {
-            let why = format!("{:?} is called outside without a certificate", film.subject(at));
+        let is_claimed = match evidence {
+            Some(method::Claim::Outside { .. }) => verdict == Verdict::Outside,
+            Some(method::Claim::FacesAway { .. }) => verdict == Verdict::FacesAway,
+            _ => false,
+        };
+        if !is_claimed {
+            let why = format!("{:?} is called {} without a certificate", film.subject(at), verdict.name());
             return Err(Rejection { step: at + 1, why });
         }
     }

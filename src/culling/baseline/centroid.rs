@@ -36,22 +36,28 @@ impl Default for Params {
 }
 
 const CODE: &[CodeLine] = &[
-    CodeLine { label: "Order:1", text: "for each polygon p of the scene" },
-    CodeLine { label: "Order:2", text: "  if p is out of view: skip it" },
-    CodeLine { label: "Order:3", text: "  else put p into L by distance" },
-    CodeLine { label: "Draw:1", text: "for each polygon p of L, nearest first" },
-    CodeLine { label: "Draw:2", text: "  if budget is left: draw p" },
-    CodeLine { label: "Draw:3", text: "  else leave p out" },
+    CodeLine::new("Order:1", "for each polygon p of the scene"),
+    CodeLine::new("Order:2", "  if p lies outside the view: skip p"),
+    CodeLine::new("Order:3", "  if p faces away from the eye: skip p"),
+    CodeLine::new("Order:4", "  put p into L by distance"),
+    CodeLine::new("Draw:1", "for each polygon p of L, nearest first"),
+    CodeLine::new("Draw:2", "  if budget is left"),
+    CodeLine::new("Draw:3", "    draw p"),
+    CodeLine::new("Draw:4", "  else leave p out"),
 ];
 
 /// Lines that the run reaches.
 mod line {
     use super::CODE;
     use crate::method::line;
+    pub const EACH: u8 = line(CODE, "Order:1");
     pub const IN_VIEW: u8 = line(CODE, "Order:2");
-    pub const PUT: u8 = line(CODE, "Order:3");
-    pub const DRAW: u8 = line(CODE, "Draw:2");
-    pub const LEAVE_OUT: u8 = line(CODE, "Draw:3");
+    pub const FACING: u8 = line(CODE, "Order:3");
+    pub const PUT: u8 = line(CODE, "Order:4");
+    pub const NEXT: u8 = line(CODE, "Draw:1");
+    pub const BUDGET: u8 = line(CODE, "Draw:2");
+    pub const DRAW: u8 = line(CODE, "Draw:3");
+    pub const LEAVE_OUT: u8 = line(CODE, "Draw:4");
 }
 
 impl<S: Space> Method<S> for Centroid {
@@ -70,6 +76,16 @@ impl<S: Space> Method<S> for Centroid {
         doi: "10.1109/2945.856993",
         conservative: false,
         code: CODE,
+        stands: &[
+            ("PrimClassified", &["Order:2"]),
+            ("OrientationTested", &["Order:3"]),
+            ("CentroidRanked", &["Draw:2"]),
+            ("PrimDecided outside", &["Order:2"]),
+            ("PrimDecided faces-away", &["Order:3"]),
+            ("PrimDecided visible", &["Draw:3"]),
+            ("PrimDecided over-budget", &["Draw:4"]),
+        ],
+        departures: &[],
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
@@ -109,8 +125,10 @@ impl<S: Space> Method<S> for Centroid {
         // On past the budget, so that all that is left out is decided too.
         for (rank, &(squared, prim)) in queue.iter().enumerate() {
             let fits = rank < budget;
-            watch.event(Event::Line(if fits { line::DRAW } else { line::LEAVE_OUT }));
+            watch.event(Event::Line(line::NEXT));
+            watch.event(Event::Line(line::BUDGET));
             watch.note(move || Evidence::Distance(Distance::of(scene, prim, squared, rank, budget)));
+            watch.event(Event::Line(if fits { line::DRAW } else { line::LEAVE_OUT }));
             if fits {
                 out.prims.push(prim);
             }
@@ -120,6 +138,14 @@ impl<S: Space> Method<S> for Centroid {
     fn is_conservative(params: &Params) -> bool {
         // Then nothing is left out.
         params.budget == Budget::Percent(100.0)
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        match line {
+            line::FACING => params.backface_culling,
+            line::DRAW => params.budget.of(1) > 0,
+            line::LEAVE_OUT => params.budget != Budget::Percent(100.0),
+            _ => true,
+        }
     }
 }
 
@@ -143,22 +169,28 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
     // "All three algorithms perform view-frustum and backface culling" (Section 5): what is not in view would
     // spend the budget for nothing.
     for &prim in scene.live() {
+        watch.event(Event::Line(line::EACH));
         watch.event(Event::Line(line::IN_VIEW));
         let bounds = scene.prim_bounds(prim);
         let planes = geometry::Frustum::<S::Vector>::ALL;
         let test = frustum.test(&bounds, planes);
+        watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, planes, test)));
         if matches!(test, FrustumTest::Outside(_)) {
-            watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, planes, test)));
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
-        } else if params.backface_culling && prim_faces_away(scene, eye, prim) {
-            watch.note(move || Evidence::Facing(Facing::of(prim)));
-            watch.event(Event::DecidedPrim(prim, Verdict::Outside));
-        } else {
-            watch.event(Event::Line(line::PUT));
-            // Squared, which sorts alike and rounds less.
-            let toward = middle(scene, prim) - eye;
-            queue.push((toward.dot(toward), prim));
+            continue;
         }
+        if params.backface_culling {
+            watch.event(Event::Line(line::FACING));
+            watch.note(move || Evidence::Facing(Facing::of(prim)));
+            if prim_faces_away(scene, eye, prim) {
+                watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
+                continue;
+            }
+        }
+        watch.event(Event::Line(line::PUT));
+        // Squared, which sorts alike and rounds less.
+        let toward = middle(scene, prim) - eye;
+        queue.push((toward.dot(toward), prim));
     }
     queue
 }

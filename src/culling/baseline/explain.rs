@@ -1,9 +1,9 @@
 //! The baselines' evidence: as fields, as sentences and as marks in the world.
 
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
-use crate::geometry::{PrimId, Space, View};
+use crate::geometry::{NodeId, PrimId, Space, View};
 use crate::method::evidence::{Facing, Tested, integer, label, middle, number, outline, short};
-use crate::method::{Claim, Context, Field, Note, Tallied, Tally};
+use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What a baseline records.
@@ -15,6 +15,8 @@ pub enum Evidence<S: Space> {
     Facing(Facing),
     /// A primitive's place in the order.
     Distance(Distance<S>),
+    /// A node of which no test is made.
+    Untested(NodeId),
 }
 
 /// A primitive got its place in the order of centroids.
@@ -87,6 +89,8 @@ impl<S: Space> Evidence<S> {
             Self::Tested(n) => n.draw(view, to),
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Distance(n) => n.draw(scene, view, to),
+            // There is nothing to show of a test that is not made.
+            Self::Untested(_) => {}
         }
     }
 }
@@ -99,6 +103,7 @@ impl<S: Space> Tallied for Evidence<S> {
             Self::Facing(_) => Facing::tally(tally),
             // One a primitive in view: the length of the list that is sorted.
             Self::Distance(_) => tally.add("primitives_sorted", 1),
+            Self::Untested(_) => {}
         }
     }
 }
@@ -109,6 +114,7 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.kind(),
             Self::Facing(_) => "OrientationTested",
             Self::Distance(_) => "CentroidRanked",
+            Self::Untested(_) => "NodeUntested",
         }
     }
     fn subject(&self) -> Subject {
@@ -116,6 +122,7 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.subject(),
             Self::Facing(n) => n.subject(),
             Self::Distance(n) => Subject::Prim(n.prim),
+            Self::Untested(node) => Subject::Node(*node),
         }
     }
     fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
@@ -123,7 +130,16 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
             // To be far away is no proof of being hidden: what the budget leaves out may be visible.
-            Self::Distance(_) => None,
+            Self::Distance(_) | Self::Untested(_) => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            // The first of the order has rank 0: as many ranks fit as the budget has primitives.
+            Self::Distance(n) => Some(Compared::of(("rank", n.rank.into()), ("budget", n.budget.into()))),
+            Self::Untested(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -138,6 +154,7 @@ impl<S: Space> Note<S> for Evidence<S> {
                     integer("budget", n.budget),
                 ]
             }
+            Self::Untested(node) => vec![integer("node", node.0)],
         }
     }
     fn sentence(&self, context: &Context<'_, S>) -> String {
@@ -145,6 +162,9 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.sentence(context),
             Self::Facing(n) => n.sentence(context),
             Self::Distance(n) => n.sentence(),
+            Self::Untested(_) => "No test is made for the scene as a whole or in part: every primitive is \
+                                  drawn, and the depth buffer decides at each pixel which one is seen."
+                .into(),
         }
     }
 }

@@ -38,27 +38,40 @@ impl Default for Params {
 }
 
 const CODE: &[CodeLine] = &[
-    CodeLine { label: "Visible:1", text: "Visible(node T, planes P)" },
-    CodeLine { label: "Visible:2", text: "  if T lies outside a plane of P" },
-    CodeLine { label: "Visible:3", text: "    return" },
-    CodeLine { label: "Visible:4", text: "  P' := the planes of P that cut T" },
-    CodeLine { label: "Visible:5", text: "  if P' is empty or T is a leaf" },
-    CodeLine { label: "Visible:6", text: "    Gather(T)" },
-    CodeLine { label: "Visible:7", text: "  else for each child T' of T" },
-    CodeLine { label: "Visible:8", text: "    Visible(T', P')" },
-    CodeLine { label: "Gather:1", text: "Gather(T)" },
-    CodeLine { label: "Gather:2", text: "  draw each p of T that faces the eye" },
+    CodeLine::new("Visible:1", "Visible(node T, planes P)"),
+    CodeLine::new("Visible:2", "  if T lies outside a plane of P"),
+    CodeLine::new("Visible:3", "    return"),
+    CodeLine::new("Visible:4", "  P' := the planes of P that cut T"),
+    CodeLine::new("Visible:5", "  if P' is empty or T is a leaf"),
+    CodeLine::new("Visible:6", "    Gather(T)"),
+    CodeLine::new("Visible:7", "  else for each child T' of T"),
+    CodeLine::new("Visible:8", "    Visible(T', P')"),
+    CodeLine::new("Gather:1", "Gather(T)"),
+    CodeLine::new("Gather:2", "  draw all of T"),
+    CodeLine::new("Gather:3", "  for each polygon p of T"),
+    CodeLine::new("Gather:4", "    if p faces away from the eye"),
+    CodeLine::new("Gather:5", "      skip p"),
+    CodeLine::new("Gather:6", "    draw p"),
 ];
 
 /// Lines that the run reaches.
 mod line {
     use super::CODE;
     use crate::method::line;
+    pub const VISIBLE: u8 = line(CODE, "Visible:1");
     pub const TEST: u8 = line(CODE, "Visible:2");
     pub const OUTSIDE: u8 = line(CODE, "Visible:3");
-    pub const GATHER: u8 = line(CODE, "Visible:6");
+    pub const CUTTING: u8 = line(CODE, "Visible:4");
+    pub const WHOLE: u8 = line(CODE, "Visible:5");
+    pub const CALL_GATHER: u8 = line(CODE, "Visible:6");
+    pub const CHILDREN: u8 = line(CODE, "Visible:7");
     pub const CHILD: u8 = line(CODE, "Visible:8");
-    pub const DRAW: u8 = line(CODE, "Gather:2");
+    pub const GATHER: u8 = line(CODE, "Gather:1");
+    pub const DRAW_ALL: u8 = line(CODE, "Gather:2");
+    pub const EACH: u8 = line(CODE, "Gather:3");
+    pub const FACING: u8 = line(CODE, "Gather:4");
+    pub const SKIP: u8 = line(CODE, "Gather:5");
+    pub const DRAW: u8 = line(CODE, "Gather:6");
 }
 
 impl<S: Space> Method<S> for Frustum {
@@ -79,6 +92,16 @@ impl<S: Space> Method<S> for Frustum {
         doi: "10.1145/360349.360354",
         conservative: true,
         code: CODE,
+        stands: &[
+            ("NodeClassified", &["Visible:2"]),
+            ("OrientationTested", &["Gather:4"]),
+            ("NodeDecided outside", &["Visible:3"]),
+            ("NodeDecided partial", &["Visible:7"]),
+            ("NodeDecided visible", &["Visible:6"]),
+            ("PrimDecided faces-away", &["Gather:5"]),
+            ("PrimDecided visible", &["Gather:6"]),
+        ],
+        departures: &[],
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
@@ -118,6 +141,14 @@ impl<S: Space> Method<S> for Frustum {
         // it.
         walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
     }
+    fn has_line(params: &Params, line: u8) -> bool {
+        match line {
+            line::CHILDREN | line::CHILD => params.tree_height > 1,
+            line::DRAW_ALL => !params.backface_culling,
+            line::EACH | line::FACING | line::SKIP | line::DRAW => params.backface_culling,
+            _ => true,
+        }
+    }
 }
 
 impl<S: Space> Shown<S> for Frustum {
@@ -145,55 +176,71 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
         let index = self.index;
         let node = &index.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
-        self.watch.event(Event::Line(line::TEST));
+        self.line(line::VISIBLE);
+        self.line(line::TEST);
         // Lines 2 and 4 by one test: it ends at the first plane that the box lies outside of, or else returns
         // those that cut it.
         let test = self.frustum.test(&node.bounds, planes);
         self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
         // Lines 2 to 8. A node inside all planes is drawn whole, without a test below it; so is a leaf, since
         // a test for each primitive would cost about what drawing it costs.
+        if !matches!(test, FrustumTest::Outside(_)) {
+            self.line(line::CUTTING);
+            self.line(line::WHOLE);
+        }
         match (test, node.children()) {
             (FrustumTest::Outside(_), _) => {
-                self.watch.event(Event::Line(line::OUTSIDE));
+                self.line(line::OUTSIDE);
                 self.watch.event(Event::DecidedNode(id, Verdict::Outside));
             }
             (FrustumTest::Partial(cutting), Some(children)) => {
                 // Decided before its children are, so that a film shows it open while they are visited.
+                self.line(line::CHILDREN);
                 self.watch.event(Event::DecidedNode(id, Verdict::Partial));
                 for child in children {
-                    self.watch.event(Event::Line(line::CHILD));
+                    self.line(line::CHILD);
                     self.visible(child, cutting);
                 }
             }
             (FrustumTest::Inside | FrustumTest::Partial(_), _) => {
-                self.watch.event(Event::Line(line::GATHER));
+                self.line(line::CALL_GATHER);
                 self.gather(id);
+                // Back in Visible: what Gather did not skip is drawn.
+                self.line(line::CALL_GATHER);
                 self.watch.event(Event::DecidedNode(id, Verdict::Visible));
             }
         }
         self.watch.event(Event::Left(id));
     }
 
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
+    }
+
     fn gather(&mut self, id: NodeId) {
+        self.line(line::GATHER);
         // The primitives below a node lie in one piece: without back-face culling none is looked at.
         let prims = self.index.prims_below(id);
         if !self.backface_culling {
+            self.line(line::DRAW_ALL);
             self.out.prims.extend_from_slice(prims);
             return;
         }
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
-            self.watch.event(Event::Line(line::DRAW));
+            self.line(line::EACH);
+            self.line(line::FACING);
             // Facing is a matter of each primitive and says nothing of a node, so it comes last. Each is
             // decided by name, since the verdict about the node would call all of them visible.
-            let away = prim_faces_away(scene, view.eye.position, prim);
-            if away {
-                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+            if prim_faces_away(scene, view.eye.position, prim) {
+                self.line(line::SKIP);
+                self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
+                self.line(line::DRAW);
                 self.out.prims.push(prim);
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
             }
-            self.watch
-                .event(Event::DecidedPrim(prim, if away { Verdict::Outside } else { Verdict::Visible }));
         }
     }
 }

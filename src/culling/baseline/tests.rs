@@ -209,39 +209,3 @@ fn a_wrong_setting_says_what_is_right() {
     assert!(budget.to_string().starts_with("`budget=120%`: expected a number of primitives"));
     assert_eq!(Settings::default().parse("height"), Err(SettingError::NotAPair("height".into())));
 }
-
-fn has_evidence<S: Methods>(method: &str, pairs: &[(&str, &str)]) {
-    let scene = samples::soup::<S>(9, 300);
-    let entry = S::method(method).expect("a method");
-    let mut run = entry.ready(&scene, &settings(pairs), &Quiet).expect("ok").expect("ok");
-    let film = run.record(&inside(&scene, 2), usize::MAX).film;
-    let mut decided = 0;
-    for at in 0..film.events().len() {
-        // What the z-buffer draws it draws untested.
-        let is_untested =
-            |v: &Verdict| *v == Verdict::Partial || (method == "z-buffer" && *v == Verdict::Visible);
-        let Some(verdict) = film.events()[at].verdict().filter(|v| !is_untested(v)) else { continue };
-        let place = format!("{method}, event {at}: {}", film.sentence(at));
-        let evidence = film.evidence_of(at).unwrap_or_else(|| panic!("{place}"));
-        let is_about = match (film.subject(evidence), film.subject(at)) {
-            (Subject::Node(node), Subject::Prim(prim)) => film.hierarchy().prims(node).contains(&prim),
-            (about, of) => about == of,
-        };
-        assert!(is_about, "{place}: {}", film.sentence(evidence));
-        assert_eq!(film.claim(evidence).is_some(), verdict == Verdict::Outside, "{place}");
-        decided += 1;
-    }
-    assert!(decided > 10, "{method}: {decided}");
-}
-
-#[test]
-fn every_decision_rests_on_evidence_about_what_it_decides() {
-    for culled in ["false", "true"] {
-        for method in ["frustum", "centroid"] {
-            has_evidence::<Flat>(method, &[("backface-culling", culled)]);
-            has_evidence::<Solid>(method, &[("backface-culling", culled)]);
-        }
-    }
-    has_evidence::<Flat>("z-buffer", &[("backface-culling", "true")]);
-    has_evidence::<Solid>("z-buffer", &[("backface-culling", "true")]);
-}

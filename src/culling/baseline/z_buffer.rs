@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::explain::Evidence;
 use crate::drawing::Drawing;
-use crate::geometry::Space;
+use crate::geometry::{NodeId, Space};
 use crate::index::Whole;
 use crate::method::evidence::{Facing, prim_faces_away};
 use crate::method::{
@@ -26,16 +26,18 @@ pub struct Params {
 }
 
 const CODE: &[CodeLine] = &[
-    CodeLine { label: "Draw:1", text: "for each polygon p of the scene" },
-    CodeLine { label: "Draw:2", text: "  if p faces away from the eye" },
-    CodeLine { label: "Draw:3", text: "    skip p" },
-    CodeLine { label: "Draw:4", text: "  else draw p" },
+    CodeLine::new("Draw:1", "for each polygon p of the scene"),
+    CodeLine::new("Draw:2", "  if p faces away from the eye"),
+    CodeLine::new("Draw:3", "    skip p"),
+    CodeLine::new("Draw:4", "  draw p; the depth buffer decides"),
 ];
 
 /// Lines that the run reaches.
 mod line {
     use super::CODE;
     use crate::method::line;
+    pub const EACH: u8 = line(CODE, "Draw:1");
+    pub const FACING: u8 = line(CODE, "Draw:2");
     pub const SKIP: u8 = line(CODE, "Draw:3");
     pub const DRAW: u8 = line(CODE, "Draw:4");
 }
@@ -56,6 +58,13 @@ impl<S: Space> Method<S> for ZBuffer {
         doi: "",
         conservative: true,
         code: CODE,
+        stands: &[
+            ("NodeUntested", &["Draw:1"]),
+            ("OrientationTested", &["Draw:2"]),
+            ("PrimDecided faces-away", &["Draw:3"]),
+            ("PrimDecided visible", &["Draw:4"]),
+        ],
+        departures: &[],
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
@@ -80,23 +89,34 @@ impl<S: Space> Method<S> for ZBuffer {
     ) {
         let Frame { scene, view, params, .. } = *frame;
         watch.event(Event::FrameBegan);
-        // No node is entered: there is but one, and its verdict would hold for all or none.
         watch.stage("draw");
-        // Without a test there is no evidence: what is drawn is drawn because it is there.
+        watch.event(Event::Line(line::EACH));
+        // The one node holds the scene. It gets no verdict, which would hold for all or none.
+        watch.event(Event::Entered(NodeId(0)));
+        watch.note(|| Evidence::Untested(NodeId(0)));
         // By ascending id and not by depth: the z-buffer needs no order.
         for &prim in scene.live() {
-            if params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
-                watch.event(Event::Line(line::SKIP));
+            watch.event(Event::Line(line::EACH));
+            let mut is_away = false;
+            if params.backface_culling {
+                watch.event(Event::Line(line::FACING));
                 watch.note(move || Evidence::Facing(Facing::of(prim)));
-                // Facing away counts as outside in every method, and the truth leaves such primitives out
-                // too.
-                watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+                is_away = prim_faces_away(scene, view.eye.position, prim);
+            }
+            if is_away {
+                // The truth leaves such primitives out too.
+                watch.event(Event::Line(line::SKIP));
+                watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
                 watch.event(Event::Line(line::DRAW));
                 out.prims.push(prim);
                 watch.event(Event::DecidedPrim(prim, Verdict::Visible));
             }
         }
+        watch.event(Event::Left(NodeId(0)));
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        params.backface_culling || ![line::FACING, line::SKIP].contains(&line)
     }
 }
 

@@ -95,44 +95,41 @@ words! {
 
 const CODE: &[CodeLine] = &[
     // Section 3.3.
-    CodeLine { label: "Frame:1", text: "Frame(visible list L)" },
-    CodeLine { label: "Frame:2", text: "  clear the z-buffer and the z-pyramid" },
-    CodeLine { label: "Frame:3", text: "  for each cube C of L in view, front to back" },
-    CodeLine { label: "Frame:4", text: "    Draw(C)" },
-    CodeLine { label: "Frame:5", text: "  Visit(root)" },
-    CodeLine { label: "Frame:6", text: "  if a check of L is due" },
-    CodeLine { label: "Frame:7", text: "    for each C of L in view: if Obscured(C), remove C" },
+    CodeLine::new("Frame:1", "Frame(visible list L)"),
+    CodeLine::new("Frame:2", "  clear the z-buffer and the z-pyramid"),
+    CodeLine::new("Frame:3", "  for each cube C of L in view, front to back"),
+    CodeLine::new("Frame:4", "    Draw(C)"),
+    CodeLine::new("Frame:5", "  Visit(root)"),
+    CodeLine::new("Frame:6", "  if a check of L is due"),
+    CodeLine::new("Frame:7", "    for each C of L in view: if Obscured(C), remove C"),
     // Section 3.1 for the tree; the list is that of Section 3.3.
-    CodeLine { label: "Visit:1", text: "Visit(cube C)" },
-    CodeLine { label: "Visit:2", text: "  if C is outside the view: return" },
-    CodeLine { label: "Visit:3", text: "  if C is not in L" },
-    CodeLine { label: "Visit:4", text: "    if Obscured(C): return" },
-    CodeLine { label: "Visit:5", text: "    add C to L; Draw(C)" },
-    CodeLine { label: "Visit:6", text: "  for each child D of C, front to back: Visit(D)" },
+    CodeLine::new("Visit:1", "Visit(cube C)"),
+    CodeLine::new("Visit:2", "  if C is outside the view: return"),
+    CodeLine::new("Visit:3", "  if C is not in L"),
+    CodeLine::new("Visit:4", "    if Obscured(C): return"),
+    CodeLine::new("Visit:5", "    add C to L; Draw(C)"),
+    CodeLine::new("Visit:6", "  for each child D of C, front to back: Visit(D)"),
     // Section 3.1 for what is drawn once; Greene, Kass and Miller 1993, Section 3.2, for the test of a
     // primitive.
-    CodeLine { label: "Draw:1", text: "Draw(cube C)" },
-    CodeLine { label: "Draw:2", text: "  for each primitive p of C that is not drawn yet" },
-    CodeLine { label: "Draw:3", text: "    if p is behind its pyramid cells: skip it" },
-    CodeLine { label: "Draw:4", text: "    rasterize p; the pyramid follows" },
+    CodeLine::new("Draw:1", "Draw(cube C)"),
+    CodeLine::new("Draw:2", "  for each primitive p of C that is not drawn yet"),
+    CodeLine::new("Draw:3", "    if p is behind its pyramid cells: skip it"),
+    CodeLine::new("Draw:4", "    rasterize p; the pyramid follows"),
     // Section 3.2, but for the look at the few cells over the whole box.
-    CodeLine { label: "Obscured:1", text: "Obscured(cube C)" },
-    CodeLine { label: "Obscured:2", text: "  if C crosses the near plane: return false" },
-    CodeLine {
-        label: "Obscured:3",
-        text: "  if C is behind the few cells over its screen rectangle: return true",
-    },
-    CodeLine { label: "Obscured:4", text: "  for each face F of C toward the eye" },
-    CodeLine { label: "Obscured:5", text: "    q := finest cell that covers F on the screen" },
-    CodeLine { label: "Obscured:6", text: "    if not Behind(F, q): return false" },
-    CodeLine { label: "Obscured:7", text: "  return true" },
+    CodeLine::new("Obscured:1", "Obscured(cube C)"),
+    CodeLine::new("Obscured:2", "  if C crosses the near plane: return false"),
+    CodeLine::new("Obscured:3", "  if C is behind the few cells over its screen rectangle: return true"),
+    CodeLine::new("Obscured:4", "  for each face F of C toward the eye"),
+    CodeLine::new("Obscured:5", "    q := finest cell that covers F on the screen"),
+    CodeLine::new("Obscured:6", "    if not Behind(F, q): return false"),
+    CodeLine::new("Obscured:7", "  return true"),
     // Section 3.2: the descent "to higher resolutions".
-    CodeLine { label: "Behind:1", text: "Behind(face F, cell q)" },
-    CodeLine { label: "Behind:2", text: "  if the nearest depth of F is behind q: return true" },
-    CodeLine { label: "Behind:3", text: "  if q is a pixel or F covers q: return false" },
-    CodeLine { label: "Behind:4", text: "  for each cell r of the four below q that F touches" },
-    CodeLine { label: "Behind:5", text: "    if not Behind(F, r): return false" },
-    CodeLine { label: "Behind:6", text: "  return true" },
+    CodeLine::new("Behind:1", "Behind(face F, cell q)"),
+    CodeLine::new("Behind:2", "  if the nearest depth of F is behind q: return true"),
+    CodeLine::new("Behind:3", "  if q is a pixel or F covers q: return false"),
+    CodeLine::new("Behind:4", "  for each cell r of the four below q that F touches"),
+    CodeLine::new("Behind:5", "    if not Behind(F, r): return false"),
+    CodeLine::new("Behind:6", "  return true"),
 ];
 
 /// Lines of [`CODE`] that the run reaches.
@@ -184,6 +181,8 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         doi: "10.1145/166117.166147",
         conservative: true,
         code: CODE,
+        stands: &[],
+        departures: &[],
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {

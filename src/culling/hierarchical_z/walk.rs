@@ -321,7 +321,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let prim = self.prims[at];
             if prim_faces_away(scene, view.eye.position, prim) {
                 self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
                 self.prims[kept] = prim;
                 kept += 1;

@@ -328,7 +328,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         for &prim in prims {
             if prim_faces_away(scene, view.eye.position, prim) {
                 self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
                 self.out.prims.push(prim);
             }

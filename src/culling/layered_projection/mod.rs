@@ -144,21 +144,21 @@ impl Default for Params {
 // Figures 4 and 5. Line 7 also asks for the view: Section 4.2 culls by the frustum without saying in which
 // line.
 const CODE: &[CodeLine] = &[
-    CodeLine { label: "RenderingLoop:1", text: "while the front F is not empty" },
-    CodeLine { label: "RenderingLoop:2", text: "  c := the cell of least solidity of F" },
-    CodeLine { label: "RenderingLoop:3", text: "  project c" },
-    CodeLine { label: "RenderingLoop:4", text: "  if the budget is spent" },
-    CodeLine { label: "RenderingLoop:5", text: "    break" },
-    CodeLine { label: "RenderingLoop:6", text: "  for each cell n adjacent to c" },
-    CodeLine { label: "RenderingLoop:7", text: "    if n is projected or out of view" },
-    CodeLine { label: "RenderingLoop:8", text: "      continue" },
-    CodeLine { label: "RenderingLoop:9", text: "    ρ := UpdateSolidity(n, c)" },
-    CodeLine { label: "RenderingLoop:10", text: "    enqueue n with ρ" },
-    CodeLine { label: "UpdateSolidity:1", text: "ρ(B) := |A| / ρ_max + (v · n(B)) ρ(A)" },
-    CodeLine { label: "UpdateSolidity:2", text: "if B is not star-shaped toward the eye" },
-    CodeLine { label: "UpdateSolidity:3", text: "  ρ(B) := ρ(B) + penalty" },
-    CodeLine { label: "UpdateSolidity:4", text: "return ρ(B)" },
-    CodeLine { label: "Section 6", text: "after the budget: project c unless the z-buffer hides it" },
+    CodeLine::new("RenderingLoop:1", "while the front F is not empty"),
+    CodeLine::new("RenderingLoop:2", "  c := the cell of least solidity of F"),
+    CodeLine::new("RenderingLoop:3", "  project c"),
+    CodeLine::new("RenderingLoop:4", "  if the budget is spent"),
+    CodeLine::new("RenderingLoop:5", "    break"),
+    CodeLine::new("RenderingLoop:6", "  for each cell n adjacent to c"),
+    CodeLine::new("RenderingLoop:7", "    if n is projected or out of view"),
+    CodeLine::new("RenderingLoop:8", "      continue"),
+    CodeLine::new("RenderingLoop:9", "    ρ := UpdateSolidity(n, c)"),
+    CodeLine::new("RenderingLoop:10", "    enqueue n with ρ"),
+    CodeLine::new("UpdateSolidity:1", "ρ(B) := |A| / ρ_max + (v · n(B)) ρ(A)"),
+    CodeLine::new("UpdateSolidity:2", "if B is not star-shaped toward the eye"),
+    CodeLine::new("UpdateSolidity:3", "  ρ(B) := ρ(B) + penalty"),
+    CodeLine::new("UpdateSolidity:4", "return ρ(B)"),
+    CodeLine::new("Section 6", "after the budget: project c unless the z-buffer hides it"),
 ];
 
 /// Lines that the run reaches.
@@ -198,6 +198,8 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         doi: "10.1109/2945.856993",
         conservative: false,
         code: CODE,
+        stands: &[],
+        departures: &[],
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         paper_knobs(params, knobs);

@@ -550,7 +550,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            return Some(Verdict::Outside);
+            return Some(Verdict::FacesAway);
         }
         None
     }

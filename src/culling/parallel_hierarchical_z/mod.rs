@@ -72,33 +72,33 @@ impl Default for Params {
 
 const CODE: &[CodeLine] = &[
     // Section 4.1 for the structures, Section 5.1 for the regions.
-    CodeLine { label: "Frame:1", text: "Frame(structures, processors, renderers)" },
-    CodeLine { label: "Frame:2", text: "  deal the structures in view out to the processors" },
-    CodeLine { label: "Frame:3", text: "  give the regions of the screen to the renderers" },
-    CodeLine { label: "Frame:4", text: "  all at once: Process(its lists), Render(its regions)" },
+    CodeLine::new("Frame:1", "Frame(structures, processors, renderers)"),
+    CodeLine::new("Frame:2", "  deal the structures in view out to the processors"),
+    CodeLine::new("Frame:3", "  give the regions of the screen to the renderers"),
+    CodeLine::new("Frame:4", "  all at once: Process(its lists), Render(its regions)"),
     // Sections 4.2 and 5.1: not in every frame, since a test may take communication.
-    CodeLine { label: "Frame:5", text: "  every n frames, for each C on a visible list" },
-    CodeLine { label: "Frame:6", text: "    if no pixel shows the box of C, C is invisible" },
+    CodeLine::new("Frame:5", "  every n frames, for each C on a visible list"),
+    CodeLine::new("Frame:6", "    if no pixel shows the box of C, C is invisible"),
     // Section 5.1, in the orders of Section 4.2. Section 5.3 adds the farthest depths, and that a processor
     // goes on while it waits.
-    CodeLine { label: "Process:1", text: "Process(visible list V, invisible list I)" },
-    CodeLine { label: "Process:2", text: "  for each C of V, by decreasing area on the screen" },
-    CodeLine { label: "Process:3", text: "    Draw(C)" },
-    CodeLine { label: "Process:4", text: "  for each C of I, by increasing number of primitives" },
-    CodeLine { label: "Process:5", text: "    if its box crosses the near plane: C is visible" },
-    CodeLine { label: "Process:6", text: "    else if behind the farthest depth of its regions: skip C" },
-    CodeLine { label: "Process:7", text: "    else send its box to its regions; go on meanwhile" },
-    CodeLine { label: "Process:8", text: "  when all regions of C have answered: skip C, unless one saw it" },
-    CodeLine { label: "Process:9", text: "    then move C to V; Draw(C)" },
+    CodeLine::new("Process:1", "Process(visible list V, invisible list I)"),
+    CodeLine::new("Process:2", "  for each C of V, by decreasing area on the screen"),
+    CodeLine::new("Process:3", "    Draw(C)"),
+    CodeLine::new("Process:4", "  for each C of I, by increasing number of primitives"),
+    CodeLine::new("Process:5", "    if its box crosses the near plane: C is visible"),
+    CodeLine::new("Process:6", "    else if behind the farthest depth of its regions: skip C"),
+    CodeLine::new("Process:7", "    else send its box to its regions; go on meanwhile"),
+    CodeLine::new("Process:8", "  when all regions of C have answered: skip C, unless one saw it"),
+    CodeLine::new("Process:9", "    then move C to V; Draw(C)"),
     // Section 5: processors transform, renderers rasterize.
-    CodeLine { label: "Draw:1", text: "Draw(structure C)" },
-    CodeLine { label: "Draw:2", text: "  transform its primitives; send each to its regions" },
+    CodeLine::new("Draw:1", "Draw(structure C)"),
+    CodeLine::new("Draw:2", "  transform its primitives; send each to its regions"),
     // Sections 5 and 5.1: whether a pixel is left on is the all-enables-off bit after a box was rasterized
     // without being written.
-    CodeLine { label: "Render:1", text: "Render(regions), for each message in order of arrival" },
-    CodeLine { label: "Render:2", text: "  primitives: rasterize them" },
-    CodeLine { label: "Render:3", text: "  a box: compare its faces with the depths drawn so far" },
-    CodeLine { label: "Render:4", text: "    answer whether any pixel is left on" },
+    CodeLine::new("Render:1", "Render(regions), for each message in order of arrival"),
+    CodeLine::new("Render:2", "  primitives: rasterize them"),
+    CodeLine::new("Render:3", "  a box: compare its faces with the depths drawn so far"),
+    CodeLine::new("Render:4", "    answer whether any pixel is left on"),
 ];
 
 /// Lines of [`CODE`] that the run reaches.
@@ -142,6 +142,8 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         doi: "",
         conservative: true,
         code: CODE,
+        stands: &[],
+        departures: &[],
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {

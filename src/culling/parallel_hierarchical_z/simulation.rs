@@ -289,7 +289,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let (scene, view) = (self.scene, self.view);
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             return;
         }
         self.out.prims.push(prim);
