@@ -1,9 +1,9 @@
 //! What a film says, over every method, parameter, scene and space:
 //!
-//! - each line of pseudocode that the parameters have is reached in some frame, no other one ever is, and each
-//!   event stands at a line that the method's card lists for its kind;
-//! - each verdict but `partial` rests on evidence about the thing itself, its object, or a node around it, and
-//!   what is hidden, outside or turned away rests on evidence that claims just that;
+//! - each line of pseudocode that the parameters have is reached in some frame, no other one ever is, and
+//!   each event stands at a line that the method's card lists for its kind;
+//! - each verdict but `partial` rests on evidence about the thing itself, its object, or a node around it,
+//!   and what is hidden, outside or turned away rests on evidence that claims just that;
 //! - sentences are sentences, and name one thing in the singular.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -122,8 +122,9 @@ fn hear_evidence<S: Space>(film: &dyn Film<S>, what: &str, heard: &mut Heard, fa
 }
 
 /// What sentences count.
-const COUNTED: &str = "cell frame tile unit node cube segment triangle primitive polygon occluder plane line \
-                       pixel edge tick message object reference ray region processor renderer part step level";
+const COUNTED: &str = "cell frame tile unit node cube segment triangle primitive polygon occluder plane \
+                       line pixel edge tick message object reference ray region processor renderer part \
+                       step level";
 
 /// Why a text is no good sentence, if it is none.
 fn misspoken(text: &str) -> Option<&'static str> {

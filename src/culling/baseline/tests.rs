@@ -1,7 +1,6 @@
 //! The baselines against brute force.
 
 use crate::culling::Methods;
-use crate::drawing::Subject;
 use crate::geometry::{Eye, Flat, PrimId, Solid, Space, Vector, View, faces_away};
 use crate::method::{Event, SettingError, Settings, Value, Verdict};
 use crate::scene::{Quiet, Scene, framing_view, samples};
