@@ -196,6 +196,12 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
             _ => false,
         }
     }
+    /// How many primitives were decided otherwise one by one since a node that is kept by event `at` was
+    /// entered.
+    fn left_out(&self, at: usize, node: NodeId) -> usize {
+        let since = self.recorder.events[..at].iter().rev().take_while(|e| **e != Event::Entered(node));
+        since.filter(|e| matches!(e, Event::DecidedPrim(_, v) if *v != Verdict::Visible)).count()
+    }
     /// Goes through the film once and finds what each decision rests on. O(events + nodes + primitives).
     fn grounds(&self) -> Vec<Grounds> {
         const NONE: u32 = u32::MAX;
@@ -338,6 +344,9 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
             }
             Event::Left(n) => format!("The traversal leaves node {n}."),
             Event::Queued(n, key) => format!("Node {n} is queued with priority {key}."),
+            Event::DecidedNode(n, Verdict::Visible) => {
+                kept_sentence::<S>(n, self.index.held(n), self.left_out(at, n))
+            }
             Event::DecidedNode(n, v) => node_sentence::<S>(n.0, self.index.held(n), v),
             Event::DecidedPrim(p, v) => prim_sentence::<S>(p.0, v),
         }
@@ -382,6 +391,18 @@ fn counted<S: Space>(n: usize) -> String {
     format!("{n} {}{}", S::PRIM, if n == 1 { "" } else { "s" })
 }
 
+fn kept_sentence<S: Space>(node: NodeId, below: usize, left_out: usize) -> String {
+    match left_out {
+        0 => format!("Node {node} is kept with all below it: {}.", counted::<S>(below)),
+        _ => format!(
+            "Node {node} is kept, without the {} of its {} that {} decided one by one.",
+            left_out,
+            counted::<S>(below),
+            if left_out == 1 { "was" } else { "were" }
+        ),
+    }
+}
+
 fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String {
     let below = counted::<S>(below);
     match verdict {
@@ -394,7 +415,7 @@ fn node_sentence<S: Space>(node: u32, below: usize, verdict: Verdict) -> String 
             format!("Node {node} is taken to be hidden and dropped with all below it: {below}. Not proven.")
         }
         Verdict::Partial => {
-            format!("Node {node} cannot be decided as a whole; its parts are looked at one by one.")
+            format!("Node {node} is neither kept nor dropped as a whole; its parts are looked at one by one.")
         }
         Verdict::Visible => format!("Node {node} is kept with all below it: {below}."),
         Verdict::Approximated => format!("A stand-in is drawn for node {node} and all below it: {below}."),

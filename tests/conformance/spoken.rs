@@ -10,9 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use cullscope::drawing::Subject;
-use cullscope::geometry::Space;
+use cullscope::geometry::{Aabb, NodeId, ObjectId, Solid, Space, Vector, ViewPath};
 use cullscope::method::{Card, Claim, Event, Film, Verdict};
-use cullscope::scene::{Scene, framing_view};
+use cullscope::scene::{Parts, Scene, framing_view};
+use glam::{Vec3, vec3};
 
 use super::{World, flat_scenes, ready, settings, solid_scenes, views};
 
@@ -77,7 +78,7 @@ fn hear_lines<S: Space>(film: &dyn Film<S>, what: &str, reached: &mut BTreeSet<u
 }
 
 /// Whether a node holds a thing: it is the node, lies below it, or is a primitive of it.
-fn holds<S: Space>(film: &dyn Film<S>, node: cullscope::geometry::NodeId, subject: Subject) -> bool {
+fn holds<S: Space>(film: &dyn Film<S>, node: NodeId, subject: Subject) -> bool {
     let index = film.hierarchy();
     match subject {
         Subject::Node(n) => std::iter::successors(Some(n), |n| index.parent(*n)).any(|n| n == node),
@@ -213,11 +214,45 @@ fn what_is_said_is_true<S: World>(scenes: &[Arc<Scene<S>>]) {
     assert!(list.is_empty(), "{} kinds of faults:\n{}", list.len(), list.join("\n"));
 }
 
+/// A wall of two polygons, bent along a vertical edge, that hides a small object only as a whole, and what
+/// makes the scene large; seen from in front of the wall.
+fn behind_a_bent_wall() -> Arc<Scene<Solid>> {
+    let mut points = [[-10.0, 0.0], [0.0, 2.0], [10.0, 0.0]]
+        .into_iter()
+        .flat_map(|[x, z]| [-10.0, 10.0].map(|y| vec3(x, y, z)))
+        .collect::<Vec<_>>();
+    let mut prims = vec![[0, 2, 1], [1, 2, 3], [2, 4, 3], [3, 4, 5]];
+    // The object's corners, and four faces on them.
+    points.extend([[-0.5, 0.0], [0.5, 0.0], [0.0, 1.0], [0.0, -1.0]].map(|[x, y]| vec3(x, y, -5.0 - y)));
+    prims.extend([[6, 7, 8], [6, 7, 9], [6, 8, 9], [7, 8, 9]]);
+    points.extend([vec3(-30.0, -30.0, -60.0), vec3(30.0, -30.0, -60.0), vec3(0.0, 40.0, -60.0)]);
+    prims.push([10, 11, 12]);
+    let mut parts = Parts::simple("behind a bent wall", points, prims);
+    parts.prim_object = [0, 0, 0, 0, 1, 1, 1, 1, 2].map(ObjectId).to_vec();
+    parts.objects = vec![parts.objects[0].clone(); 3];
+    let mut view = framing_view(&Aabb { min: vec3(-10.0, -10.0, -9.0), max: vec3(10.0, 10.0, 3.0) }, 96, 96);
+    (view.eye.position, view.eye.target) = (vec3(0.0, 0.0, 20.0), Vec3::ZERO);
+    (view.eye.near, view.eye.far) = (0.1, 200.0);
+    parts.paths = vec![ViewPath::single(view)];
+    Arc::new(Scene::new(parts).expect("a valid scene"))
+}
+
+/// A scene that no occluder can hide any of, since there is nothing else.
+fn alone<S: Space>(prim: S::Corners) -> Arc<Scene<S>> {
+    let corner = |k: usize| S::Vector::from_fn(|a| if a == k { 1.0 } else { 0.25 });
+    let points = (0..S::CORNERS).map(corner).collect();
+    Arc::new(Scene::new(Parts::simple("alone", points, vec![prim])).expect("a valid scene"))
+}
+
 #[test]
 fn what_is_said_is_true_in_flatland() {
-    what_is_said_is_true(&flat_scenes());
+    let mut scenes = flat_scenes();
+    scenes.push(alone([0, 1]));
+    what_is_said_is_true(&scenes);
 }
 #[test]
 fn what_is_said_is_true_in_space() {
-    what_is_said_is_true(&solid_scenes());
+    let mut scenes = solid_scenes();
+    scenes.extend([behind_a_bent_wall(), alone([0, 1, 2])]);
+    what_is_said_is_true(&scenes);
 }

@@ -5,12 +5,12 @@ use super::index::Index;
 use super::joint::{Candidate, Members};
 use super::memory::Owner;
 use super::occluders::Occluders;
-use super::relation::{Classified, Decisive, EyeSide, Margin, Occlusion, Planes, Relation};
+use super::relation::{Classified, Decisive, EdgeTest, EyeSide, Margin, Occlusion, Planes, Reason, Relation};
 use super::space::{Point, Shape, corner};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, short};
-use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value};
+use crate::method::{Claim, Compared, Context, Field, Frame, Note, Tallied, Tally, Value};
 
 /// What the method records.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub enum Evidence<S: Shape> {
     Chosen(Chosen),
     /// A box against the frustum.
     Tested(Tested<S>),
+    /// The eye against the two planes through one edge of an occluder that touch a box.
+    Edge(Edge),
     /// A box against one occluder.
     Related(Related),
     /// A box against connected occluders together.
@@ -55,6 +57,110 @@ impl Chosen {
     }
 }
 
+/// The planes of an edge were tested, on the way to a [`Related`].
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    pub owner: Owner,
+    pub occluder: u32,
+    pub name: PrimId,
+    side: i8,
+    /// The edge, and how many the occluder has.
+    edge: u8,
+    edges: u8,
+    /// `None`: the edge's line meets the box.
+    pub test: Option<EdgeTest>,
+}
+
+impl Edge {
+    /// The planes of edge `edge` of a relation were tested.
+    pub fn of<S: Shape>(
+        occluders: &Occluders<S>,
+        owner: Owner,
+        relation: &Relation<S>,
+        edge: usize,
+        test: Option<EdgeTest>,
+    ) -> Self {
+        let (occluder, side) = (relation.occluder, relation.side);
+        let (edge, edges) = (edge as u8, relation.planes.len() as u8);
+        Self { owner, occluder, name: occluders.name(occluder), side, edge, edges, test }
+    }
+    /// Whether the eye is outside of both planes, or of the separating one where that alone counts.
+    fn fails(test: &EdgeTest) -> bool {
+        test.separating <= 0.0 && (test.needed.is_finite() || test.supporting <= 0.0)
+    }
+    /// The plane that decided about the edge: whether it is the supporting one.
+    fn is_by_supporting(test: &EdgeTest) -> bool {
+        !Self::fails(test) && test.needed.is_finite()
+    }
+    fn result(&self) -> &'static str {
+        match &self.test {
+            None => "crossing",
+            Some(test) if Self::fails(test) => "outside",
+            Some(test) if test.supporting >= test.needed => "inside",
+            Some(_) => "between",
+        }
+    }
+    fn sentence<S: Shape>(&self) -> String {
+        let plane = plane_word::<S>();
+        let who = owner_name(self.owner);
+        let head = format!(
+            "{} {} of {} of the occluder of {} {}",
+            if S::Vector::AXES == 2 { "End" } else { "Edge" },
+            self.edge + 1,
+            self.edges,
+            S::PRIM,
+            self.name
+        );
+        let Some(test) = self.test else {
+            return format!("{head}: its line meets {who}, so no {plane} through it supports {who}.");
+        };
+        let (supporting, separating) = (test.supporting as f32, test.separating as f32);
+        if Self::fails(&test) {
+            return format!("{head}: the eye is outside its separating {plane}, by {}.", units(-separating));
+        }
+        if !test.needed.is_finite() {
+            return format!(
+                "{head}: the eye is inside its separating {plane} or its supporting one, which is all that \
+                 counts, since the occluder cuts {who}."
+            );
+        }
+        let head = format!("{head}: the eye is inside its separating {plane}, by {}", units(separating));
+        let needed = short(test.needed as f32);
+        if test.supporting < 0.0 {
+            format!("{head}, and outside its supporting one, by {}.", units(-supporting))
+        } else if test.supporting < test.needed {
+            format!(
+                "{head}; inside its supporting one by {}, less than the {needed} needed.",
+                units(supporting)
+            )
+        } else {
+            format!(
+                "{head}, and inside its supporting one, by {}, where {needed} are needed.",
+                units(supporting)
+            )
+        }
+    }
+    fn compared(&self) -> Option<Compared> {
+        let test = self.test?;
+        Some(if Self::is_by_supporting(&test) {
+            Compared::of(("inside the supporting", test.supporting), ("needed", test.needed))
+        } else {
+            Compared::of(("inside the separating", test.separating), ("needed", 0.0))
+        })
+    }
+}
+
+/// A plane of space is a line of flatland.
+fn plane_word<S: Shape>() -> &'static str {
+    if S::Vector::AXES == 2 { "line" } else { "plane" }
+}
+
+/// A length in a sentence.
+fn units(length: f32) -> String {
+    let length = short(length);
+    if length == "1" { "1 unit".into() } else { format!("{length} units") }
+}
+
 /// A box was classified against an occluder.
 #[derive(Clone, Copy, Debug)]
 pub struct Related {
@@ -63,16 +169,17 @@ pub struct Related {
     pub name: PrimId,
     side: i8,
     pub occlusion: Occlusion,
-    inside: u64,
-    // How many planes there are: a picture makes them again, but a sentence has no index to make them from.
+    // How many planes there are, and how many of the supporting ones are satisfied: a picture makes them
+    // again, but a sentence has no index to make them from.
     edges: u8,
+    satisfied: u8,
     /// The planes were kept from an earlier frame.
     pub reused: bool,
     /// Distances of the box's nearest and farthest corner behind the occluder, and of the eye before it.
     behind: [f64; 2],
     height: f64,
-    /// The test that decided.
-    decisive: Decisive,
+    /// What decided.
+    pub reason: Reason,
 }
 
 impl Related {
@@ -88,19 +195,21 @@ impl Related {
         margin: Margin,
         reused: bool,
     ) -> Self {
+        let thickness = occluders.thickness(relation.occluder);
+        let tests = relation.edge_tests(eye_side, depth, margin).flatten();
         Self {
             owner,
             occluder: relation.occluder,
             name: occluders.name(relation.occluder),
             side: relation.side,
             occlusion: seen.occlusion,
-            inside: seen.inside,
             edges: relation.planes.len() as u8,
+            satisfied: tests.filter(|test| test.supporting >= test.needed).count() as u8,
             reused,
             behind: relation.behind,
             height: eye_side.height,
             // The run itself never asks for it: notes are made only where someone listens.
-            decisive: relation.decisive(eye_side, seen, depth, margin),
+            reason: relation.reason(eye_side, seen, thickness, depth, margin),
         }
     }
     fn result(&self) -> &'static str {
@@ -110,52 +219,58 @@ impl Related {
             Occlusion::Full => "full",
         }
     }
+    fn decisive(&self) -> Option<Decisive> {
+        if let Reason::Plane(d) = self.reason { Some(d) } else { None }
+    }
 
     fn sentence<S: Shape>(&self) -> String {
         let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
-        let plane = if S::Vector::AXES == 2 { "line" } else { "plane" };
-        // By what decided: the occluder's own plane first, then the plane of the decisive edge, then the
-        // margin.
-        let d = self.decisive;
-        let why = match self.occlusion {
+        let plane = plane_word::<S>();
+        let why = match self.reason {
             // Section 2: "A can occlude T only if the viewpoint lies in that half-space of A which does not
             // contain T."
-            Occlusion::None if self.behind[1] <= 0.0 => {
-                format!("{who} lies wholly on the eye's side of {by}: no occlusion.")
-            }
-            // Region 1 of Figure 2.
-            Occlusion::None => format!(
-                "The eye is outside a separating {plane} of {by} and {who}, by {} units: no part of the one \
-                 is behind the other.",
-                short(-d.distance as f32)
-            ),
+            Reason::Before => format!("{who} lies wholly on the eye's side of {by}: no occlusion."),
             // A departure: the half-space of the paper says none here, but parts of the box may lie behind.
-            Occlusion::Partial if self.behind[0] <= 0.0 => {
-                format!(
-                    "The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial \
-                     occlusion."
-                )
-            }
-            // Region 2 of Figure 2.
-            Occlusion::Partial if d.distance < 0.0 => format!(
-                "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, \
-                 by {} units: partial occlusion.",
-                short(-d.distance as f32)
+            Reason::Cut => format!(
+                "The {plane} of {by} cuts {who}: only what lies behind it can be occluded, so partial \
+                 occlusion."
             ),
-            Occlusion::Partial => format!(
-                "{who} is behind {by} by less than the margin that pixels need (inside by {} units, {} \
-                 needed): partial occlusion.",
-                short(d.distance as f32),
-                short(d.needed as f32)
+            // Region 1 of Figure 2.
+            Reason::Plane(d) if self.occlusion == Occlusion::None => format!(
+                "The eye is outside a separating {plane} of {by} and {who}, by {}: no part of the one \
+                 is behind the other.",
+                units(-d.distance as f32)
             ),
             // Region 3 of Figure 2, by the plane with the least to spare: the answer is as sure as that one.
-            Occlusion::Full => format!(
-                "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {} units, \
+            Reason::Plane(d) if self.occlusion == Occlusion::Full => format!(
+                "The eye is inside all {} supporting {plane}s of {by} and {who}; of the closest by {}, \
                  where {} are needed: full occlusion.",
                 self.edges,
-                short(d.distance as f32),
+                units(d.distance as f32),
                 short(d.needed as f32)
+            ),
+            // Region 2 of Figure 2.
+            Reason::Plane(d) if d.distance < 0.0 => format!(
+                "The eye is inside all separating {plane}s of {by} and {who}, but outside a supporting one, \
+                 by {}: partial occlusion.",
+                units(-d.distance as f32)
+            ),
+            Reason::Plane(d) => format!(
+                "The eye is inside all supporting {plane}s of {by} and {who}, of the closest by {}, which is \
+                 less than the {} that pixels need: partial occlusion.",
+                units(d.distance as f32),
+                short(d.needed as f32)
+            ),
+            Reason::Crossing(edge) => format!(
+                "The eye is inside all separating {plane}s of {by} and {who}, but the line of edge {} meets \
+                 {who}, so no {plane} through it supports {who}: partial occlusion.",
+                edge + 1
+            ),
+            Reason::Near(needed) => format!(
+                "{who} lies behind {by} by {}, less than the {} that pixels need: partial occlusion.",
+                units(self.behind[0] as f32),
+                short(needed as f32)
             ),
         };
         let mut why = why + kept;
@@ -165,9 +280,65 @@ impl Related {
         }
         why
     }
+    fn compared(&self) -> Option<Compared> {
+        match self.reason {
+            Reason::Before => {
+                Some(Compared::of(("farthest corner behind", self.behind[1]), ("the plane", 0.0)))
+            }
+            Reason::Cut => Some(Compared::of(("nearest corner behind", self.behind[0]), ("the plane", 0.0))),
+            Reason::Plane(d) if d.is_supporting => {
+                Some(Compared::of(("inside the supporting", d.distance), ("needed", d.needed)))
+            }
+            Reason::Plane(d) => {
+                Some(Compared::of(("inside the separating", d.distance), ("needed", d.needed)))
+            }
+            Reason::Crossing(_) => None,
+            Reason::Near(needed) => {
+                Some(Compared::of(("nearest corner behind", self.behind[0]), ("needed", needed)))
+            }
+        }
+    }
+    fn fields(&self) -> Vec<Field> {
+        let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
+        let mut fields = vec![
+            owner_field(self.owner),
+            integer("occluder", self.occluder),
+            integer("occluder_prim", self.name.0),
+            word("occlusion", self.result()),
+            Field { name: "reused", value: Value::Switch(self.reused) },
+            word("eye_side", if self.side > 0 { "front" } else { "back" }),
+            number("eye_height_units", self.height),
+            number("box_nearest_behind_units", self.behind[0]),
+            number("box_farthest_behind_units", self.behind[1]),
+            // "Full occlusion occurs when all of the supporting planes are satisfied" (Section 2).
+            word("supporting_satisfied", &format!("{} of {}", self.satisfied, self.edges)),
+            word(
+                "reason",
+                match self.reason {
+                    Reason::Before => "before",
+                    Reason::Cut => "cut",
+                    Reason::Plane(d) if d.is_supporting => "supporting",
+                    Reason::Plane(_) => "separating",
+                    Reason::Crossing(_) => "crossing",
+                    Reason::Near(_) => "near",
+                },
+            ),
+        ];
+        if let Some(d) = self.decisive() {
+            fields.extend([
+                integer("edge", d.edge.into()),
+                integer("tangent_corner", d.vertex.into()),
+                number("viewpoint_distance_units", d.distance),
+                number("needed_units", d.needed),
+                // Below 0 where the test failed, and by how much.
+                number("margin_units", d.distance - d.needed),
+            ]);
+        }
+        fields
+    }
 }
 
-/// Connected occluders were found to hide a box together.
+/// Occluders were found to hide a box together.
 #[derive(Clone, Copy, Debug)]
 pub struct Joined {
     owner: Owner,
@@ -247,6 +418,7 @@ impl<S: Shape> Tallied for Evidence<S> {
                 // Apart, since the tests of Section 3.2 come on top of those of the tree.
                 tally.add(if matches!(n.owner, Owner::Node(_)) { "node_tests" } else { "object_tests" }, 1);
             }
+            Self::Edge(_) => tally.add("edges_tested", 1),
             Self::Joined(_) => tally.add("joint_occlusions", 1),
             Self::Facing(_) => Facing::tally(tally),
         }
@@ -258,6 +430,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
         match self {
             Self::Chosen(_) => "OccluderChosen",
             Self::Tested(n) => n.kind(),
+            Self::Edge(_) => "EdgeTested",
             Self::Related(_) => "OcclusionTested",
             Self::Joined(_) => "JointlyOccluded",
             Self::Facing(_) => "OrientationTested",
@@ -267,6 +440,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
         match self {
             Self::Chosen(n) => Subject::Prim(n.name),
             Self::Tested(n) => n.subject(),
+            Self::Edge(n) => owner_subject(n.owner),
             Self::Related(n) => owner_subject(n.owner),
             Self::Joined(n) => owner_subject(n.owner),
             Self::Facing(n) => n.subject(),
@@ -279,8 +453,17 @@ impl<S: Shape> Note<S> for Evidence<S> {
             // Partial occlusion proves nothing by itself; a joint set is noted only where it hides the box.
             Self::Related(n) => (n.occlusion == Occlusion::Full).then_some(Claim::Hidden),
             Self::Joined(_) => Some(Claim::Hidden),
-            // A choice decides what is tested, not what is hidden.
-            Self::Chosen(_) => None,
+            // A choice decides what is tested, not what is hidden, and an edge is but one of several.
+            Self::Chosen(_) | Self::Edge(_) => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            Self::Edge(n) => n.compared(),
+            Self::Related(n) => n.compared(),
+            Self::Chosen(_) | Self::Joined(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -297,31 +480,24 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 switch("new", n.new),
             ],
             Self::Tested(n) => n.fields(context),
-            Self::Related(n) => vec![
-                owner_field(n.owner),
-                integer("occluder", n.occluder),
-                integer("occluder_prim", n.name.0),
-                Field { name: "occlusion", value: Value::Word(n.result().into()) },
-                switch("reused", n.reused),
-                Field {
-                    name: "eye_side",
-                    value: Value::Word(if n.side > 0 { "front" } else { "back" }.into()),
-                },
-                number("eye_height_units", n.height),
-                number("box_nearest_behind_units", n.behind[0]),
-                number("box_farthest_behind_units", n.behind[1]),
-                integer("edge", n.decisive.edge.into()),
-                integer("tangent_corner", n.decisive.vertex.into()),
-                number("viewpoint_distance_units", n.decisive.distance),
-                number("needed_units", n.decisive.needed),
-                // Below 0 where the test failed, and by how much.
-                number("margin_units", n.decisive.distance - n.decisive.needed),
-                Field {
-                    // "Full occlusion occurs when all of the supporting planes are satisfied" (Section 2).
-                    name: "supporting_satisfied",
-                    value: Value::Word(format!("{} of {}", n.inside.count_ones(), n.edges)),
-                },
-            ],
+            Self::Edge(n) => {
+                let mut fields = vec![
+                    owner_field(n.owner),
+                    integer("occluder", n.occluder),
+                    integer("occluder_prim", n.name.0),
+                    integer("edge", n.edge.into()),
+                    Field { name: "result", value: Value::Word(n.result().into()) },
+                ];
+                if let Some(test) = n.test {
+                    fields.push(number("separating_distance_units", test.separating));
+                    fields.push(number("supporting_distance_units", test.supporting));
+                    if test.needed.is_finite() {
+                        fields.push(number("needed_units", test.needed));
+                    }
+                }
+                fields
+            }
+            Self::Related(n) => n.fields(),
             Self::Joined(n) => vec![
                 owner_field(n.owner),
                 integer("members", n.count),
@@ -352,12 +528,14 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 if n.new { "; it was not in the frame before" } else { "" }
             ),
             Self::Tested(n) => n.sentence(context),
+            Self::Edge(n) => n.sentence::<S>(),
             Self::Related(n) => n.sentence::<S>(),
             Self::Joined(n) => format!(
-                "{} connected occluders hide {} together: the eye is inside all their supporting planes but \
-                 the {} through edges that they share from opposite sides.",
+                "{} occluders hide {} together: the eye is inside all their supporting {}s but those through \
+                 edges that two of them share from opposite sides ({} in all).",
                 n.count,
                 owner_name(n.owner),
+                plane_word::<S>(),
                 n.shared
             ),
             Self::Facing(n) => n.sentence(context),
@@ -387,7 +565,23 @@ pub fn draw<S: Shape>(
             to.line(Layer::Evidence, Role::Evidence, Subject::Prim(n.name), [view.eye.position, center]);
             label(to, (view.eye.position + center) * 0.5, format!("area-angle {}", short(n.area_angle)));
         }
-        Some(Evidence::Related(n)) => draw_relation(n, index, view, to),
+        Some(Evidence::Edge(n)) => {
+            let pair = Pair { owner: n.owner, occluder: n.occluder, side: n.side };
+            let test = n.test.map(|test| (n.edge, test));
+            let decisive = test.map(|(edge, test)| (edge, Edge::is_by_supporting(&test)));
+            let distance = test.map(|(_, test)| match Edge::is_by_supporting(&test) {
+                true => ("supporting", test.supporting),
+                false => ("separating", test.separating),
+            });
+            draw_pair(&pair, Some(n.edge), decisive, distance, index, view, to);
+        }
+        Some(Evidence::Related(n)) => {
+            let pair = Pair { owner: n.owner, occluder: n.occluder, side: n.side };
+            let decisive = n.decisive().map(|d| (d.edge, d.is_supporting));
+            let name = |d: Decisive| if d.is_supporting { "supporting" } else { "separating" };
+            let distance = n.decisive().map(|d| (name(d), d.distance));
+            draw_pair(&pair, None, decisive, distance, index, view, to);
+        }
         Some(Evidence::Joined(n)) => {
             to.bounds(Layer::Emphasis, Role::Current, owner_subject(n.owner), &index.bounds_of(n.owner));
             for &id in n.members() {
@@ -426,35 +620,53 @@ fn shadow<S: Shape>(note: &Joined, index: &Index<S>, view: &View<S>, to: &mut Dr
     }
 }
 
-fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
-    let bounds = index.bounds_of(note.owner);
-    to.bounds(Layer::Emphasis, Role::Current, owner_subject(note.owner), &bounds);
-    outline(index, note.occluder, Layer::Emphasis, Role::Current, to);
+/// An occluder and a box.
+struct Pair {
+    owner: Owner,
+    occluder: u32,
+    side: i8,
+}
+
+/// Draws an occluder, a box and their planes: all, or those of one edge. `decisive` is the edge and whether
+/// its supporting plane is emphasized, or else the separating one; `distance` is that of the eye from it.
+fn draw_pair<S: Shape>(
+    pair: &Pair,
+    only: Option<u8>,
+    decisive: Option<(u8, bool)>,
+    distance: Option<(&str, f64)>,
+    index: &Index<S>,
+    view: &View<S>,
+    to: &mut Drawing<S::Vector>,
+) {
+    let bounds = index.bounds_of(pair.owner);
+    to.bounds(Layer::Emphasis, Role::Current, owner_subject(pair.owner), &bounds);
+    outline(index, pair.occluder, Layer::Emphasis, Role::Current, to);
     // The same function that the run called; it depends on nothing but its arguments.
-    let relation = Relation::new(&index.occluders, note.occluder, note.side, &bounds, false);
+    let relation = Relation::new(&index.occluders, pair.occluder, pair.side, &bounds, false);
+    let mut plane = |edge: usize, vertex: u8, role: Role| {
+        draw_plane::<S>(index, pair, edge, vertex, role, view, &bounds, to);
+    };
     for (i, planes) in relation.planes.iter().enumerate() {
         let Planes::Tangent([supporting, separating]) = planes else { continue };
-        let decisive = i == note.decisive.edge as usize;
-        draw_plane::<S>(
-            index,
-            note,
-            i,
-            supporting.vertex,
-            if decisive { Role::Evidence } else { Role::Faint },
-            view,
-            &bounds,
-            to,
-        );
+        if only.is_some_and(|only| usize::from(only) != i) {
+            continue;
+        }
+        let emphasized = decisive.filter(|(edge, _)| usize::from(*edge) == i).map(|(_, is)| is);
         // In space both planes of every edge would cover the picture.
-        if S::Vector::AXES == 2 && note.occlusion != Occlusion::Full {
-            draw_plane::<S>(index, note, i, separating.vertex, Role::Faint, view, &bounds, to);
+        let both = S::Vector::AXES == 2 || only.is_some();
+        if emphasized == Some(false) || both {
+            let role = if emphasized == Some(false) { Role::Evidence } else { Role::Faint };
+            plane(i, separating.vertex, role);
+        }
+        if emphasized != Some(false) || both {
+            let role = if emphasized == Some(true) { Role::Evidence } else { Role::Faint };
+            plane(i, supporting.vertex, role);
         }
     }
-    // Without planes there is no distance, and none would do where the occluder touches the box.
-    let d = note.decisive;
-    if note.behind[1] > 0.0 && d.needed.is_finite() {
-        let side = if d.distance < 0.0 { "outside" } else { "inside" };
-        label(to, view.eye.position, format!("{} units {side}", short(d.distance.abs() as f32)));
+    if let Some((name, distance)) = distance {
+        let side = if distance < 0.0 { "outside" } else { "inside" };
+        let text = format!("{name} {}: {} {side}", plane_word::<S>(), units(distance.abs() as f32));
+        label(to, view.eye.position, text);
     }
 }
 
@@ -463,7 +675,7 @@ fn draw_relation<S: Shape>(note: &Related, index: &Index<S>, view: &View<S>, to:
 #[expect(clippy::too_many_arguments, reason = "the operands of one test, and where it is drawn")]
 fn draw_plane<S: Shape>(
     index: &Index<S>,
-    note: &Related,
+    pair: &Pair,
     edge: usize,
     vertex: u8,
     role: Role,
@@ -472,7 +684,7 @@ fn draw_plane<S: Shape>(
     to: &mut Drawing<S::Vector>,
 ) {
     let at = corner::<S>(bounds, vertex);
-    let ends = index.occluders.edges(note.occluder);
+    let ends = index.occluders.edges(pair.occluder);
     let flat = S::Vector::AXES == 2;
     let ends =
         if flat { vec![ends[edge].from] } else { vec![ends[edge].from, ends[(edge + 1) % ends.len()].from] };
@@ -485,7 +697,7 @@ fn draw_plane<S: Shape>(
     };
     let mut points = vec![S::rounded(at)];
     points.extend(ends.iter().map(|&e| drawn_out(e)));
-    let subject = owner_subject(note.owner);
+    let subject = owner_subject(pair.owner);
     if flat {
         to.line(Layer::Evidence, role, subject, points);
     } else if role == Role::Evidence {

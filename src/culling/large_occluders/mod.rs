@@ -12,11 +12,8 @@
 //!    from frame to frame (Section 3, [`memory`]).
 //! 4. Test what survives object by object against the occluders near it (Section 3.2).
 //!
-//! Departures: occlusion is demanded with a margin, so that it also holds for the pixels of the rasterizer
-//! (see [`relation`]); where an occluder's own plane cuts a box the relation is partial, not none, since what
-//! lies behind it can be occluded; the jointly occluding set need not be a whole component (see [`joint`]);
-//! occluders are picked from a leaf's longer list by where they are used (see [`selection`]); detail objects
-//! are also tested against the frustum. Cost: O(occluders · nodes visited); memory O(nodes · occluders).
+//! Where it departs from the paper: `DEPARTURES`. Cost: O(occluders · nodes visited); memory O(nodes ·
+//! occluders).
 
 mod explain;
 mod index;
@@ -43,7 +40,7 @@ use self::space::Shape;
 use self::walk::Walk;
 use crate::drawing::Drawing;
 use crate::method::{
-    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
+    Card, CodeLine, Departure, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
     backface_knob,
 };
 use crate::scene::{Progress, Scene};
@@ -84,33 +81,58 @@ impl Default for Params {
 // Figure 9. Lines 2 and 3 of Visible are "Frustum Culling" of Section 3, TestOcclusion follows Section 2, and
 // Gather tests the detail objects of Section 3.2.
 const CODE: &[CodeLine] = &[
-    CodeLine::new("Select:1", "S := occluders of P's leaf and direction"),
+    CodeLine::new("Select:1", "S := the occluders of P's leaf and direction"),
+    CodeLine::departing(
+        "Select:2",
+        "  those k of them that look largest from P",
+        "the k that look largest from the leaf's center",
+    ),
     CodeLine::new("Visible:1", "Visible(occluders S, node T, viewpoint P)"),
     CodeLine::new("Visible:2", "  if T lies outside the view frustum"),
     CodeLine::new("Visible:3", "    return"),
     CodeLine::new("Visible:4", "  TestOcclusion(S, T, P)"),
-    CodeLine::new("Visible:5", "  if S does not occlude T"),
+    CodeLine::departing(
+        "Visible:5",
+        "  if no A of S occludes T, nor the frustum cuts T",
+        "if S does not occlude T",
+    ),
     CodeLine::new("Visible:6", "    Gather(T)"),
     CodeLine::new("Visible:7", "  else if T is occluded"),
     CodeLine::new("Visible:8", "    return"),
     CodeLine::new("Visible:9", "  else if T is a leaf"),
     CodeLine::new("Visible:10", "    Gather(T)"),
-    CodeLine::new("Visible:11", "  else"),
-    CodeLine::new("Visible:12", "    S' := those of S that partially occlude T"),
-    CodeLine::new("Visible:13", "    for each child T' of T: Visible(S', T', P)"),
+    CodeLine::new("Visible:11", "  else S' := those of S that partially occlude T"),
+    CodeLine::new("Visible:12", "    for each child T' of T: Visible(S', T', P)"),
     CodeLine::new("TestOcclusion:1", "TestOcclusion(S, T, P)"),
     CodeLine::new("TestOcclusion:2", "  for each A of S"),
-    CodeLine::new("TestOcclusion:3", "    planes of A and T: kept ones, or made"),
-    CodeLine::new("TestOcclusion:4", "    if P satisfies all supporting planes"),
-    CodeLine::new("TestOcclusion:5", "      T is occluded by A"),
-    CodeLine::new("TestOcclusion:6", "    else if P satisfies all separating planes"),
-    CodeLine::new("TestOcclusion:7", "      A partially occludes T"),
-    CodeLine::new("TestOcclusion:8", "  if connected ones jointly occlude T"),
-    CodeLine::new("TestOcclusion:9", "    T is occluded by them"),
+    CodeLine::new("TestOcclusion:3", "    if T lies on P's side of A: A does not occlude T"),
+    CodeLine::new("TestOcclusion:4", "    planes of A and T: kept ones, or made"),
+    CodeLine::new("TestOcclusion:5", "    for each edge of A: test P against its planes"),
+    CodeLine::departing(
+        "TestOcclusion:6",
+        "    if P satisfies all supporting planes, by the margin",
+        "if P satisfies all supporting planes",
+    ),
+    CodeLine::new("TestOcclusion:7", "      T is occluded by A"),
+    CodeLine::new("TestOcclusion:8", "    else if P satisfies all separating planes"),
+    CodeLine::new("TestOcclusion:9", "      A partially occludes T"),
+    CodeLine::new("TestOcclusion:10", "    else A does not occlude T"),
+    CodeLine::departing(
+        "TestOcclusion:11",
+        "  if some of them jointly occlude T",
+        "if connected ones jointly occlude T",
+    ),
+    CodeLine::new("TestOcclusion:12", "    T is occluded by them"),
     CodeLine::new("Gather:1", "Gather(T)"),
-    CodeLine::new("Gather:2", "  for each detail object D of T"),
-    CodeLine::new("Gather:3", "    TestOcclusion(occluders near D, D, P)"),
-    CodeLine::new("Gather:4", "  draw all of T but the occluded objects"),
+    CodeLine::new("Gather:2", "  draw all of T"),
+    CodeLine::new("Gather:3", "  for each object D of T"),
+    CodeLine::new("Gather:4", "    if D lies outside the view frustum: leave D out"),
+    CodeLine::new("Gather:5", "    TestOcclusion(occluders near D, D, P)"),
+    CodeLine::new("Gather:6", "    if D is occluded: leave D out"),
+    CodeLine::new("Gather:7", "    else draw D"),
+    CodeLine::new("Draw:1", "Draw(D): for each polygon p of D"),
+    CodeLine::new("Draw:2", "  if p faces away from P: skip p"),
+    CodeLine::new("Draw:3", "  else draw p"),
 ];
 
 /// Lines that the run reaches.
@@ -118,17 +140,103 @@ mod line {
     use super::CODE;
     use crate::method::line;
     pub const SELECT: u8 = line(CODE, "Select:1");
+    pub const PICK: u8 = line(CODE, "Select:2");
+    pub const VISIBLE: u8 = line(CODE, "Visible:1");
+    pub const FRUSTUM: u8 = line(CODE, "Visible:2");
     pub const OUTSIDE: u8 = line(CODE, "Visible:3");
     pub const TEST: u8 = line(CODE, "Visible:4");
-    pub const GATHER: u8 = line(CODE, "Visible:6");
+    pub const FREE: u8 = line(CODE, "Visible:5");
+    pub const GATHER_FREE: u8 = line(CODE, "Visible:6");
+    pub const IS_OCCLUDED: u8 = line(CODE, "Visible:7");
     pub const OCCLUDED: u8 = line(CODE, "Visible:8");
-    pub const LEAF: u8 = line(CODE, "Visible:10");
-    pub const CHILD: u8 = line(CODE, "Visible:13");
-    pub const FULL: u8 = line(CODE, "TestOcclusion:5");
-    pub const PARTIAL: u8 = line(CODE, "TestOcclusion:7");
-    pub const JOINT: u8 = line(CODE, "TestOcclusion:9");
-    pub const DETAIL: u8 = line(CODE, "Gather:3");
+    pub const IS_LEAF: u8 = line(CODE, "Visible:9");
+    pub const GATHER_LEAF: u8 = line(CODE, "Visible:10");
+    pub const PASS: u8 = line(CODE, "Visible:11");
+    pub const CHILD: u8 = line(CODE, "Visible:12");
+    pub const TEST_OCCLUSION: u8 = line(CODE, "TestOcclusion:1");
+    pub const EACH: u8 = line(CODE, "TestOcclusion:2");
+    pub const BEFORE: u8 = line(CODE, "TestOcclusion:3");
+    pub const PLANES: u8 = line(CODE, "TestOcclusion:4");
+    pub const EDGE: u8 = line(CODE, "TestOcclusion:5");
+    pub const SUPPORTING: u8 = line(CODE, "TestOcclusion:6");
+    pub const FULL: u8 = line(CODE, "TestOcclusion:7");
+    pub const SEPARATING: u8 = line(CODE, "TestOcclusion:8");
+    pub const PARTIAL: u8 = line(CODE, "TestOcclusion:9");
+    pub const NONE: u8 = line(CODE, "TestOcclusion:10");
+    pub const JOINTLY: u8 = line(CODE, "TestOcclusion:11");
+    pub const JOINT: u8 = line(CODE, "TestOcclusion:12");
+    pub const GATHER: u8 = line(CODE, "Gather:1");
+    pub const DRAW_ALL: u8 = line(CODE, "Gather:2");
+    pub const OBJECT: u8 = line(CODE, "Gather:3");
+    pub const OBJECT_OUTSIDE: u8 = line(CODE, "Gather:4");
+    pub const DETAIL: u8 = line(CODE, "Gather:5");
+    pub const OBJECT_OCCLUDED: u8 = line(CODE, "Gather:6");
+    pub const DRAW_OBJECT: u8 = line(CODE, "Gather:7");
+    pub const POLYGON: u8 = line(CODE, "Draw:1");
+    pub const FACING: u8 = line(CODE, "Draw:2");
+    pub const DRAW: u8 = line(CODE, "Draw:3");
 }
+
+/// Kinds of events and the lines at which they stand.
+const STANDS: &[(&str, &[&str])] = &[
+    ("OccluderChosen", &["Select:2"]),
+    ("NodeClassified", &["Visible:2"]),
+    ("NodeDecided outside", &["Visible:3"]),
+    ("NodeDecided hidden", &["Visible:8"]),
+    ("NodeDecided partial", &["Visible:11"]),
+    ("NodeDecided visible", &["Visible:6", "Visible:10"]),
+    ("EdgeTested", &["TestOcclusion:5"]),
+    ("OcclusionTested", &["TestOcclusion:3", "TestOcclusion:7", "TestOcclusion:9", "TestOcclusion:10"]),
+    ("JointlyOccluded", &["TestOcclusion:12"]),
+    ("ObjectClassified", &["Gather:4"]),
+    ("PrimDecided outside", &["Gather:4"]),
+    ("PrimDecided hidden", &["Gather:6"]),
+    ("OrientationTested", &["Draw:2"]),
+    ("PrimDecided faces-away", &["Draw:2"]),
+];
+
+/// Where the method differs from the paper.
+const DEPARTURES: &[Departure] = &[
+    Departure {
+        section: "2",
+        what: "occlusion is demanded with a margin",
+        why: "so that it also holds at the pixels of a rasterizer, which snaps corners and rounds depths",
+    },
+    Departure {
+        section: "2",
+        what: "where an occluder's plane cuts a box, the occlusion is partial, and of each edge one of both \
+               planes will do",
+        why: "what lies behind the plane can still be occluded; the paper's half-space condition would pass \
+              no occluder on from the root, which every occluder cuts",
+    },
+    Departure {
+        section: "2",
+        what: "the jointly occluding set is the largest one that passes, not a whole connected component",
+        why: "one member that fails would otherwise spoil a set that hides the box without it",
+    },
+    Departure {
+        section: "3",
+        what: "a node that no occluder hides is gathered only if the frustum does not cut it either",
+        why: "its children may still lie outside the view",
+    },
+    Departure {
+        section: "3.1",
+        what: "the list of a leaf and direction is four times as long as k, and of it those k are taken that \
+               look largest from the eye itself",
+        why: "a leaf may be large, and what looks large from its center need not from elsewhere in it",
+    },
+    Departure {
+        section: "3.2",
+        what: "detail objects are also tested against the frustum",
+        why: "objects are far smaller than the boxes of leaves, which stick out of the view",
+    },
+    Departure {
+        section: "3.2",
+        what: "an object of at least 4 primitives whose diagonal is at most 5 % of the scene's is a detail \
+               object",
+        why: "the paper leaves open which objects are small",
+    },
+];
 
 /// The paper, of which a parameter names the section.
 macro_rules! section {
@@ -152,8 +260,8 @@ impl<S: Shape> Method<S> for LargeOccluders {
         doi: "10.1145/253284.253312",
         conservative: true,
         code: CODE,
-        stands: &[],
-        departures: &[],
+        stands: STANDS,
+        departures: DEPARTURES,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         let meaning = "levels of the kD-tree; 8 gives 255 nodes";
@@ -194,6 +302,19 @@ impl<S: Shape> Method<S> for LargeOccluders {
         // The memory goes over to the next frame; the state is this frame's alone, and is what a film shows
         // between steps.
         Walk::new(frame, memory, active, out, watch).run();
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        match line {
+            line::PASS | line::CHILD => params.tree_height > 1,
+            // The root holds the occluders themselves, so none can hide it.
+            line::OCCLUDED => params.tree_height > 1,
+            line::JOINTLY | line::JOINT if params.tree_height == 1 && !params.detail_objects => false,
+            line::JOINTLY | line::JOINT => params.occluders > 1,
+            line::DRAW_ALL => !params.detail_objects,
+            line::OBJECT..=line::DRAW_OBJECT => params.detail_objects,
+            line::POLYGON..=line::DRAW => params.backface_culling,
+            _ => true,
+        }
     }
 }
 

@@ -129,17 +129,45 @@ pub struct Classified {
     pub behind: bool,
 }
 
-/// The test that decided a classification: for full occlusion the supporting plane that the eye is least
-/// inside of, for partial the one it is farthest outside of, for none the separating one.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// The eye against the two planes of an edge: signed distances, world units, positive inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgeTest {
+    /// From the supporting plane.
+    pub supporting: f64,
+    /// What that must reach for full occlusion; infinite where the occluder's plane cuts the box.
+    pub needed: f64,
+    /// From the separating plane, which must exceed 0.
+    pub separating: f64,
+}
+
+/// A plane that decided.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decisive {
+    /// Whether it is a supporting plane; a separating one otherwise.
+    pub is_supporting: bool,
     /// The edge, and the corner of the box, that span the plane.
     pub edge: u8,
     pub vertex: u8,
     /// Signed distance of the eye from the plane, world units; positive inside.
     pub distance: f64,
-    /// What it must exceed.
+    /// What it must reach.
     pub needed: f64,
+}
+
+/// What decided a classification.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reason {
+    /// The box lies wholly on the eye's side of the occluder.
+    Before,
+    /// The occluder's plane cuts the box: only what lies behind it can be occluded.
+    Cut,
+    /// The first separating plane that the eye is outside of; for partial and full occlusion the supporting
+    /// plane that it is least inside of.
+    Plane(Decisive),
+    /// The line of this edge meets the box, so no plane through it supports the box.
+    Crossing(u8),
+    /// The box lies behind the occluder's plane by less than this distance, world units, which pixels need.
+    Near(f64),
 }
 
 /// An occluder as the eye sees it in one frame.
@@ -287,9 +315,7 @@ impl<S: Shape> Relation<S> {
         found.behind = s > 0.0
             && s >= lateral + DEPTH_ROUNDING * (eye_side.height + thickness + s)
             && s * eye_side.height >= eye_side.reach * lateral;
-        // What a lost tie between two tangent corners may turn a plane by, and what rounding may move it.
-        let lateral = lateral + ROUNDING * self.arm * self.diagonal / s;
-        let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
+        let (lateral, blur) = self.blurred(lateral);
         // Figure 2: outside one separating plane is region 1, inside all supporting ones region 3, the rest
         // region 2.
         let mut inside = 0;
@@ -314,29 +340,91 @@ impl<S: Shape> Relation<S> {
         found
     }
 
-    /// The operands that decided; for explanations.
-    pub fn decisive(&self, eye_side: &EyeSide<S>, seen: Classified, depth: f64, margin: Margin) -> Decisive {
-        // The same sums as above, for the edge whose test had the least to spare: only explanations pay for
-        // it.
+    /// What a lost tie between two tangent corners may turn a plane by, on top of `lateral`; and what
+    /// rounding may move it.
+    #[inline]
+    fn blurred(&self, lateral: f64) -> (f64, f64) {
         let s = self.behind[0];
-        let lateral = margin.lateral * depth.max(0.0) + ROUNDING * self.arm * self.diagonal / s;
-        let blur = ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s;
-        let tests = self.planes.iter().zip(&eye_side.edges).enumerate().filter_map(
-            |(i, (planes, &(r, length, distance)))| {
-                let Planes::Tangent([supporting, separating]) = planes else { return None };
-                let (plane, needed) = if seen.occlusion == Occlusion::None {
-                    (separating, 0.0)
-                } else {
-                    (supporting, (distance * lateral + blur * length) / s)
-                };
-                Some(Decisive {
-                    edge: i as u8,
-                    vertex: plane.vertex,
-                    distance: S::widened(plane.normal).dot(r),
-                    needed,
-                })
-            },
-        );
-        tests.min_by(|a, b| (a.distance - a.needed).total_cmp(&(b.distance - b.needed))).unwrap_or_default()
+        (lateral + ROUNDING * self.arm * self.diagonal / s, ROUNDING * (self.arm + s) + NORMAL_ROUNDING * s)
+    }
+
+    /// The tests that a classification made, edge by edge, up to the one that ended it; `None` where the line
+    /// of the edge meets the box.
+    pub fn edge_tests(
+        &self,
+        eye_side: &EyeSide<S>,
+        depth: f64,
+        margin: Margin,
+    ) -> impl Iterator<Item = Option<EdgeTest>> {
+        let s = self.behind[0];
+        let (lateral, blur) = self.blurred(margin.lateral * depth.max(0.0));
+        let mut ended = false;
+        self.planes.iter().zip(&eye_side.edges).map_while(move |(planes, &(r, length, distance))| {
+            if ended {
+                return None;
+            }
+            let Planes::Tangent([supporting, separating]) = planes else { return Some(None) };
+            let supporting = S::widened(supporting.normal).dot(r);
+            let separating = S::widened(separating.normal).dot(r);
+            let needed = if s > 0.0 { (distance * lateral + blur * length) / s } else { f64::INFINITY };
+            ended = separating <= 0.0 && (s > 0.0 || supporting <= 0.0);
+            Some(Some(EdgeTest { supporting, needed, separating }))
+        })
+    }
+
+    /// What decided a classification; for explanations.
+    pub fn reason(
+        &self,
+        eye_side: &EyeSide<S>,
+        seen: Classified,
+        thickness: f64,
+        depth: f64,
+        margin: Margin,
+    ) -> Reason {
+        let s = self.behind[0];
+        if self.planes.is_empty() {
+            return Reason::Before;
+        }
+        let decisive = |edge: usize, test: EdgeTest, is_supporting: bool| {
+            let Planes::Tangent([supporting, separating]) = self.planes[edge] else { return None };
+            let edge = edge as u8;
+            Some(if is_supporting {
+                let (distance, needed) = (test.supporting, test.needed);
+                Decisive { is_supporting, edge, vertex: supporting.vertex, distance, needed }
+            } else {
+                Decisive {
+                    is_supporting,
+                    edge,
+                    vertex: separating.vertex,
+                    distance: test.separating,
+                    needed: 0.0,
+                }
+            })
+        };
+        let tests = || self.edge_tests(eye_side, depth, margin).enumerate();
+        if seen.occlusion == Occlusion::None {
+            // The last test is the one that failed.
+            let failed = tests().last().and_then(|(edge, test)| decisive(edge, test?, false));
+            return failed.map_or(Reason::Before, Reason::Plane);
+        }
+        if s <= 0.0 {
+            return Reason::Cut;
+        }
+        let spare = |d: &Decisive| d.distance - d.needed;
+        let closest = tests()
+            .filter_map(|(edge, test)| decisive(edge, test?, true))
+            .min_by(|a, b| spare(a).total_cmp(&spare(b)));
+        let crossing = self.planes.iter().position(|planes| matches!(planes, Planes::Crossing));
+        match (closest, crossing) {
+            (Some(d), _) if spare(&d) < 0.0 || seen.occlusion == Occlusion::Full => Reason::Plane(d),
+            (_, Some(edge)) => Reason::Crossing(edge as u8),
+            // Inside of all planes and not called hidden: what is left of `classify` are its two conditions
+            // on the distance behind the occluder's plane.
+            _ => {
+                let lateral = margin.lateral * depth.max(0.0);
+                let front = lateral + DEPTH_ROUNDING * (eye_side.height + thickness + s);
+                Reason::Near(front.max(eye_side.reach * lateral / eye_side.height))
+            }
+        }
     }
 }

@@ -6,11 +6,12 @@
 
 use std::ops::Range;
 
-use super::explain::{Chosen, Evidence, Joined, Related};
+use super::explain::{Chosen, Edge, Evidence, Joined, Related};
 use super::index::Index;
 use super::joint::{Candidate, jointly};
 use super::memory::{Memory, Owner};
-use super::relation::{Margin, Occlusion, Relation};
+use super::occluders::Occluders;
+use super::relation::{Classified, EyeSide, Margin, Occlusion, Relation};
 use super::selection::{largest_from, leaf_at};
 use super::space::{Point, Shape};
 use super::{Active, LargeOccluders, Params, line};
@@ -85,7 +86,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// 1. Section 3.1: the active occluders of this frame.
     fn select(&mut self) {
-        self.watch.event(Event::Line(line::SELECT));
+        self.line(line::SELECT);
         let index = self.index;
         let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
@@ -100,6 +101,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             &mut list,
         );
         for (rank, &(id, area_angle)) in list.iter().enumerate() {
+            self.line(line::PICK);
             let memory = &self.memory;
             self.watch.note(|| {
                 Evidence::Chosen(Chosen::of(
@@ -142,16 +144,18 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let index = self.index;
         let node = &index.tree.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
+        self.line(line::VISIBLE);
         // Planes that the parent lies wholly inside of need no test here.
         let mut cutting = 0;
         if planes != 0 {
+            self.line(line::FRUSTUM);
             let test = self.frustum.test(&node.bounds, planes);
             self.watch
                 .note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
             match test {
                 FrustumTest::Outside(_) => {
                     // What is kept for it and below stays: "so that they can be reused later".
-                    self.watch.event(Event::Line(line::OUTSIDE));
+                    self.line(line::OUTSIDE);
                     self.watch.event(Event::DecidedNode(id, Verdict::Outside));
                     self.watch.event(Event::Left(id));
                     return;
@@ -162,12 +166,14 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         // The sets of all nodes on the way down lie one after the other, and this node's is cut off at the
         // end.
-        self.watch.event(Event::Line(line::TEST));
+        self.line(line::TEST);
         let end = self.sets.len();
         match self.test_occlusion(Owner::Node(id), &node.bounds, set) {
             Fate::Hidden => {
                 // "Temporal Coherence": what is kept below a node that is decided whole goes.
-                self.watch.event(Event::Line(line::OCCLUDED));
+                self.line(line::FREE);
+                self.line(line::IS_OCCLUDED);
+                self.line(line::OCCLUDED);
                 self.memory.forget_below(&index.tree, id);
                 self.watch.event(Event::DecidedNode(id, Verdict::Hidden));
             }
@@ -184,58 +190,71 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if left.is_empty() {
             self.memory.forget_below(&index.tree, id);
         }
-        // Lines 5 to 13; the frustum may cut it where no occluder does.
+        // Lines 5 to 12; the frustum may cut it where no occluder does.
         let undecided = cutting != 0 || !left.is_empty();
-        match index.tree.nodes()[id.at()].children() {
-            Some(children) if undecided => {
-                self.watch.event(Event::DecidedNode(id, Verdict::Partial));
-                if self.params.cache && !left.is_empty() {
-                    self.memory.passed(id);
-                }
-                for child in children {
-                    self.watch.event(Event::Line(line::CHILD));
-                    self.visible(child, cutting, left.clone());
-                }
-            }
-            _ => {
-                self.watch.event(Event::Line(if undecided { line::LEAF } else { line::GATHER }));
-                self.gather(id, cutting);
-                self.watch.event(Event::DecidedNode(id, Verdict::Visible));
-            }
+        self.line(line::FREE);
+        if !undecided {
+            return self.keep(id, cutting, line::GATHER_FREE);
         }
+        self.line(line::IS_OCCLUDED);
+        self.line(line::IS_LEAF);
+        let Some(children) = index.tree.nodes()[id.at()].children() else {
+            return self.keep(id, cutting, line::GATHER_LEAF);
+        };
+        self.line(line::PASS);
+        self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+        if self.params.cache && !left.is_empty() {
+            self.memory.passed(id);
+        }
+        for child in children {
+            self.line(line::CHILD);
+            self.visible(child, cutting, left.clone());
+        }
+    }
+
+    /// Gathers a node at this line.
+    fn keep(&mut self, id: NodeId, cutting: u8, line: u8) {
+        self.line(line);
+        self.gather(id, cutting);
+        // Back in Visible: what Gather did not leave out is drawn.
+        self.line(line);
+        self.watch.event(Event::DecidedNode(id, Verdict::Visible));
+    }
+
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
     }
 
     /// Section 2, TestOcclusion of Figure 9. On return the occluders that partially occlude the box stand at
     /// the end of `self.sets`.
     fn test_occlusion(&mut self, owner: Owner, bounds: &Aabb<S::Vector>, set: Range<usize>) -> Fate {
+        self.line(line::TEST_OCCLUSION);
         let depth = self.depth(bounds);
         let start = self.sets.len();
         self.candidates.clear();
-        // Lines 2 to 7: each alone. One that fully occludes ends it, so that planes to the others need not be
-        // made; the set is sorted by area-angle, and that one mostly comes early.
+        // Lines 2 to 10: each alone. One that fully occludes ends it, so that planes to the others need not
+        // be made; the set is sorted by area-angle, and that one mostly comes early.
         for at in set.clone() {
             let occluder = self.sets[at];
+            self.line(line::EACH);
             let (occlusion, candidate) = self.test_one(owner, bounds, occluder, depth, at - set.start);
             match occlusion {
-                Occlusion::Full => {
-                    self.watch.event(Event::Line(line::FULL));
-                    return Fate::Hidden;
-                }
+                Occlusion::Full => return Fate::Hidden,
                 Occlusion::Partial => {
-                    self.watch.event(Event::Line(line::PARTIAL));
                     self.sets.push(occluder);
                     self.candidates.extend(candidate);
                 }
                 Occlusion::None => {}
             }
         }
-        // Lines 8 and 9: together.
+        // Lines 11 and 12: together.
         if self.candidates.len() > 1 {
+            self.line(line::JOINTLY);
             let members = jointly(&self.index.occluders, &self.candidates, &mut self.memory.joint);
             if members != 0 {
+                self.line(line::JOINT);
                 let (occluders, candidates) = (&self.index.occluders, &self.candidates);
                 self.watch.note(move || Evidence::Joined(Joined::of(occluders, owner, candidates, members)));
-                self.watch.event(Event::Line(line::JOINT));
                 return Fate::Hidden;
             }
         }
@@ -255,7 +274,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (index, margin) = (self.index, self.margin);
         let side = self.memory.eye_side_of(id).side;
         let kept = if self.params.cache { self.memory.find(owner, id, side, near) } else { None };
-        // Line 3. The planes do not depend on where the Eye is, as long as it stays on this side.
+        // Line 4. The planes do not depend on where the Eye is, as long as it stays on this side.
         let made;
         let relation = match kept {
             Some(at) => self.memory.get(owner, at),
@@ -270,12 +289,12 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 }
             }
         };
-        // Lines 4 to 7.
+        // Lines 5 to 10.
         let eye_side = self.memory.eye_side_of(id);
         let thickness = index.occluders.thickness(id);
         let seen = relation.classify(eye_side, thickness, depth, margin);
-        self.watch.note(|| {
-            Evidence::Related(Related::of(
+        if O::LISTENS {
+            report(
                 &index.occluders,
                 owner,
                 relation,
@@ -284,8 +303,9 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 depth,
                 margin,
                 kept.is_some(),
-            ))
-        });
+                self.watch,
+            );
+        }
         let candidate = seen.behind.then_some(Candidate { occluder: id, side, seen });
         (seen.occlusion, candidate)
     }
@@ -305,15 +325,28 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// out of view or that the occluders near them hide.
     fn gather(&mut self, id: NodeId, cutting: u8) {
         let index = self.index;
+        self.line(line::GATHER);
         if !self.params.detail_objects {
+            self.line(line::DRAW_ALL);
             self.draw(index.tree.prims_below(id));
             return;
         }
         for (object, prims) in index.objects_of(id) {
+            self.line(line::OBJECT);
             match self.fate(object, cutting) {
-                Verdict::Visible => self.draw(prims),
+                Verdict::Visible => {
+                    self.line(line::DRAW_OBJECT);
+                    self.draw(prims);
+                }
                 // Decided by name: the node as a whole is called visible.
-                fate => prims.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, fate))),
+                fate => {
+                    self.line(if fate == Verdict::Hidden {
+                        line::OBJECT_OCCLUDED
+                    } else {
+                        line::OBJECT_OUTSIDE
+                    });
+                    prims.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, fate)));
+                }
             }
         }
     }
@@ -326,10 +359,13 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         let (scene, view) = (self.scene, self.view);
         for &prim in prims {
+            self.line(line::POLYGON);
+            self.line(line::FACING);
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             if prim_faces_away(scene, view.eye.position, prim) {
-                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
+                self.line(line::DRAW);
                 self.out.prims.push(prim);
             }
         }
@@ -353,6 +389,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 
     fn is_outside(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, planes: u8) -> bool {
+        self.line(line::OBJECT_OUTSIDE);
         let test = self.frustum.test(bounds, planes);
         self.watch.note(move || Evidence::Tested(Tested::of(Subject::Object(object), bounds, planes, test)));
         matches!(test, FrustumTest::Outside(_))
@@ -360,7 +397,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     fn is_hidden(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>) -> bool {
         let index = self.index;
-        self.watch.event(Event::Line(line::DETAIL));
+        self.line(line::DETAIL);
         // "Visibility between two points is reflexive": occluders that look large from the center toward the
         // Eye are near the object, though the Eye may see none of them large.
         let center = bounds.center();
@@ -386,4 +423,41 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.sets.truncate(start);
         hidden
     }
+}
+
+/// Lines 3 to 10 of TestOcclusion with the evidence of each, edge by edge, as [`Relation::classify`] went
+/// through them.
+#[expect(clippy::too_many_arguments, reason = "the operands of one test")]
+fn report<S: Shape, O: Observer<Evidence<S>>>(
+    occluders: &Occluders<S>,
+    owner: Owner,
+    relation: &Relation<S>,
+    eye_side: &EyeSide<S>,
+    seen: Classified,
+    depth: f64,
+    margin: Margin,
+    reused: bool,
+    watch: &mut O,
+) {
+    let lines = |lines: &[u8], watch: &mut O| lines.iter().for_each(|&l| watch.event(Event::Line(l)));
+    lines(&[line::BEFORE], watch);
+    if !relation.planes.is_empty() {
+        lines(&[line::PLANES], watch);
+        for (edge, test) in relation.edge_tests(eye_side, depth, margin).enumerate() {
+            lines(&[line::EDGE], watch);
+            watch.note(|| Evidence::Edge(Edge::of(occluders, owner, relation, edge, test)));
+        }
+        lines(&[line::SUPPORTING], watch);
+        lines(
+            match seen.occlusion {
+                Occlusion::Full => &[line::FULL][..],
+                Occlusion::Partial => &[line::SEPARATING, line::PARTIAL],
+                Occlusion::None => &[line::SEPARATING, line::NONE],
+            },
+            watch,
+        );
+    }
+    watch.note(|| {
+        Evidence::Related(Related::of(occluders, owner, relation, eye_side, seen, depth, margin, reused))
+    });
 }
