@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::{CliError, World, output, suggest};
 use crate::geometry::{Flat, Solid};
-use crate::method::{Card, Entry, Knob, KnobValue, Settings};
+use crate::method::{Card, Departure, Entry, Knob, KnobValue, Settings};
 use crate::trace::format::knob_json;
 
 #[derive(clap::Args)]
@@ -30,6 +30,7 @@ struct Listed {
     conservative: bool,
     spaces: Vec<&'static str>,
     params: Vec<Param>,
+    departures: &'static [Departure],
 }
 
 #[derive(Serialize)]
@@ -91,14 +92,15 @@ fn all() -> Result<Vec<Listed>, CliError> {
 
 fn add<S: World>(list: &mut Vec<Listed>) -> Result<(), CliError> {
     for entry in S::methods() {
-        let Card { key, name, summary, paper, doi, conservative, .. } = *entry.card();
+        let Card { key, name, summary, paper, doi, conservative, departures, .. } = *entry.card();
         if let Some(known) = list.iter_mut().find(|m| m.key == key) {
             known.spaces.push(S::NAME);
             continue;
         }
         let params =
             entry.knobs(&Settings::default())?.iter().map(|(knob, value)| param(knob, value)).collect();
-        list.push(Listed { key, name, summary, paper, doi, conservative, spaces: vec![S::NAME], params });
+        let spaces = vec![S::NAME];
+        list.push(Listed { key, name, summary, paper, doi, conservative, spaces, params, departures });
     }
     Ok(())
 }
@@ -139,11 +141,22 @@ fn table(methods: &[Listed]) -> String {
         for p in &m.params {
             let range = match (p.r#type, &p.range) {
                 ("integer", Json::Array(ends)) => format!("{} to {} {}", ends[0], ends[1], p.unit),
+                ("real", Json::Array(ends)) => format!("{} to {} {}", ends[0], ends[1], p.unit),
                 ("switch", _) => "true or false".into(),
+                ("choice", Json::Array(words)) => {
+                    words.iter().filter_map(Json::as_str).collect::<Vec<_>>().join(" or ")
+                }
                 _ => format!("N or P%, {}", p.unit),
             };
+            let range = range.trim_end();
             let default = p.default.as_str().map_or_else(|| p.default.to_string(), str::to_owned);
             let _ = writeln!(text, "    --set {}={default}   {range}: {} [{}]", p.name, p.meaning, p.source);
+        }
+        if !m.departures.is_empty() {
+            text.push_str("  where it departs from the paper, on purpose:\n");
+        }
+        for d in m.departures {
+            let _ = writeln!(text, "    Section {}: {}: {}", d.section, d.what, d.why);
         }
         text.push('\n');
     }

@@ -23,7 +23,7 @@ impl CodeLine {
 }
 
 /// Where a method differs from its paper on purpose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Departure {
     /// The section of the paper, such as `3.1`.
     pub section: &'static str,

@@ -134,7 +134,7 @@ fn misspoken(text: &str) -> Option<&'static str> {
     {
         return Some("begins small or ends open");
     }
-    if text.contains("  ") || text.contains("NaN") || text.contains("inf ") {
+    if text.contains("  ") || ["NaN", "inf "].iter().any(|hole| text.contains(hole)) {
         return Some("has a hole in it");
     }
     if chars.windows(3).any(|c| c[0] == '.' && c[1] == ' ' && c[2].is_lowercase()) {

@@ -65,7 +65,7 @@ pub struct Edge {
     pub name: PrimId,
     side: i8,
     /// The edge, and how many the occluder has.
-    edge: u8,
+    pub edge: u8,
     edges: u8,
     /// `None`: the edge's line meets the box.
     pub test: Option<EdgeTest>,

@@ -22,6 +22,8 @@ mod memory;
 mod occluders;
 pub mod parts;
 mod relation;
+#[cfg(test)]
+mod said;
 mod saved;
 mod selection;
 mod space;

@@ -286,11 +286,12 @@ impl<S: Shape> Relation<S> {
         // corners and edges of the box are left out, which leaves full occlusion exact.
         let side = f64::from(self.side);
         let arms = touched.map(|vertex| corner::<S>(bounds, vertex) - edge.from);
-        let unit = |arm: S::Point| {
-            let normal = S::through(edge, arm) * side;
-            normal * (1.0 / normal.length())
-        };
-        let normals = arms.map(unit);
+        let normals = arms.map(|arm| S::through(edge, arm) * side);
+        // A corner on the edge's line spans no plane with it: the line meets the box there.
+        if normals.iter().any(|normal| normal.length() == 0.0) {
+            return Planes::Crossing;
+        }
+        let normals = normals.map(|normal| normal * (1.0 / normal.length()));
         let plane = |i: usize| Plane { normal: S::rounded(normals[i]), vertex: touched[i] };
         self.arm = self.arm.max(arms[0].length()).max(arms[1].length());
         // The other corner lies on the positive side of the supporting plane.

@@ -9,9 +9,8 @@ use rand_pcg::rand_core::Rng;
 use super::parts::{Blockers, Occlusion, outline_seen_from, tangent_corners};
 use super::space::Shape;
 use crate::culling::Methods;
-use crate::drawing::Subject;
 use crate::geometry::{Aabb, Flat, Solid, Space, Vector, View, orient2d, orient3d};
-use crate::method::{Run, Settings, Verdict};
+use crate::method::{Run, Settings};
 use crate::scene::{
     AnyScene, LoadOptions, Quiet, Scene, example, figure_eight_path, framing_view, load, random_views,
 };
@@ -454,47 +453,4 @@ fn nothing_hides_what_lies_before_it_or_what_the_near_plane_uncovers() {
     let before = Aabb { min: Vec3::new(-0.1, -0.1, 0.1), max: Vec3::new(0.1, 0.1, 0.2) };
     let blockers = Blockers::<Solid>::new(&wall, &[vec![0, 1, 2, 3]]);
     assert_eq!(blockers.classify(0, &before, Vec3::new(0.0, 0.0, 3.0)), Occlusion::None);
-}
-
-/// Every decision but a partial one rests on evidence about its subject, its object, or a node that holds it.
-fn has_evidence<S: Methods>(scene: &Arc<Scene<S>>) {
-    let mut verdicts = std::collections::BTreeSet::new();
-    for culled in ["false", "true"] {
-        let mut run = run(scene, &[("backface-culling", culled), ("tree-height", "6")]);
-        for view in walk(scene, 12, 4) {
-            let film = run.record(&view, usize::MAX).film;
-            for at in 0..film.events().len() {
-                let Some(verdict) = film.events()[at].verdict().filter(|v| *v != Verdict::Partial) else {
-                    continue;
-                };
-                let place = format!("{}, event {at}: {}", scene.name(), film.sentence(at));
-                let evidence = film.evidence_of(at).unwrap_or_else(|| panic!("{place}"));
-                let is_about = match (film.subject(evidence), film.subject(at)) {
-                    (Subject::Object(object), Subject::Prim(prim)) => scene.object_of(prim) == object,
-                    (Subject::Node(node), Subject::Prim(prim)) => {
-                        film.hierarchy().prims(node).contains(&prim)
-                    }
-                    (about, of) => about == of,
-                };
-                assert!(is_about, "{place}: {}", film.sentence(evidence));
-                let claim = film.claim(evidence).map(|c| c.word());
-                let fits = match verdict {
-                    Verdict::Outside => matches!(claim, Some("outside" | "faces-away")),
-                    Verdict::Hidden => claim == Some("hidden"),
-                    _ => claim.is_none(),
-                };
-                assert!(fits, "{place}: {}", film.sentence(evidence));
-                verdicts.insert((verdict, film.events()[at].kind()));
-            }
-        }
-    }
-    for wanted in [Verdict::Outside, Verdict::Hidden, Verdict::Visible] {
-        assert!(verdicts.contains(&(wanted, "NodeDecided")), "{}: {verdicts:?}", scene.name());
-    }
-}
-
-#[test]
-fn every_decision_rests_on_evidence_about_what_it_decides() {
-    has_evidence(&example("street").expect("a scene"));
-    has_evidence(&solid("generate:building?polygons=1500&seed=3"));
 }
