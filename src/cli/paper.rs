@@ -134,6 +134,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             write(&report, *format, &args.out, &recipe(args, experiment))?;
         }
     }
+    // Once, below all tables: what they compare with a paper is not quite what the paper ran.
+    if formats.contains(&Format::Text) {
+        let run = |paper: &&Paper| experiments.iter().any(|e| paper.tables.iter().any(|t| t.name == e.name));
+        let text: String = PAPERS.iter().copied().filter(run).map(departures).collect();
+        output::print(text.as_bytes())?;
+    }
     Ok(())
 }
 
@@ -155,6 +161,19 @@ fn contents(paper: &Paper) -> String {
         let _ = writeln!(text, "\n{what}:");
         for (name, summary) in list {
             let _ = writeln!(text, "  {name:<32} {summary}");
+        }
+    }
+    text + &departures(paper)
+}
+
+/// Where what is run differs from a paper, as lines of text; nothing where it does not.
+fn departures(paper: &Paper) -> String {
+    let mut text = String::new();
+    for (method, departures) in paper.departures() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{method} departs from the paper (why: cullscope methods):");
+        for departure in departures {
+            let _ = writeln!(text, "  Section {}: {}", departure.section, departure.what);
         }
     }
     text

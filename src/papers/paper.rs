@@ -5,6 +5,7 @@ use crate::drawing::Drawing;
 use crate::figure::tools::Tint;
 use crate::geometry::Solid;
 use crate::measure::Experiment;
+use crate::method::Departure;
 use crate::scene::SceneError;
 
 /// A paper, or another work that figures and tables belong to. Title and DOI stand on the cards of its
@@ -40,6 +41,11 @@ impl Paper {
             }
         }
         sources
+    }
+    /// Where its methods differ from it on purpose, by key of the method, in their order.
+    pub fn departures(&self) -> Vec<(&'static str, &'static [Departure])> {
+        let cards = self.methods.iter().filter_map(|key| Solid::method(key)).map(|entry| entry.card());
+        cards.filter(|card| !card.departures.is_empty()).map(|card| (card.key, card.departures)).collect()
     }
 }
 

@@ -19,10 +19,15 @@ fn code() -> &'static [CodeLine] {
     Flat::method(LARGE_OCCLUDERS).map_or(&[], |m| m.card().code)
 }
 
-/// Figure 9: the algorithm.
+/// Figure 9: the algorithm. Below a line that differs from the paper's stands the paper's.
 pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
     const GUTTER_PT: f32 = 15.0;
-    let widest = code().iter().map(|l| metrics::width_pt(l.text, Font::Mono, 1.0)).fold(1.0, f32::max);
+    let paper_line = |line: &CodeLine| {
+        let indent = line.text.len() - line.text.trim_start().len();
+        format!("{}paper: {}", " ".repeat(indent), line.paper)
+    };
+    let width = |text: &str| metrics::width_pt(text, Font::Mono, 1.0);
+    let widest = code().iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
     let size_pt = ((COLUMN_PT - GUTTER_PT) / widest).min(LABEL_PT);
     let (line_pt, mut y) = (size_pt * 1.4, 2.0);
     let mut paper = Drawing::default();
@@ -34,20 +39,25 @@ pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
             paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, rule), vec2(COLUMN_PT, rule)]);
             y += line_pt * 0.6;
         }
-        y += line_pt;
-        let mut text = |x: f32, role: Role, anchor: Anchor, text: &str| {
+        let mut text = |x: f32, y: f32, role: Role, anchor: Anchor, text: &str| {
             let mark = Mark::Text { at: vec2(x, y), text: text.into(), size_pt, anchor, font: Font::Mono };
             paper.push(Layer::Labels, role, Subject::None, mark);
         };
-        text(GUTTER_PT - 5.0, Role::Faint, Anchor::End, number);
-        text(GUTTER_PT, Role::Ink, Anchor::Start, line.text);
+        y += line_pt;
+        text(GUTTER_PT - 5.0, y, Role::Faint, Anchor::End, number);
+        text(GUTTER_PT, y, Role::Ink, Anchor::Start, line.text);
+        if !line.paper.is_empty() {
+            y += line_pt;
+            text(GUTTER_PT, y, Role::Faint, Anchor::Start, &paper_line(line));
+        }
     }
     y += line_pt * 0.6;
     paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, y), vec2(COLUMN_PT, y)]);
     paper.size_pt = vec2(COLUMN_PT, y + 1.0);
     let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps \
                    through it: the selection of occluders, the recursion with view-frustum culling in front, \
-                   TestOcclusion opened up, and the detail objects in Gather.";
+                   TestOcclusion opened up, and the detail objects in Gather. In gray below a line: what the \
+                   paper's says in its place.";
     Ok(page(Paper::Column, "The visibility algorithm", Vec::new(), caption, &paper))
 }
 
