@@ -1,5 +1,6 @@
 //! `cullscope step`: a run step by step, as JSON Lines.
 
+use std::io::{self, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -58,7 +59,8 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     };
     let params = params_json(&run.knobs()).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
     let header = header(scene, run.card().key, params, &path, name);
-    output::emit(args.out.as_deref(), |mut to| {
+    output::emit(args.out.as_deref(), |to| {
+        let mut to = Counted { to, bytes: 0 };
         write_header(&header, &mut to)?;
         for (frame, view) in path.views.iter().enumerate() {
             let film = run.record(view, FILM_CAP).film;
@@ -72,9 +74,42 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
             if bar.cancelled() {
                 return Ok(false);
             }
+            if frame == 0 {
+                forewarn(to.bytes, path.views.len());
+            }
         }
         Ok(true)
     })
+}
+
+/// Says how much a path will write, where that is much.
+fn forewarn(bytes_of_first: u64, frames: usize) {
+    const MUCH: u64 = 256 << 20;
+    let bytes = bytes_of_first.saturating_mul(frames as u64);
+    if bytes >= MUCH && frames > 1 {
+        let gigabytes = bytes as f64 / 1e9;
+        output::say(&format!(
+            "note: the trace of {frames} frames will take about {gigabytes:.1} GB; Ctrl-C ends it, \
+             `--detail coarse` takes less, a view takes one frame"
+        ));
+    }
+}
+
+/// Counts the bytes that pass.
+struct Counted<'a> {
+    to: &'a mut dyn Write,
+    bytes: u64,
+}
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.to.write(bytes)?;
+        self.bytes += written as u64;
+        Ok(written)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
+    }
 }
 
 fn header<S: World>(
