@@ -1,8 +1,9 @@
 //! The window, driven by accessibility labels, the pointer and keys, as a person does.
 
-use cullscope::app::{Action, Command, Dialog, Start, Tables, Theme};
+use cullscope::app::{Action, Command, Dialog, LookIn, ObserverCamera, Start, Tables, Theme};
 use cullscope::drawing::Subject;
-use cullscope::geometry::{Flat, NodeId, View};
+use cullscope::geometry::{Flat, NodeId, PrimId, View};
+use cullscope::method::{Event, Verdict};
 use cullscope::views::window::App;
 use eframe::egui::{self, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
@@ -296,6 +297,100 @@ fn both_pictures_of_space_are_drawn() {
         let colors = colors(image.as_raw(), image.width() as usize, rect);
         assert!(colors > 3, "{view} is empty: {colors} colors");
     }
+}
+
+/// The pixels of the part of a picture.
+fn part(rgba: &[u8], width: usize, rect: egui::Rect) -> Vec<u8> {
+    let inside = |i: usize| rect.contains(pos2((i % width) as f32, (i / width) as f32));
+    rgba.chunks_exact(4).enumerate().filter(|(i, _)| inside(*i)).flat_map(|(_, p)| p.to_vec()).collect()
+}
+
+#[test]
+fn one_looks_into_what_is_closed_and_the_figure_shows_the_same() {
+    let start = start("generate:building?polygons=2000");
+    let mut h =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::End);
+    h.remove_cursor();
+    let mut pictures = vec![];
+    let folder = std::env::temp_dir().join(format!("cullscope-ui-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder of our own");
+    h.state_mut().state.folder = folder.clone();
+    for way in LookIn::ALL {
+        h.state_mut().state.apply(Command::LookIn(way));
+        h.state_mut().state.notices.clear();
+        h.state_mut().state.apply(Action::ExportPng);
+        settle(&mut h);
+        assert!(h.state().state.notices.iter().all(|n| !n.is_error), "{:?}", h.state().state.notices);
+        let file = std::fs::read_dir(&folder).expect("a folder").flatten().next().expect("a figure").path();
+        let figure = std::fs::read(&file).expect("a figure");
+        std::fs::remove_file(&file).expect("a file of our own");
+        h.state_mut().state.notices.clear();
+        settle(&mut h);
+        let image = h.render().expect("a picture");
+        let view = |label: &str| {
+            part(image.as_raw(), image.width() as usize, h.get_by_label_contains(label).rect())
+        };
+        pictures.push((view("Eye view."), view("Observer view."), figure));
+    }
+    std::fs::remove_dir_all(&folder).expect("a folder of our own");
+    for (i, j) in [(0, 1), (1, 2)] {
+        assert!(pictures[i].0 == pictures[j].0, "the Eye sees what it sees");
+        assert!(pictures[i].1 != pictures[j].1, "the Observer looks in: {i} {j}");
+        assert!(pictures[i].2 != pictures[j].2, "and so does the figure: {i} {j}");
+    }
+}
+
+#[test]
+fn the_picture_of_flatland_marks_what_a_step_is_about() {
+    let start = start("scenes2d/street.json");
+    let mut h =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).wgpu().build_eframe(move |cc| App::new(cc, start));
+    settle(&mut h);
+    h.state_mut().state.apply(Command::Method("hierarchical-z".into()));
+    settle(&mut h);
+    h.remove_cursor();
+    let state = &h.state().state;
+    let drawn = |i: &usize| matches!(state.events()[*i], Event::DecidedPrim(_, Verdict::Visible));
+    let steps: Vec<usize> = (0..state.len()).filter(drawn).step_by(3).map(|i| i + 1).collect();
+    assert!(steps.len() > 3);
+    for step in steps {
+        h.state_mut().state.apply(Command::GoTo(step));
+        settle(&mut h);
+        let image = h.render().expect("a picture");
+        for label in ["Observer view.", "Eye view", "Timeline"] {
+            let rect = h.get_all_by_label_contains(label).last().expect(label).rect();
+            let pixels = part(image.as_raw(), image.width() as usize, rect);
+            // The band of the mark is the only thing that is yellow.
+            let is_yellow = |p: &&[u8]| p[0] > 200 && p[1] > 190 && p[2] < 120;
+            let yellow = pixels.chunks_exact(4).filter(is_yellow).count();
+            assert!(yellow > 15, "{label}, step {step}: {yellow}");
+        }
+    }
+}
+
+#[test]
+fn layouts_and_sessions_keep_where_the_observer_stands() {
+    let mut h = window(FLAT);
+    let state = &mut h.state_mut().state;
+    state.apply(Command::Select(Subject::Prim(PrimId(200))));
+    let looking = ObserverCamera { distance: state.observer.distance * 0.4, ..state.observer };
+    state.apply(Command::Observe(looking));
+    settle(&mut h);
+    for action in [Action::LayoutLecture, Action::LayoutFigure, Action::LayoutDebug, Action::ResetLayout] {
+        h.state_mut().state.apply(action);
+        settle(&mut h);
+        assert_eq!(h.state().state.observer, looking, "{action:?}");
+    }
+    let file = std::env::temp_dir().join(format!("cullscope-ui-{}.session.json", std::process::id()));
+    let path = file.to_string_lossy().into_owned();
+    h.state_mut().state.apply(Command::SaveTo(path.clone()));
+    let start = Start { session: Some(path), fresh: true, ..Start::default() };
+    let mut h = Harness::builder().with_size(vec2(1280.0, 800.0)).build_eframe(move |cc| App::new(cc, start));
+    settle(&mut h);
+    std::fs::remove_file(&file).expect("a file of our own");
+    assert_eq!(h.state().state.observer, looking, "{:?}", h.state().state.notices);
 }
 
 #[test]

@@ -35,6 +35,15 @@ impl AnyStage {
         }
         true
     }
+    /// Moves the Eye as [`AnyStage::set_view`] does, with near and far fitted to where it stands then.
+    pub fn move_eye(&mut self, view: &AnyView) -> bool {
+        let fitted = match (&*self, view) {
+            (Either::Flat(s), Either::Flat(v)) => Either::Flat(s.fitted(*v)),
+            (Either::Solid(s), Either::Solid(v)) => Either::Solid(s.fitted(*v)),
+            _ => return false,
+        };
+        self.set_view(&fitted)
+    }
     /// Goes to a view of a path.
     pub fn go(&mut self, path: usize, frame: usize) {
         each!(self, s => s.go(path, frame));

@@ -2,12 +2,12 @@
 
 use super::any::AnyStage;
 use super::command::{Action, Command};
-use super::open::AnyOpened;
+use super::open::{AnyOpened, Wanted};
 use super::session::{Session, write_file};
-use super::shown::{Breakpoint, Dialog, Layout, Surface, Theme};
+use super::shown::{Breakpoint, Dialog, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
 use super::state::{Effect, State};
-use super::undo::Wanted;
+use super::undo::Inputs;
 use super::worker::{Done, Job, Request};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
@@ -36,14 +36,17 @@ impl State {
                 s.settings.0.insert(name, value);
             }),
             Command::Eye(view, gesture) if !self.is_eye_locked => self.change(gesture, |s| {
-                let moved = s.stage.as_mut().is_some_and(|stage| stage.set_view(&view));
+                let moved = s.stage.as_mut().is_some_and(|stage| stage.move_eye(&view));
                 if !moved {
                     s.tell("The Eye cannot look from there.");
                 }
             }),
             Command::Eye(..) => self.tell("The Eye is locked; press L to unlock it."),
             Command::Frame(path, frame) => self.go_frame(path, frame),
-            Command::Observe(camera) if camera.is_sound() => self.observer = camera,
+            Command::Observe(camera) if camera.is_sound() => {
+                self.observer = camera;
+                self.is_to_frame = false;
+            }
             Command::Observe(_) => {}
             Command::Filter(text) => self.filter = text,
             Command::Fold(at) => self.outline.toggle(at),
@@ -58,11 +61,13 @@ impl State {
                     mark.note = text;
                 }
             }
+            Command::Bookmark(i) => self.go_bookmark(i),
             Command::Unmark(i) if i < self.bookmarks.len() => {
                 self.bookmarks.remove(i);
             }
             Command::Unmark(_) => {}
             Command::Surface(surface) => self.shown.surface = surface,
+            Command::LookIn(way) => self.shown.look_in = way,
             Command::Layout(layout) => self.set_layout(layout),
             Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
             Command::SaveTo(path) => self.save(&path),
@@ -124,6 +129,33 @@ impl State {
         }
     }
 
+    /// Whether what an action shows or chooses is shown or chosen now.
+    pub fn is_on(&self, action: Action) -> bool {
+        let s = &self.shown;
+        match action {
+            Action::ShowPrims => s.prims,
+            Action::ShowNodes => s.nodes,
+            Action::ShowEye => s.eye,
+            Action::ShowEvidence => s.evidence,
+            Action::Swap => self.is_swapped,
+            Action::LockEye => self.is_eye_locked,
+            Action::SurfaceSolid => s.surface == Surface::Solid,
+            Action::SurfaceWire => s.surface == Surface::Wire,
+            Action::SurfaceClear => s.surface == Surface::Translucent,
+            Action::LookInOff => s.look_in == LookIn::Off,
+            Action::LookInCut => s.look_in == LookIn::Cut,
+            Action::LookInFaces => s.look_in == LookIn::Faces,
+            Action::ThemeLight => s.theme == Theme::Light,
+            Action::ThemeDark => s.theme == Theme::Dark,
+            Action::ThemePrint => s.theme == Theme::Print,
+            Action::LayoutDebug => s.layout == Layout::Debug,
+            Action::LayoutLecture => s.layout == Layout::Lecture,
+            Action::LayoutFigure => s.layout == Layout::Figure,
+            Action::LayoutPictures => s.layout == Layout::Pictures,
+            _ => false,
+        }
+    }
+
     fn act(&mut self, action: Action) {
         if !self.can(action) || self.do_step(action) || self.edit(action) || self.show(action) {
             return;
@@ -141,7 +173,7 @@ impl State {
             Action::Reload => {
                 if let Some(source) = self.staged().map(|s| s.scene().source().to_owned()) {
                     self.recall = Some(self.session());
-                    self.load(&source, None);
+                    self.load(Wanted::named(&source), None);
                 }
             }
             Action::Save => match self.session_path.clone() {
@@ -221,9 +253,10 @@ impl State {
                 let camera = self.observer;
                 self.change(0, |s| {
                     if let Some(Either::Solid(stage)) = &mut s.stage {
-                        let look = camera.view(1, 1).eye;
-                        (stage.view.eye.position, stage.view.eye.target, stage.view.eye.up) =
+                        let (look, mut view) = (camera.view(1, 1).eye, stage.view);
+                        (view.eye.position, view.eye.target, view.eye.up) =
                             (look.position, look.target, look.up);
+                        stage.view = stage.fitted(view);
                     }
                 });
             }
@@ -245,7 +278,7 @@ impl State {
                     self.outline.fold_all(film.reel.events(), action == Action::FoldAll);
                 }
             }
-            Action::FrameSelection => self.effects.push(Effect::Frame),
+            Action::FrameSelection => self.is_to_frame = true,
             Action::Swap => self.is_swapped = !self.is_swapped,
             Action::ShowPrims => shown.prims = !shown.prims,
             Action::ShowNodes => shown.nodes = !shown.nodes,
@@ -255,6 +288,10 @@ impl State {
             Action::SurfaceWire => shown.surface = Surface::Wire,
             Action::SurfaceClear => shown.surface = Surface::Translucent,
             Action::CycleSurface => shown.surface = Surface::ALL[(shown.surface as usize + 1) % 3],
+            Action::LookInOff => shown.look_in = LookIn::Off,
+            Action::LookInCut => shown.look_in = LookIn::Cut,
+            Action::LookInFaces => shown.look_in = LookIn::Faces,
+            Action::CycleLookIn => shown.look_in = LookIn::ALL[(shown.look_in as usize + 1) % 3],
             Action::ThemeLight => shown.theme = Theme::Light,
             Action::ThemeDark => shown.theme = Theme::Dark,
             Action::ThemePrint => shown.theme = Theme::Print,
@@ -294,9 +331,9 @@ impl State {
         self.selection = subject;
     }
 
-    fn wanted(&self) -> Option<Wanted> {
+    fn inputs(&self) -> Option<Inputs> {
         let stage = self.stage.as_ref()?;
-        Some(Wanted {
+        Some(Inputs {
             method: self.method.clone(),
             settings: self.settings.clone(),
             place: stage.get().place(),
@@ -306,9 +343,9 @@ impl State {
 
     /// Changes something that culling depends on: undoable, and the film is recorded again.
     fn change(&mut self, gesture: u64, change: impl FnOnce(&mut Self)) {
-        let before = self.wanted();
+        let before = self.inputs();
         change(self);
-        if before != self.wanted()
+        if before != self.inputs()
             && let Some(before) = before
         {
             if let Some(stage) = &mut self.stage {
@@ -342,7 +379,7 @@ impl State {
     }
 
     fn undo(&mut self, back: bool) {
-        let Some(now) = self.wanted() else { return };
+        let Some(now) = self.inputs() else { return };
         let Some(wanted) = (if back { self.history.undo(now) } else { self.history.redo(now) }) else {
             return;
         };
@@ -370,19 +407,19 @@ impl State {
             match if is_figure { super::export::session_in(source) } else { Session::read(source) } {
                 Ok(session) => {
                     self.session_path = Some(source.to_owned()).filter(|_| !is_figure);
-                    self.restore(session);
+                    self.restore(session, Some(source));
                 }
                 Err(error) => self.fail(error.to_string()),
             }
             return;
         }
         self.recall = None;
-        self.load(source, views);
+        self.load(Wanted::named(source), views);
     }
 
-    pub(super) fn load(&mut self, source: &str, views: Option<String>) {
+    pub(super) fn load(&mut self, wanted: Wanted, views: Option<String>) {
         self.is_playing = false;
-        self.worker.ask(&format!("Opening {source}"), Job::Load { source: source.to_owned(), views });
+        self.worker.ask(&format!("Opening {}", wanted.source), Job::Load { wanted, views });
     }
 
     /// Records the film of what is wanted now.
@@ -446,7 +483,7 @@ impl State {
         // Framed for a window of common shape; the window itself does it again for its own.
         match &stage {
             Either::Flat(s) => self.observer.frame_flat(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
-            Either::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds()),
+            Either::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
         }
         self.stage = Some(stage);
         (self.step, self.selection) = (0, Subject::None);
@@ -457,7 +494,7 @@ impl State {
         self.history.clear();
         self.notices.retain(|n| !n.is_error);
         self.filter.clear();
-        self.effects.push(Effect::Frame);
+        self.is_to_frame = true;
         if dropped > 0 {
             self.tell(format!("{name}: {dropped} primitives were dropped; see the loading report."));
         }

@@ -36,11 +36,18 @@ impl Default for ObserverCamera {
 }
 
 impl ObserverCamera {
-    /// Frames a box of space from the present direction.
-    pub fn frame_solid(&mut self, bounds: &Aabb<Vec3>, whole: &Aabb<Vec3>) {
-        self.pivot = bounds.center().to_array();
+    /// Frames a box of space from the present direction in a picture of this aspect (width by height): as near
+    /// as every corner allows.
+    pub fn frame_solid(&mut self, bounds: &Aabb<Vec3>, whole: &Aabb<Vec3>, aspect: f32) {
+        let (center, turn) = (bounds.center(), self.rotation().inverse());
+        self.pivot = center.to_array();
         self.extent = whole.diagonal().max(1e-3);
-        self.distance = (bounds.diagonal() * 0.5 / (FOV * 0.5).sin()).max(self.extent * 1e-4) * 0.9;
+        let up = (FOV * 0.5).tan();
+        let needed = |corner: Vec3| {
+            let p = turn * (corner - center);
+            p.z + (p.x.abs() / (up * aspect.max(1e-3))).max(p.y.abs() / up)
+        };
+        self.distance = bounds.corners().map(needed).fold(self.extent * 1e-4, f32::max) * 1.04;
     }
     /// Frames a box of flatland in a picture of this aspect (width by height).
     pub fn frame_flat(&mut self, bounds: &Aabb<Vec2>, whole: &Aabb<Vec2>, aspect: f32) {

@@ -4,7 +4,7 @@
 use super::any::AnyView;
 use super::camera::ObserverCamera;
 use super::measured::Tables;
-use super::shown::{Detail, Dialog, Gesture, Layout, Surface};
+use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
 use crate::method::Verdict;
@@ -83,7 +83,8 @@ actions! {
     File Reload "reload" "Reload scene" ["Ctrl+R"] "Reads the scene again.";
     File Save "save" "Save session" ["Ctrl+S"] "Saves what is open, so that it can be opened again.";
     File SaveAs "save-as" "Save session as…" ["Ctrl+Shift+S"] "Saves what is open under another name.";
-    File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors.";
+    File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors; surfaces \
+        of space as pixels.";
     File ExportPdf "export-pdf" "Export figure as PDF…" [] "Writes the picture on screen as a page.";
     File ExportPng "export-png" "Export figure as PNG…" ["Ctrl+E"] "Writes the picture on screen as pixels.";
     File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
@@ -182,6 +183,12 @@ actions! {
     View SurfaceWire "surface-wire" "Wireframe" [] "Draws edges.";
     View SurfaceClear "surface-translucent" "Translucent" [] "Draws surfaces that one sees through.";
     View CycleSurface "surface" "Next surface style" ["X"] "Solid, wireframe, translucent.";
+    View LookInOff "look-in-off" "Look in: off" [] "Closed buildings stay closed.";
+    View LookInCut "look-in-cut" "Look in: cut above the Eye" [] "Cuts away in the Observer's picture what lies \
+        higher than the Eye, as a floor plan does.";
+    View LookInFaces "look-in-faces" "Look in: without backs" [] "Leaves out faces that turn their back to the \
+        Observer: opens rooms whose faces look inward.";
+    View CycleLookIn "look-in" "Look in: next way" ["I"] "Closed, cut above the Eye, without backs.";
     View ThemeLight "theme-light" "Light theme" [] "Dark on light.";
     View ThemeDark "theme-dark" "Dark theme" [] "Light on dark.";
     View ThemePrint "theme-print" "Print theme" [] "Black on white, as figures are printed.";
@@ -255,10 +262,14 @@ pub enum Command {
     BreakNode(NodeId),
     /// Writes a note to a bookmark.
     Note(usize, String),
+    /// Goes to a bookmark: its step, and where the person looked from.
+    Bookmark(usize),
     /// Removes a bookmark.
     Unmark(usize),
     /// How surfaces are drawn.
     Surface(Surface),
+    /// How the Observer looks into what is closed.
+    LookIn(LookIn),
     /// A set of panels.
     Layout(Layout),
     /// Size of everything, 0.5 to 4.

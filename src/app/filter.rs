@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use super::concern::Concern;
 use super::stage::{Reading, SceneFacts};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
@@ -66,7 +67,8 @@ impl Filter {
     /// Binds the filter to a film, looking up once what depends on it.
     pub fn on<'a>(&'a self, scene: &'a dyn SceneFacts, film: Reading<'a>) -> Applied<'a> {
         let ranges = self.terms.iter().map(|(_, term)| term.range(film)).collect();
-        Applied { filter: self, scene, film, ranges }
+        let things = self.terms.iter().map(|(_, term)| term.things(scene, film)).collect();
+        Applied { filter: self, film, ranges, things }
     }
 }
 
@@ -95,6 +97,19 @@ impl Term {
             ))),
         }
     }
+    /// The things that a term names: a primitive, or every object with that name.
+    fn things<'a>(&self, scene: &'a dyn SceneFacts, film: Reading<'a>) -> Vec<Concern<'a>> {
+        let named: Vec<Subject> = match self {
+            Self::Prim(prim) => vec![Subject::Prim(PrimId(*prim))],
+            Self::UnderObject(name) => (0..scene.object_count() as u32)
+                .map(ObjectId)
+                .filter(|&o| scene.object_name(o).to_lowercase().contains(name))
+                .map(Subject::Object)
+                .collect(),
+            _ => vec![],
+        };
+        named.into_iter().map(|subject| Concern::of(film, scene, subject)).collect()
+    }
     /// The events from entering the node of `under:` to leaving it.
     fn range(&self, film: Reading<'_>) -> Option<(usize, usize)> {
         let Self::UnderNode(node) = self else { return None };
@@ -113,9 +128,9 @@ fn has(name: &str, word: &str) -> bool {
 /// A filter bound to a film.
 pub struct Applied<'a> {
     filter: &'a Filter,
-    scene: &'a dyn SceneFacts,
     film: Reading<'a>,
     ranges: Vec<Option<(usize, usize)>>,
+    things: Vec<Vec<Concern<'a>>>,
 }
 
 impl Applied<'_> {
@@ -125,26 +140,25 @@ impl Applied<'_> {
         self.filter
             .terms
             .iter()
-            .zip(&self.ranges)
-            .all(|((wanted, term), range)| self.holds(term, *range, at, event) == *wanted)
+            .zip(self.ranges.iter().zip(&self.things))
+            .all(|((wanted, term), (range, things))| self.holds(term, *range, things, at, event) == *wanted)
     }
-    fn is_of(&self, object: ObjectId, name: &str) -> bool {
-        self.scene.object_name(object).to_lowercase().contains(name)
-    }
-    fn holds(&self, term: &Term, range: Option<(usize, usize)>, at: usize, event: Event) -> bool {
+    fn holds(
+        &self,
+        term: &Term,
+        range: Option<(usize, usize)>,
+        things: &[Concern<'_>],
+        at: usize,
+        event: Event,
+    ) -> bool {
         let (reel, depth) = (self.film.reel, || self.film.moves.depth(at));
         let subject = reel.subject(at);
         match term {
             Term::Kind(kind) => has(reel.kind(at), kind),
             Term::Verdict(verdict) => event.verdict().is_some_and(|v| v.name().starts_with(verdict.as_str())),
             Term::Node(n) => subject == Subject::Node(NodeId(*n)),
-            Term::Prim(p) => subject == Subject::Prim(PrimId(*p)),
+            Term::Prim(_) | Term::UnderObject(_) => things.iter().any(|t| t.holds(at)),
             Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
-            Term::UnderObject(name) => match subject {
-                Subject::Prim(p) => self.is_of(self.scene.object_of(p), name),
-                Subject::Object(object) => self.is_of(object, name),
-                _ => false,
-            },
             Term::Line(text) => match event {
                 Event::Line(i) => reel.card().code[i as usize].label.to_lowercase().contains(text),
                 _ => false,

@@ -1,6 +1,6 @@
 //! Opening a scene with its views, and the examples that are one click away.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use crate::drawing::words::capitalized;
@@ -23,13 +23,127 @@ pub(super) type Opened<S> = (Arc<Scene<S>>, Option<ViewPath<S>>);
 /// The same of either space.
 pub(super) type AnyOpened = Either<Opened<Flat>, Opened<Solid>>;
 
+/// A scene to load, as a person or a session names it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Wanted {
+    /// A path, `generate:NAME`, or the name of a scene that travels inside.
+    pub(super) source: String,
+    /// The hash that it must have, to be found again where its path leads nowhere; empty if any will do.
+    pub(super) hash_hex: String,
+    /// The folder from which its path leads.
+    pub(super) folder: PathBuf,
+}
+
+impl Wanted {
+    /// A source as it is typed.
+    pub(super) fn named(source: &str) -> Self {
+        Self { source: source.to_owned(), ..Self::default() }
+    }
+    /// The files that may be it, the likeliest first: where the path leads from the session's folder and from
+    /// the working folder, then files of its name in and above the session's folder.
+    fn places(&self) -> Vec<PathBuf> {
+        let (path, name) = (Path::new(&self.source), file_name(&self.source));
+        let here = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
+        let mut places = vec![self.folder.join(path), path.to_owned(), self.folder.join(&name)];
+        // A path that leads up and down again: its last part may lie somewhere above.
+        let inner: PathBuf = path.components().filter(|c| matches!(c, Component::Normal(_))).collect();
+        places.extend(here.ancestors().take(ABOVE).map(|above| above.join(&inner)));
+        places.extend(entries(&self.folder_or_dot()).into_iter().map(|inner| inner.join(&name)));
+        places.retain(|p| p.is_file());
+        let mut seen = std::collections::BTreeSet::new();
+        places.retain(|p| seen.insert(p.canonicalize().unwrap_or_else(|_| p.clone())));
+        places
+    }
+    /// Files beside the session that have another name and perhaps its content.
+    fn namesakes(&self) -> Vec<PathBuf> {
+        let ending = Path::new(&self.source).extension();
+        let mut files: Vec<_> = entries(&self.folder_or_dot())
+            .into_iter()
+            .filter(|p| p.is_file() && is_scene(p) && p.extension() == ending)
+            .collect();
+        files.sort();
+        files.truncate(NAMESAKES);
+        files
+    }
+    fn folder_or_dot(&self) -> PathBuf {
+        if self.folder.as_os_str().is_empty() { PathBuf::from(".") } else { self.folder.clone() }
+    }
+}
+
+/// Files that are read to find a scene by its content.
+const NAMESAKES: usize = 12;
+
+/// The last part of a path.
+pub(super) fn file_name(source: &str) -> String {
+    Path::new(source).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// A scene's source as it is found from `folder`: a file by the way from there, without a folder by its whole
+/// path; what is no file as it is.
+pub(super) fn named_from(source: &str, folder: Option<&Path>) -> String {
+    let Some(file) = Path::new(source).canonicalize().ok().filter(|p| p.is_file()) else {
+        return source.to_owned();
+    };
+    let Some(folder) = folder else { return file.to_string_lossy().into_owned() };
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let Ok(folder) = folder.canonicalize() else { return file.to_string_lossy().into_owned() };
+    let common = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return file.to_string_lossy().into_owned();
+    }
+    let up = folder.components().skip(common).map(|_| "..".to_owned());
+    let down = file.components().skip(common).map(|c| c.as_os_str().to_string_lossy().into_owned());
+    // With the separator that every system reads.
+    up.chain(down).collect::<Vec<_>>().join("/")
+}
+
 /// Loads a scene and, if named, a view file. The error is one line.
-pub(super) fn load(source: &str, views: Option<&str>, progress: &dyn Progress) -> Result<AnyOpened, String> {
-    let found = scene::load(source, &LoadOptions::default(), progress).or_else(|error| inside(source, error));
-    Ok(each!(found.map_err(|e| e.to_string())?, scene => Either({
+pub(super) fn load(
+    wanted: &Wanted,
+    views: Option<&str>,
+    progress: &dyn Progress,
+) -> Result<AnyOpened, String> {
+    Ok(each!(find(wanted, progress)?, scene => Either({
         let path = views.map(|v| scene::read_views(v, scene.origin())).transpose();
         (scene, path.map_err(|e| e.to_string())?)
     })))
+}
+
+/// The scene that is wanted: the first with its hash, else the first where its path leads.
+fn find(wanted: &Wanted, progress: &dyn Progress) -> Result<AnyScene, String> {
+    let read = |source: &str| scene::load(source, &LoadOptions::default(), progress);
+    let is_it = |scene: &AnyScene| each!(scene, s => s.hash_hex()) == wanted.hash_hex;
+    if wanted.hash_hex.is_empty() {
+        let source = wanted.source.as_str();
+        return read(source).or_else(|error| inside(source, error)).map_err(|e| e.to_string());
+    }
+    // A path from the working folder is what one would type.
+    let typed = |place: &Path| named_from(&place.to_string_lossy(), Some(Path::new("")));
+    let (mut first, mut failed) = (None, None);
+    for place in wanted.places() {
+        match read(&typed(&place)) {
+            Ok(scene) if is_it(&scene) => return Ok(scene),
+            Ok(scene) => first = first.or(Some(scene)),
+            Err(error) => failed = failed.or(Some(error)),
+        }
+    }
+    if first.is_none()
+        && let Ok(scene) = read(&wanted.source).or_else(|error| inside(&wanted.source, error))
+    {
+        return Ok(scene);
+    }
+    let by_content = || wanted.namesakes().iter().filter_map(|p| read(&typed(p)).ok()).find(is_it);
+    match (first, failed) {
+        (first, None) => by_content().or(first).ok_or_else(|| {
+            format!(
+                "{}: the scene of this session was not found, neither there nor by its content in {}",
+                wanted.source,
+                wanted.folder_or_dot().display()
+            )
+        }),
+        (Some(first), _) => Ok(by_content().unwrap_or(first)),
+        (None, Some(error)) => by_content().ok_or_else(|| error.to_string()),
+    }
 }
 
 /// The scene that travels inside the program, where the file of its name is not there.

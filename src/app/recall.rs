@@ -1,17 +1,30 @@
 //! Starting with what the command line names or what was open last, and saving it.
 
+use std::path::Path;
+
 use super::any::ViewRecord;
 use super::command::{Action, Command};
 use super::measured::{Tables, tables};
-use super::session::{Picked, Session, Shown as Kept, VERSION};
-use super::shown::{Detail, Dialog, Layout, Shown, Surface, Theme};
+use super::open::{Wanted, file_name, named_from};
+use super::session::{Picked, Session, Shown as Kept, Stop, VERSION};
+use super::shown::{Breakpoint, Detail, Dialog, Layout, LookIn, Shown, Surface, Theme};
 use super::start::Start;
-use super::state::{Effect, Notice, State};
+use super::state::{Notice, State};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Settings;
+use crate::trace::Counts;
 
 impl State {
+    /// What is open, as a session that is kept in a file (or, without one, wherever the explorer likes): the
+    /// scene is named as it is found from there.
+    pub fn session_in(&self, file: Option<&str>) -> Session {
+        let mut session = self.session();
+        let folder = file.map(|f| Path::new(f).parent().unwrap_or(Path::new("")));
+        session.scene = named_from(&session.scene, folder);
+        session
+    }
+
     /// What is open, as a session.
     pub fn session(&self) -> Session {
         let stage = self.staged();
@@ -30,6 +43,7 @@ impl State {
             selected: picked(self.selection),
             observer: Some(self.observer),
             bookmarks: self.bookmarks.clone(),
+            breakpoints: self.breakpoints.iter().filter_map(|b| self.stop(*b)).collect(),
             filter: self.filter.clone(),
             shown: Kept {
                 prims: s.prims,
@@ -37,6 +51,7 @@ impl State {
                 eye: s.eye,
                 evidence: s.evidence,
                 surface: s.surface.name().into(),
+                look_in: s.look_in.name().into(),
                 theme: s.theme.name().into(),
                 layout: s.layout.name().into(),
                 scale: s.scale,
@@ -45,7 +60,7 @@ impl State {
     }
 
     pub(super) fn save(&mut self, path: &str) {
-        match self.session().write(path) {
+        match self.session_in(Some(path)).write(path) {
             Ok(()) => {
                 self.session_path = Some(path.to_owned());
                 self.dialog = Dialog::None;
@@ -55,15 +70,51 @@ impl State {
         }
     }
 
-    /// Opens the scene of a session; the rest follows when it is loaded.
-    pub fn restore(&mut self, session: Session) {
+    /// Opens the scene of a session that was read from a file (or from where the explorer keeps the last one);
+    /// the rest follows when it is loaded.
+    pub fn restore(&mut self, session: Session, file: Option<&str>) {
         self.recall_look(&session);
         if session.scene.is_empty() {
             return;
         }
-        let source = session.scene.clone();
+        let folder = Path::new(file.unwrap_or_default()).parent().unwrap_or(Path::new("")).to_owned();
+        let wanted =
+            Wanted { source: session.scene.clone(), hash_hex: session.scene_hash.clone(), folder };
         self.recall = Some(session);
-        self.load(&source, None);
+        self.load(wanted, None);
+    }
+
+    /// A breakpoint as a file keeps it; `None` of a line that this method has not.
+    fn stop(&self, breakpoint: Breakpoint) -> Option<Stop> {
+        Some(match breakpoint {
+            Breakpoint::Line(line) => {
+                Stop::Line(self.film()?.reel.card().code.get(usize::from(line))?.label.into())
+            }
+            Breakpoint::Verdict(verdict) => Stop::Verdict(verdict.name().into()),
+            Breakpoint::Node(n) => Stop::Node(n.0),
+            Breakpoint::Prim(p) => Stop::Prim(p.0),
+            Breakpoint::Object(o) => Stop::Object(o.0),
+        })
+    }
+
+    /// The breakpoint that a file names, if this film has it.
+    fn breakpoint(&self, stop: &Stop) -> Option<Breakpoint> {
+        let film = self.film()?;
+        let scene = self.staged()?.scene();
+        match stop {
+            Stop::Line(label) => {
+                let line = film.reel.card().code.iter().position(|l| l.label == *label)?;
+                Some(Breakpoint::Line(line as u8))
+            }
+            Stop::Verdict(name) => {
+                Counts::VERDICTS.into_iter().find(|v| v.name() == *name).map(Breakpoint::Verdict)
+            }
+            Stop::Node(n) => Some(NodeId(*n)).filter(|n| n.at() < film.node_count()).map(Breakpoint::Node),
+            Stop::Prim(p) => Some(PrimId(*p)).filter(|p| scene.has_prim(*p)).map(Breakpoint::Prim),
+            Stop::Object(o) => {
+                Some(ObjectId(*o)).filter(|o| o.at() < scene.object_count()).map(Breakpoint::Object)
+            }
+        }
     }
 
     fn recall_look(&mut self, session: &Session) {
@@ -75,6 +126,7 @@ impl State {
             eye: kept.eye,
             evidence: kept.evidence,
             surface: Surface::ALL.into_iter().find(|s| s.name() == kept.surface).unwrap_or(named.surface),
+            look_in: LookIn::ALL.into_iter().find(|l| l.name() == kept.look_in).unwrap_or(named.look_in),
             theme: Theme::ALL.into_iter().find(|t| t.name() == kept.theme).unwrap_or(named.theme),
             layout: Layout::ALL.into_iter().find(|l| l.name() == kept.layout).unwrap_or(named.layout),
             scale: if kept.scale.is_finite() { kept.scale.clamp(0.5, 4.0) } else { 1.0 },
@@ -84,12 +136,15 @@ impl State {
     /// What culling depends on, before the film is recorded.
     pub(super) fn recall_inputs(&mut self, session: &Session) {
         let Some(stage) = &mut self.stage else { return };
-        if !session.scene_hash.is_empty() && session.scene_hash != stage.get().scene().hash_hex() {
-            self.notices.push(Notice {
-                is_error: false,
-                text: format!("{} is not the scene that was saved: its content has changed.", session.scene),
-            });
-        }
+        let scene = stage.get().scene();
+        let text = if !session.scene_hash.is_empty() && session.scene_hash != scene.hash_hex() {
+            format!("{} is not the scene that was saved: its content has changed.", scene.source())
+        } else if file_name(scene.source()) != file_name(&session.scene) {
+            format!("The saved scene was found by its content: it is {} now.", scene.source())
+        } else {
+            String::new()
+        };
+        self.notices.extend((!text.is_empty()).then_some(Notice { is_error: false, text }));
         let methods = stage.get().methods();
         if methods.iter().any(|m| m.key == session.method) {
             self.method = session.method.clone();
@@ -118,9 +173,13 @@ impl State {
         self.bookmarks =
             session.bookmarks.iter().filter(|b| b.step <= end && b.observer.is_sound()).cloned().collect();
         self.bookmarks.sort_by_key(|b| b.step);
+        self.breakpoints = session.breakpoints.iter().filter_map(|stop| self.breakpoint(stop)).collect();
+        if self.breakpoints.len() < session.breakpoints.len() {
+            self.tell("Some breakpoints of the session fit nothing in this film and are left out.");
+        }
         if let Some(observer) = session.observer.filter(|o| o.is_sound()) {
             self.observer = observer;
-            self.effects.retain(|e| *e != Effect::Frame);
+            self.is_to_frame = false;
         }
         self.step = session.step.min(end);
     }
@@ -141,7 +200,7 @@ impl State {
                 }
                 self.open(source, start.view.clone());
             }
-            (None, None, Some(last)) => self.restore(last),
+            (None, None, Some(last)) => self.restore(last, None),
             (None, None, None) => {}
         }
         if self.stage.is_none() && self.busy().is_none() {

@@ -44,6 +44,22 @@ pub enum Picked {
     Eye,
 }
 
+/// A breakpoint, in a file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stop {
+    /// The label of a line of pseudocode.
+    Line(String),
+    /// The name of a verdict.
+    Verdict(String),
+    /// A node.
+    Node(u32),
+    /// A primitive.
+    Prim(u32),
+    /// An object.
+    Object(u32),
+}
+
 /// What is shown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -58,6 +74,8 @@ pub struct Shown {
     pub evidence: bool,
     /// Name of the surface style.
     pub surface: String,
+    /// Name of the way to look in.
+    pub look_in: String,
     /// Name of the theme.
     pub theme: String,
     /// Name of the layout.
@@ -75,6 +93,7 @@ impl Default for Shown {
             eye: true,
             evidence: true,
             surface: word(),
+            look_in: word(),
             theme: word(),
             layout: word(),
             scale: 1.0,
@@ -87,7 +106,7 @@ impl Default for Shown {
 pub struct Session {
     /// Format version.
     pub cullscope_session: u32,
-    /// What to load.
+    /// What to load; the path of a file is relative to the folder of the session file.
     pub scene: String,
     /// Hash of the scene then.
     #[serde(default)]
@@ -119,6 +138,9 @@ pub struct Session {
     /// Bookmarks with notes.
     #[serde(default)]
     pub bookmarks: Vec<Bookmark>,
+    /// Where runs stop.
+    #[serde(default)]
+    pub breakpoints: Vec<Stop>,
     /// Filter of the event tree.
     #[serde(default)]
     pub filter: String,

@@ -1,6 +1,6 @@
 //! The words that commands, state, undo and session share: what is shown and how, where runs stop.
 
-use crate::geometry::{NodeId, PrimId};
+use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Verdict;
 
 pub use crate::render::theme::Theme;
@@ -86,6 +86,39 @@ impl Surface {
     }
 }
 
+/// How the Observer looks into what is closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LookIn {
+    /// Not at all: a roof hides what is below it.
+    #[default]
+    Off,
+    /// What lies higher than the Eye is cut away.
+    Cut,
+    /// Faces that turn their back to the Observer are left out.
+    Faces,
+}
+
+impl LookIn {
+    /// Every way, in the order of menus.
+    pub const ALL: [LookIn; 3] = [LookIn::Off, LookIn::Cut, LookIn::Faces];
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Cut => "cut",
+            Self::Faces => "faces",
+        }
+    }
+    /// Its name in menus.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Off => "closed",
+            Self::Cut => "cut above the Eye",
+            Self::Faces => "without backs",
+        }
+    }
+}
+
 /// What is shown and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
@@ -99,6 +132,8 @@ pub struct Shown {
     pub evidence: bool,
     /// How surfaces are drawn.
     pub surface: Surface,
+    /// How the Observer looks into what is closed.
+    pub look_in: LookIn,
     /// Colors.
     pub theme: Theme,
     /// Panels.
@@ -115,6 +150,7 @@ impl Default for Shown {
             eye: true,
             evidence: true,
             surface: Surface::Solid,
+            look_in: LookIn::Off,
             theme: Theme::Light,
             layout: Layout::Debug,
             scale: 1.0,
@@ -133,4 +169,6 @@ pub enum Breakpoint {
     Node(NodeId),
     /// At everything about a primitive.
     Prim(PrimId),
+    /// At everything about an object or a primitive of it.
+    Object(ObjectId),
 }

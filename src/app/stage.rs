@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::culling::Methods;
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Drawing, Role, Subject};
-use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
+use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel};
 use crate::scene::{Report, Scene, framing_view, write_views};
@@ -80,6 +80,21 @@ impl<S: Space> Stage<S> {
     pub fn views(&self) -> &[View<S>] {
         &self.paths[self.path].views
     }
+    /// A view moved away from the path, with depths that fit where it stands now. It sees as near and as far
+    /// as its path's view as long as that does the scene justice: its far plane goes back where the scene
+    /// reaches beyond it as it did not before, and its near plane comes forward where the scene does.
+    pub fn fitted(&self, mut view: View<S>) -> View<S> {
+        let (bounds, base) = (self.scene.bounds(), self.views()[self.frame].eye);
+        let at = view.eye.position;
+        let reach = |p: S::Vector| bounds.corners().map(|c| (c - p).length()).fold(0.0, f32::max);
+        let gap = |p: S::Vector| (p.max(bounds.min).min(bounds.max) - p).length();
+        let is_near = gap(at) >= base.near.min(gap(base.position));
+        let least = (bounds.diagonal() * 1e-3).max(f32::MIN_POSITIVE);
+        view.eye.near = if is_near { base.near } else { base.near.min(least) };
+        let is_far = reach(at) <= base.far.max(reach(base.position));
+        view.eye.far = if is_far { base.far } else { reach(at) * 1.1 };
+        view
+    }
     /// Goes to a view of a path; out of range is clamped.
     pub fn go(&mut self, path: usize, frame: usize) {
         self.path = path.min(self.paths.len() - 1);
@@ -116,15 +131,12 @@ impl<S: Space> Stage<S> {
         match subject {
             Subject::Prim(prim) => Some(self.scene.prim_bounds(prim)),
             Subject::Object(object) => {
-                let boxes = self.prims_of(object).map(|p| self.scene.prim_bounds(p));
+                let boxes = self.scene.prims_of(object).into_iter().map(|p| self.scene.prim_bounds(p));
                 Some(boxes.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b)))
             }
             Subject::Node(node) => self.hierarchy().map(|h| h.bounds(node)),
             _ => None,
         }
-    }
-    fn prims_of(&self, object: ObjectId) -> impl Iterator<Item = PrimId> + '_ {
-        self.scene.live().iter().copied().filter(move |&p| self.scene.object_of(p) == object)
     }
     /// The index of the film.
     fn hierarchy(&self) -> Option<&dyn Hierarchy<S>> {
@@ -153,6 +165,8 @@ pub trait SceneFacts {
     fn has_prim(&self, prim: PrimId) -> bool;
     /// Object of a primitive.
     fn object_of(&self, prim: PrimId) -> ObjectId;
+    /// Live primitives of an object.
+    fn prims_of(&self, object: ObjectId) -> Vec<PrimId>;
     /// Number of objects.
     fn object_count(&self) -> usize;
     /// Name of an object; empty if there is none.
@@ -183,6 +197,9 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
     fn object_of(&self, prim: PrimId) -> ObjectId {
         self.object_of(prim)
+    }
+    fn prims_of(&self, object: ObjectId) -> Vec<PrimId> {
+        self.live().iter().copied().filter(|&p| self.object_of(p) == object).collect()
     }
     fn object_count(&self) -> usize {
         self.objects().len()
@@ -234,6 +251,8 @@ pub trait Staged {
     fn place(&self) -> (usize, usize);
     /// Whether the Eye was moved away from its path.
     fn is_eye_moved(&self) -> bool;
+    /// What became of near and far where the Eye was moved out of the range of its path's view, in a line.
+    fn changed_depths(&self) -> Option<String>;
     /// The Eye in one line that can be pasted into a command line.
     fn eye_text(&self) -> String;
     /// Every method of the space.
@@ -288,6 +307,13 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn is_eye_moved(&self) -> bool {
         self.view != self.views()[self.frame]
+    }
+    fn changed_depths(&self) -> Option<String> {
+        let (now, base) = (&self.view.eye, &self.views()[self.frame].eye);
+        let range = |e: &Eye<S>| format!("{} to {}", short(e.near, Room::Row), short(e.far, Room::Row));
+        ((now.near, now.far) != (base.near, base.far)).then(|| {
+            format!("near and far fitted to this place: {} units, on its path {}", range(now), range(base))
+        })
     }
     fn eye_text(&self) -> String {
         let list =
@@ -345,7 +371,7 @@ impl<S: Methods> Stage<S> {
     fn object_facts(&self, object: ObjectId) -> Vec<(&'static str, String)> {
         let mut facts = vec![
             ("name", self.scene.object_name(object).to_owned()),
-            ("holds", format!("{} {}s", self.prims_of(object).count(), S::PRIM)),
+            ("holds", format!("{} {}s", self.scene.prims_of(object).len(), S::PRIM)),
         ];
         if let Some(bounds) = self.bounds_of(Subject::Object(object)).filter(|b| !b.is_empty()) {
             facts.push(("box", Self::box_text(&bounds)));
@@ -354,12 +380,14 @@ impl<S: Methods> Stage<S> {
     }
     fn eye_facts(&self) -> Vec<(&'static str, String)> {
         let (v, e) = (&self.view, &self.view.eye);
-        vec![
+        let mut facts = vec![
             ("stands at", Self::vector(e.position)),
             ("looks at", Self::vector(e.target)),
             ("angle", format!("{:.1}°", e.fov.to_degrees())),
             ("sees from", format!("{} to {} units", short(e.near, Room::Row), short(e.far, Room::Row))),
             ("image", format!("{} × {} pixels", v.width, v.height)),
-        ]
+        ];
+        facts.extend(self.changed_depths().map(|text| ("depths", text)));
+        facts
     }
 }

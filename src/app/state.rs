@@ -41,8 +41,6 @@ pub enum Effect {
     ResetLayout,
     /// Put the cursor into the filter.
     FocusFilter,
-    /// Bring the selection, or everything, into the picture.
-    Frame,
     /// Close.
     Quit,
 }
@@ -73,6 +71,9 @@ pub struct State {
     pub bookmarks: Vec<Bookmark>,
     /// Where the person looks from.
     pub observer: ObserverCamera,
+    /// Whether the Observer's picture is to bring the selection, or everything, into sight when it is next
+    /// shown: it alone knows its shape. It answers with where the Observer stands then.
+    pub is_to_frame: bool,
     /// Whether the Eye view stands where the Observer view was.
     pub is_swapped: bool,
     /// Whether the Eye cannot be moved.
@@ -134,6 +135,7 @@ impl State {
             breakpoints: BTreeSet::new(),
             bookmarks: vec![],
             observer: ObserverCamera::default(),
+            is_to_frame: false,
             is_swapped: false,
             is_eye_locked: false,
             shown: Shown::default(),

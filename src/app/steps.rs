@@ -1,6 +1,7 @@
 //! Moving through the film: stepping, running to breakpoints, playing.
 
 use super::command::Action;
+use super::concern::Concern;
 use super::session::Bookmark;
 use super::shown::{Breakpoint, Dialog};
 use super::stage::Reading;
@@ -45,22 +46,29 @@ impl State {
             | Action::BackToCursor => {
                 let wanted = Some(self.selection).filter(|s| *s != Subject::None)?;
                 let forward = matches!(action, Action::NextOnSelected | Action::RunToCursor);
-                self.seek(forward, |i| reel.subject(i) == wanted)
+                let concern = Concern::of(self.film()?, self.staged()?.scene(), wanted);
+                self.seek(forward, |i| concern.holds(i))
             }
-            Action::Run => Some(self.seek(true, |i| self.stops_at(i)).unwrap_or(events.len())),
-            Action::RunBack => Some(self.seek(false, |i| self.stops_at(i)).unwrap_or(0)),
+            Action::Run => Some(self.seek(true, self.stops()).unwrap_or(events.len())),
+            Action::RunBack => Some(self.seek(false, self.stops()).unwrap_or(0)),
             Action::First => Some(0),
             Action::Last => Some(events.len()),
-            Action::PresentNext => match self.bookmarks.is_empty() {
-                true => moves.next(events, step, Moves::is_verdict),
-                false => self.bookmarks.iter().map(|b| b.step).find(|&s| s > step),
-            },
-            Action::PresentPrevious => match self.bookmarks.is_empty() {
-                true => moves.previous(events, step, Moves::is_verdict),
-                false => self.bookmarks.iter().rev().map(|b| b.step).find(|&s| s < step),
-            },
+            Action::PresentNext => moves.next(events, step, Moves::is_verdict),
+            Action::PresentPrevious => moves.previous(events, step, Moves::is_verdict),
             _ => None,
         }
+    }
+
+    /// Goes to a bookmark, and looks from where the person looked then.
+    pub(super) fn go_bookmark(&mut self, nth: usize) {
+        let Some(mark) = self.bookmarks.get(nth) else {
+            return self.tell(format!("There is no bookmark {}.", nth + 1));
+        };
+        let (step, observer) = (mark.step, mark.observer);
+        self.is_playing = false;
+        self.observer = observer;
+        self.is_to_frame = false;
+        self.go_to(step);
     }
 
     /// The nearest step, forward or back, whose event `wanted` accepts.
@@ -72,16 +80,25 @@ impl State {
         }
     }
 
-    /// Whether a breakpoint stops at event `at`.
-    pub fn stops_at(&self, at: usize) -> bool {
-        let Some(Reading { reel, .. }) = self.film() else { return false };
-        let event = reel.events()[at];
-        self.breakpoints.iter().any(|b| match b {
-            Breakpoint::Line(line) => event == Event::Line(*line),
-            Breakpoint::Verdict(verdict) => event.verdict() == Some(*verdict),
-            Breakpoint::Node(node) => reel.subject(at) == Subject::Node(*node),
-            Breakpoint::Prim(prim) => reel.subject(at) == Subject::Prim(*prim),
-        })
+    /// Whether a breakpoint stops at an event: what depends on the things that they are at is looked up once.
+    pub fn stops(&self) -> impl Fn(usize) -> bool + '_ {
+        let at_thing = |b: &Breakpoint| match b {
+            Breakpoint::Node(node) => Some(Subject::Node(*node)),
+            Breakpoint::Prim(prim) => Some(Subject::Prim(*prim)),
+            Breakpoint::Object(object) => Some(Subject::Object(*object)),
+            Breakpoint::Line(_) | Breakpoint::Verdict(_) => None,
+        };
+        let concern = |thing| Some(Concern::of(self.film()?, self.staged()?.scene(), thing));
+        let things: Vec<Concern<'_>> =
+            self.breakpoints.iter().filter_map(at_thing).filter_map(concern).collect();
+        let events = self.events();
+        move |at| {
+            let named = match events[at] {
+                Event::Line(line) => self.breakpoints.contains(&Breakpoint::Line(line)),
+                event => event.verdict().is_some_and(|v| self.breakpoints.contains(&Breakpoint::Verdict(v))),
+            };
+            named || things.iter().any(|t| t.holds(at))
+        }
     }
 
     /// Carries out an action of the menu Step; returns whether it was one.
@@ -108,13 +125,17 @@ impl State {
                 self.go_frame(path, next);
             }
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
-                let nth = action as usize - Action::Bookmark1 as usize;
-                match self.bookmarks.get(nth).cloned() {
-                    Some(mark) => {
-                        self.observer = mark.observer;
-                        self.go_to(mark.step);
-                    }
-                    None => self.tell(format!("There is no bookmark {}.", nth + 1)),
+                self.go_bookmark(action as usize - Action::Bookmark1 as usize);
+            }
+            Action::PresentNext | Action::PresentPrevious if !self.bookmarks.is_empty() => {
+                let (step, mut marks) = (self.step, self.bookmarks.iter());
+                let slide = match action {
+                    Action::PresentNext => marks.position(|b| b.step > step),
+                    _ => marks.rposition(|b| b.step < step),
+                };
+                match slide {
+                    Some(i) => self.go_bookmark(i),
+                    None => self.tell(format!("{}: there is none.", action.info().title)),
                 }
             }
             _ if action.info().menu == super::command::Menu::Step => {
@@ -133,8 +154,9 @@ impl State {
         let breakpoint = match (self.selection, self.line()) {
             (Subject::Node(node), _) => Breakpoint::Node(node),
             (Subject::Prim(prim), _) => Breakpoint::Prim(prim),
+            (Subject::Object(object), _) => Breakpoint::Object(object),
             (_, Some(line)) => Breakpoint::Line(line),
-            _ => return self.tell("Select a node or a primitive, or step to a line, to set a breakpoint."),
+            _ => return self.tell("Select a node, a primitive or an object, or step to a line, to set a breakpoint."),
         };
         self.flip(breakpoint);
     }
@@ -167,16 +189,19 @@ impl State {
         let whole = self.pending as usize;
         self.pending -= whole as f32;
         let Some(Reading { reel, moves, .. }) = self.film() else { return false };
-        let mut step = self.step;
+        let (mut step, stops) = (self.step, self.stops());
+        let mut goes_on = true;
         for _ in 0..whole {
             let next = moves.forward(reel.events(), step, self.detail);
-            let stop = (step..next).find(|&i| self.stops_at(i));
+            let stop = (step..next).find(|&i| stops(i));
             step = stop.map_or(next, |i| i + 1);
-            if stop.is_some() || step == reel.events().len() {
-                self.is_playing = false;
+            goes_on = stop.is_none() && step < reel.events().len();
+            if !goes_on {
                 break;
             }
         }
+        drop(stops);
+        self.is_playing = goes_on;
         if whole > 0 {
             self.go_to(step);
         }

@@ -4,7 +4,7 @@ use super::recall::spoken_command;
 use super::shown::Detail;
 use super::*;
 use crate::drawing::Subject;
-use crate::geometry::{Either, NodeId, PrimId};
+use crate::geometry::{Aabb, Either, NodeId, ObjectId, PrimId, Solid, View};
 use crate::method::Verdict;
 
 /// A flatland scene that travels inside the program.
@@ -278,19 +278,211 @@ fn a_session_brings_everything_back() {
     state.apply(Command::Note(0, "here it begins".into()));
     state.apply(Command::Select(Subject::Prim(PrimId(7))));
     state.apply(Action::ThemeDark);
+    state.apply(Action::LookInCut);
+    state.apply(Command::Observe(ObserverCamera { yaw: 2.0, distance: 3.5, ..state.observer }));
+    let stops = [Breakpoint::Verdict(Verdict::Visible), Breakpoint::Line(1), Breakpoint::Prim(PrimId(3))];
+    state.breakpoints.extend(stops);
     let session = state.session();
     let again = Session::parse(&session.text(), "test").expect("its own text");
     assert_eq!(again, session);
     let mut other = State::new();
-    other.restore(again);
+    other.restore(again, None);
     other.block_until_idle();
     assert_eq!(other.session(), session, "{:?}", other.notices);
     assert_eq!(seen(&other), seen(&state));
+    assert_eq!((&other.breakpoints, other.observer), (&state.breakpoints, state.observer));
+    assert!(!other.is_to_frame, "the picture must not be framed anew");
     assert!(Session::parse("{}", "x").is_err());
     assert!(
         Session::parse(&session.text().replace("\"cullscope_session\": 1", "\"cullscope_session\": 9"), "x")
             .is_err()
     );
+}
+
+/// A folder of our own, and in it a box of 20 units with a window-less inside, as a model without views.
+fn folder_with_a_box(name: &str) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("cullscope-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("models")).expect("a folder of our own");
+    let mut text = String::new();
+    for i in 0..8 {
+        let at = |bit: i32| if i >> bit & 1 == 1 { 20 } else { 0 };
+        text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+    }
+    text += "o floor\nf 1 2 6 5\no walls\nf 1 3 4 2\nf 5 6 8 7\nf 1 5 7 3\nf 2 4 8 6\no roof\nf 3 7 8 4\n";
+    std::fs::write(folder.join("models/box.obj"), text).expect("a file of our own");
+    folder
+}
+
+fn solid_view(state: &State) -> View<Solid> {
+    let Some(Either::Solid(stage)) = &state.stage else { panic!("a stage of space") };
+    stage.view
+}
+
+#[test]
+fn a_session_finds_its_scene_from_every_folder() {
+    let folder = folder_with_a_box("session");
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let mut state = opened(&path("models/box.obj"));
+    state.apply(Command::SaveTo(path("talk.session.json")));
+    let text = std::fs::read_to_string(folder.join("talk.session.json")).expect("a session");
+    assert!(text.contains("\"models/box.obj\""), "the way from the session's folder: {text}");
+    let reopened = |at: &std::path::Path| {
+        let mut state = State::new();
+        state.apply(Command::Open(at.join("talk.session.json").to_string_lossy().into_owned()));
+        state.block_until_idle();
+        let name = state.staged().map(|s| s.scene().name().to_owned());
+        (name, state.notices.iter().map(|n| n.text.clone()).collect::<Vec<_>>().join(" "))
+    };
+    // The whole folder moves.
+    let moved = folder.with_extension("moved");
+    let _ = std::fs::remove_dir_all(&moved);
+    std::fs::rename(&folder, &moved).expect("a move");
+    assert_eq!(reopened(&moved), (Some("box".into()), String::new()));
+    // The scene moves beside the session and has another name: it is known by its content.
+    std::fs::rename(moved.join("models/box.obj"), moved.join("crate.obj")).expect("a move");
+    std::fs::write(moved.join("another.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a file");
+    let (name, said) = reopened(&moved);
+    assert!(name.as_deref() == Some("crate") && said.contains("by its content"), "{name:?} {said}");
+    std::fs::remove_file(moved.join("crate.obj")).expect("a file of our own");
+    let (name, said) = reopened(&moved);
+    assert!(name.is_none() && said.contains("models/box.obj") && said.contains("was not found"), "{said}");
+    std::fs::remove_dir_all(&moved).expect("a folder of our own");
+}
+
+#[test]
+fn an_eye_sees_near_and_far_enough_wherever_it_is_moved() {
+    let folder = folder_with_a_box("eye");
+    let mut state = opened(&folder.join("models/box.obj").to_string_lossy());
+    std::fs::remove_dir_all(&folder).expect("a folder of our own");
+    let start = solid_view(&state);
+    let bounds = Aabb { min: glam::Vec3::ZERO, max: glam::Vec3::splat(20.0) };
+    let reach = |at: glam::Vec3| bounds.corners().map(|c| (c - at).length()).fold(0.0, f32::max);
+    let sees_all = |view: View<Solid>| {
+        view.eye.near <= bounds.diagonal() / 900.0 && view.eye.far >= reach(view.eye.position)
+    };
+    assert!(sees_all(start), "{start:?}");
+    let go = |state: &mut State, position: glam::Vec3| {
+        let mut view = solid_view(state);
+        (view.eye.position, view.eye.target) = (position, position + glam::Vec3::X);
+        state.apply(Command::Eye(Either::Solid(view), 0));
+        state.block_until_idle();
+        let said = state.staged().and_then(|s| s.changed_depths());
+        (solid_view(state), said)
+    };
+    // Close before the wall, where the near plane of the old frame cut everything away.
+    let (inside, said) = go(&mut state, glam::Vec3::new(18.0, 10.0, 10.0));
+    assert!(sees_all(inside) && said.is_none(), "{inside:?}");
+    let end = state.film().expect("a film").stamps.counts(state.len());
+    assert!(end.of(Verdict::Outside) < 10, "the wall right before the Eye is kept: {end:?}");
+    let (afar, said) = go(&mut state, glam::Vec3::new(-900.0, 10.0, 10.0));
+    assert!(sees_all(afar) && said.is_some_and(|s| s.contains("on its path")), "{afar:?}");
+    // Back in range the depths of the path are back too.
+    let (back, said) = go(&mut state, start.eye.position);
+    assert!((back.eye.near, back.eye.far) == (start.eye.near, start.eye.far) && said.is_none());
+    state.apply(Command::Observe(ObserverCamera { distance: 400.0, ..state.observer }));
+    state.apply(Action::EyeHere);
+    assert!(sees_all(solid_view(&state)));
+}
+
+#[test]
+fn the_depths_that_a_file_names_stay_while_the_eye_is_in_their_range() {
+    let mut state = opened(FLAT);
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
+    let (named, bounds) = (stage.view, stage.scene.bounds());
+    let mut view = named;
+    view.eye.position += glam::Vec2::splat(0.5);
+    state.apply(Command::Eye(Either::Flat(view), 0));
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
+    assert_eq!((stage.view.eye.near, stage.view.eye.far), (named.eye.near, named.eye.far));
+    view.eye.position = bounds.max + bounds.size() * 3.0;
+    state.apply(Command::Eye(Either::Flat(view), 0));
+    let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
+    assert!(stage.view.eye.far > (view.eye.position - bounds.min).length(), "{:?}", stage.view);
+}
+
+#[test]
+fn a_layout_moves_no_camera_and_a_bookmark_brings_its_own_back() {
+    let mut state = opened(FLAT);
+    state.apply(Command::Select(Subject::Prim(PrimId(3))));
+    let looking = ObserverCamera { distance: 2.5, pivot: [3.0, 4.0, 0.0], ..state.observer };
+    state.apply(Command::Observe(looking));
+    state.apply(Command::GoTo(9));
+    state.apply(Action::Bookmark);
+    let eye = state.stage.as_ref().map(|s| s.view());
+    for layout in Layout::ALL {
+        state.apply(Command::Layout(layout));
+        assert!(state.observer == looking && !state.is_to_frame, "{layout:?}");
+        assert_eq!(state.stage.as_ref().map(|s| s.view()), eye);
+    }
+    let ways: [Command; 3] = [Command::Bookmark(0), Action::Bookmark1.into(), Action::PresentNext.into()];
+    for way in ways {
+        state.apply(Command::GoTo(0));
+        state.apply(Command::Observe(ObserverCamera { distance: 77.0, ..looking }));
+        state.apply(way.clone());
+        assert_eq!((state.step, state.observer), (9, looking), "{way:?}");
+    }
+}
+
+#[test]
+fn an_object_answers_why_and_stops_runs() {
+    let folder = folder_with_a_box("object");
+    let mut state = opened(&folder.join("models/box.obj").to_string_lossy());
+    std::fs::remove_dir_all(&folder).expect("a folder of our own");
+    state.apply(Action::Last);
+    let stage = state.staged().expect("a stage");
+    let walls = (0..stage.scene().object_count() as u32).map(ObjectId);
+    let walls = walls.filter(|&o| stage.scene().object_name(o) == "walls").last().expect("named walls");
+    let prims = stage.scene().prims_of(walls);
+    assert_eq!(prims.len(), 8);
+    let said = why(stage, Subject::Object(walls), state.step);
+    assert!(said[0].text.starts_with("“walls” holds 8 triangles: "), "{said:?}");
+    let numbers = |text: &str| -> usize {
+        text.split([' ', ',']).filter_map(|w| w.parse::<usize>().ok()).skip(1).sum()
+    };
+    assert_eq!(numbers(&said[0].text), 8, "every triangle is accounted for: {said:?}");
+    assert!(said.len() > 1 && said[1..].iter().all(|b| b.step.is_some()), "{said:?}");
+    let early = why(stage, Subject::Object(walls), 0);
+    assert!(early[0].text.contains("8 not decided"), "{early:?}");
+    // Runs stop where a part of it is decided, by whatever.
+    state.apply(Command::Select(Subject::Object(walls)));
+    state.apply(Action::Breakpoint);
+    assert!(state.breakpoints.contains(&Breakpoint::Object(walls)));
+    for action in [Action::Run, Action::NextOnSelected] {
+        state.apply(Command::GoTo(0));
+        state.apply(action);
+        let film = state.film().expect("a film");
+        let first = prims.iter().filter_map(|&p| film.stamps.prim_decision(p)).map(|(at, _)| at).min();
+        assert!(state.step > 0 && Some(state.step) <= first, "{action:?}: {} {first:?}", state.step);
+    }
+    state.apply(Command::Filter("under:walls".into()));
+    assert!(!state.outline.rows().is_empty());
+}
+
+#[test]
+fn the_subject_of_every_step_is_marked_in_flatland() {
+    for method in ["hierarchical-z", "large-occluders", "centroid"] {
+        let mut state = opened("scenes2d/street.json");
+        state.apply(Command::Method(method.into()));
+        state.block_until_idle();
+        let mut marked = 0;
+        for step in (1..=state.len()).step_by(7) {
+            state.apply(Command::GoTo(step));
+            let subject = state.current_subject();
+            if !matches!(subject, Subject::Prim(_) | Subject::Node(_) | Subject::Object(_)) {
+                continue;
+            }
+            let Some(Either::Flat(stage)) = &state.stage else { panic!("flatland") };
+            let film = stage.recorded.as_ref().expect("a film");
+            let world = crate::figure::world(&*film.film, &film.stamps, step, &state.look());
+            let is_marked = |i: &crate::drawing::Item<_>| {
+                i.role == crate::drawing::Role::Current && i.subject == subject
+            };
+            assert!(world.items.iter().any(is_marked), "{method}, step {step}: {}", state.sentence());
+            marked += 1;
+        }
+        assert!(marked > 10, "{method}");
+    }
 }
 
 #[test]

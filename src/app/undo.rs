@@ -6,7 +6,7 @@ use crate::method::Settings;
 
 /// All that culling depends on, beside the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wanted {
+pub struct Inputs {
     pub(super) method: String,
     pub(super) settings: Settings,
     pub(super) place: (usize, usize),
@@ -16,8 +16,8 @@ pub struct Wanted {
 /// Changes that can be taken back.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    before: Vec<(Wanted, Gesture)>,
-    after: Vec<Wanted>,
+    before: Vec<(Inputs, Gesture)>,
+    after: Vec<Inputs>,
 }
 
 /// Changes that are kept.
@@ -25,7 +25,7 @@ const LIMIT: usize = 500;
 
 impl History {
     /// Called before a change; changes of one gesture are taken back together.
-    pub(super) fn push(&mut self, now: Wanted, gesture: Gesture) {
+    pub(super) fn push(&mut self, now: Inputs, gesture: Gesture) {
         self.after.clear();
         if gesture != 0 && self.before.last().is_some_and(|(_, last)| *last == gesture) {
             return;
@@ -35,15 +35,15 @@ impl History {
             self.before.remove(0);
         }
     }
-    pub(super) fn undo(&mut self, now: Wanted) -> Option<Wanted> {
-        let (wanted, _) = self.before.pop()?;
+    pub(super) fn undo(&mut self, now: Inputs) -> Option<Inputs> {
+        let (inputs, _) = self.before.pop()?;
         self.after.push(now);
-        Some(wanted)
+        Some(inputs)
     }
-    pub(super) fn redo(&mut self, now: Wanted) -> Option<Wanted> {
-        let wanted = self.after.pop()?;
+    pub(super) fn redo(&mut self, now: Inputs) -> Option<Inputs> {
+        let inputs = self.after.pop()?;
         self.before.push((now, 0));
-        Some(wanted)
+        Some(inputs)
     }
     pub(super) fn can(&self) -> (bool, bool) {
         (!self.before.is_empty(), !self.after.is_empty())

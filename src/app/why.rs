@@ -1,9 +1,12 @@
 //! Why a thing has the state it has, read from the film alone.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::stage::{Reading, SceneFacts, Staged};
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, PrimId};
-use crate::method::{Event, Verdict};
+use crate::drawing::words::count;
+use crate::geometry::{NodeId, ObjectId, PrimId};
+use crate::method::{Event, Value, Verdict};
 
 /// A sentence of an explanation, with the step that shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,11 +15,16 @@ pub struct Because {
     pub text: String,
     /// Where to see it.
     pub step: Option<usize>,
+    /// What hides it: an object if it has a name, else a primitive; with how it is called.
+    pub by: Option<(Subject, String)>,
 }
 
 fn because(text: impl Into<String>, step: Option<usize>) -> Because {
-    Because { text: text.into(), step }
+    Because { text: text.into(), step, by: None }
 }
+
+/// Ways in which an object ended that are told one by one.
+const WAYS: usize = 8;
 
 /// Why `subject` has the state it has at `step`: the conclusion first, then the evidence.
 pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
@@ -24,13 +32,7 @@ pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
     match subject {
         Subject::Node(node) if node.at() < film.node_count() => why_node(stage, film, node, step),
         Subject::Prim(prim) if stage.scene().has_prim(prim) => why_prim(stage, film, prim, step),
-        Subject::Object(object) => vec![because(
-            format!(
-                "“{}” is an object; select one of its parts to see why.",
-                stage.scene().object_name(object)
-            ),
-            None,
-        )],
+        Subject::Object(object) => why_object(stage, film, object, step),
         Subject::Eye => vec![because(
             "This is the Eye: what culling sees with. Drag it, and the frame is culled again.",
             None,
@@ -41,6 +43,97 @@ pub fn why(stage: &dyn Staged, subject: Subject, step: usize) -> Vec<Because> {
         )],
         _ => vec![],
     }
+}
+
+/// An object is as its primitives are: how many have which state, then for what reasons, the commonest first.
+fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usize) -> Vec<Because> {
+    let scene = stage.scene();
+    let prims = scene.prims_of(object);
+    // By verdict and what it rests on: how many, and the first such step.
+    let mut ways: BTreeMap<(Verdict, usize), (usize, usize)> = BTreeMap::new();
+    let (mut by_verdict, mut open) = (BTreeMap::<Verdict, (usize, BTreeSet<String>)>::new(), 0);
+    for &prim in &prims {
+        let Some((at, verdict)) = film.stamps.prim_decision(prim).filter(|(at, _)| *at <= step) else {
+            open += 1;
+            continue;
+        };
+        by_verdict.entry(verdict).or_default().0 += 1;
+        let ground = film.reel.evidence_of(at - 1);
+        // Without evidence, a node decided as a whole is a reason and each primitive by itself is none.
+        let ground = ground.or_else(|| {
+            matches!(film.reel.events()[at - 1], Event::DecidedNode(..)).then_some(at - 1)
+        });
+        let way = ways.entry((verdict, ground.unwrap_or(usize::MAX))).or_insert((0, at));
+        (way.0, way.1) = (way.0 + 1, way.1.min(at));
+    }
+    for &(verdict, ground) in ways.keys() {
+        let names = by_verdict.entry(verdict).or_default();
+        names.1.extend(hider(scene, film, ground).map(|(_, name)| name));
+    }
+    let told = |(verdict, (n, by)): (&Verdict, &(usize, BTreeSet<String>))| {
+        let by = if by.is_empty() { String::new() } else { format!(" by {}", few(by)) };
+        format!("{} {}{by}", count(*n), spoken(*verdict))
+    };
+    let mut states: Vec<String> = by_verdict.iter().map(told).collect();
+    states.extend((open > 0).then(|| format!("{} not decided at this step", count(open))));
+    let holds = counted(prims.len(), scene.prim_name());
+    let mut lines =
+        vec![because(format!("{} holds {holds}: {}.", called(scene, object), states.join(", ")), None)];
+    let mut ways: Vec<_> = ways.into_iter().collect();
+    ways.sort_by_key(|(_, (n, at))| (std::cmp::Reverse(*n), *at));
+    for ((verdict, ground), (n, at)) in ways.iter().take(WAYS) {
+        let place = match film.reel.events()[at - 1] {
+            Event::DecidedNode(node, _) => format!(" with node {node}"),
+            _ => String::new(),
+        };
+        let reason = if *ground < film.reel.events().len() { film.reel.sentence(*ground) } else { String::new() };
+        let text = format!("{} {}{place}, at step {at}. {reason}", count(*n), spoken(*verdict));
+        lines.push(Because { by: hider(scene, film, *ground), ..because(text.trim_end(), Some(*at)) });
+    }
+    let more: usize = ways.iter().skip(WAYS).map(|(_, (n, _))| n).sum();
+    if more > 0 {
+        lines.push(because(format!("{} more for {} other reasons.", count(more), ways.len() - WAYS), None));
+    }
+    lines
+}
+
+/// What the evidence `at` says hides the thing, if it names one.
+fn hider(scene: &dyn SceneFacts, film: Reading<'_>, at: usize) -> Option<(Subject, String)> {
+    if at >= film.reel.events().len() {
+        return None;
+    }
+    let fields = film.reel.fields(at).1;
+    let prim = fields.iter().find_map(|f| match f.value {
+        Value::Integer(id) if f.name == "occluder_prim" => u32::try_from(id).ok().map(PrimId),
+        _ => None,
+    })?;
+    let object = scene.has_prim(prim).then(|| scene.object_of(prim))?;
+    Some(match scene.object_name(object) {
+        "" => (Subject::Prim(prim), format!("{} {prim}", scene.prim_name())),
+        name => (Subject::Object(object), name.to_owned()),
+    })
+}
+
+/// An object by its name, or by its number.
+fn called(scene: &dyn SceneFacts, object: ObjectId) -> String {
+    match scene.object_name(object) {
+        "" => format!("Object {object}"),
+        name => format!("“{name}”"),
+    }
+}
+
+/// Some names, and how many more there are.
+fn few(names: &BTreeSet<String>) -> String {
+    const FEW: usize = 3;
+    let mut text = names.iter().take(FEW).cloned().collect::<Vec<_>>().join(" and ");
+    if names.len() > FEW {
+        text += &format!(" and {} more", names.len() - FEW);
+    }
+    text
+}
+
+fn counted(n: usize, what: &str) -> String {
+    format!("{} {what}{}", count(n), if n == 1 { "" } else { "s" })
 }
 
 fn name(scene: &dyn SceneFacts, prim: PrimId) -> String {
@@ -78,9 +171,9 @@ fn why_prim(stage: &dyn Staged, film: Reading<'_>, prim: PrimId, step: usize) ->
                         ),
                         Some(at),
                     ));
-                    lines.extend(evidence(film, at));
+                    lines.extend(evidence(stage.scene(), film, at));
                 }
-                _ => lines.extend(evidence(film, at)),
+                _ => lines.extend(evidence(stage.scene(), film, at)),
             }
             lines
         }
@@ -106,7 +199,7 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
         }
         let mut lines =
             vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
-        lines.extend(evidence(film, at));
+        lines.extend(evidence(stage.scene(), film, at));
         return lines;
     }
     // Not decided itself: some node above it was.
@@ -123,7 +216,7 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
                 ),
                 Some(at),
             )];
-            lines.extend(evidence(film, at));
+            lines.extend(evidence(stage.scene(), film, at));
             lines
         }
         Some((n, at, verdict)) => vec![because(
@@ -141,10 +234,11 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
 }
 
 /// The evidence of the decision that is event `at − 1`, and the decision itself.
-fn evidence(film: Reading<'_>, at: usize) -> Vec<Because> {
+fn evidence(scene: &dyn SceneFacts, film: Reading<'_>, at: usize) -> Vec<Because> {
     let decision = at - 1;
     let noted = film.reel.evidence_of(decision);
-    noted.into_iter().chain([decision]).map(|i| because(film.reel.sentence(i), Some(i + 1))).collect()
+    let told = |i| Because { by: hider(scene, film, i), ..because(film.reel.sentence(i), Some(i + 1)) };
+    noted.into_iter().chain([decision]).map(told).collect()
 }
 
 /// A verdict in a sentence.

@@ -43,7 +43,7 @@ pub struct Request<S: Methods> {
 }
 
 pub(super) enum Job {
-    Load { source: String, views: Option<String> },
+    Load { wanted: open::Wanted, views: Option<String> },
     Record(Either<Request<Flat>, Request<Solid>>),
     Measure { name: &'static str, scene: Option<AnyScene>, settings: Settings },
 }
@@ -210,7 +210,7 @@ impl Bench {
     }
     fn work(&mut self, job: Job, ticket: &Ticket) -> Done {
         match job {
-            Job::Load { source, views } => match open::load(&source, views.as_deref(), ticket) {
+            Job::Load { wanted, views } => match open::load(&wanted, views.as_deref(), ticket) {
                 Ok(opened) => Done::Loaded(opened),
                 Err(_) if ticket.cancelled() => Done::Cancelled,
                 Err(error) => Done::LoadFailed(error),

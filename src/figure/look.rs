@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
+use crate::drawing::{Drawing, Item, Layer, Mark, Role, Subject};
 use crate::geometry::{Frustum, NodeId, Solid, Space, Vector, View};
 use crate::index::Hierarchy;
 use crate::method::{Film, Verdict};
@@ -22,7 +22,7 @@ pub struct Look {
     pub evidence: bool,
     /// What is marked as selected.
     pub selected: Subject,
-    /// What is marked as the thing that the step is about, where the evidence does not mark it.
+    /// What is marked as the thing that the step is about, if the evidence does not mark it.
     pub current: Subject,
 }
 
@@ -71,9 +71,16 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
         nodes(film.hierarchy(), stamps, step, &mut to);
     }
     if look.evidence {
+        let from = to.items.len();
         film.explain(step, &mut to);
+        if S::Vector::AXES == 2 {
+            // A line cannot show two things side by side: occluders lie under the verdicts, as their rims.
+            let under = |i: &&mut Item<_>| i.role == Role::Occluder && i.layer == Layer::Evidence;
+            to.items[from..].iter_mut().filter(under).for_each(|i| i.layer = Layer::Areas);
+        }
     }
-    if !to.items.iter().any(|i| i.role == Role::Current) {
+    // Evidence marks what it compares; what the sentence is about may be another thing.
+    if !to.items.iter().any(|i| i.role == Role::Current && i.subject == look.current) {
         emphasized(film, look.current, Role::Current, &mut to);
     }
     emphasized(film, look.selected, Role::Selected, &mut to);

@@ -354,7 +354,7 @@ pub fn label(role: Role) -> Option<&'static str> {
 }
 
 /// A legend of the roles that occur in a picture, in the order of [`Role::ALL`].
-pub fn legend(picture: &Drawing) -> Vec<Entry> {
+pub fn legend<P>(picture: &Drawing<P>) -> Vec<Entry> {
     let entry = |role: Role| {
         let swatch = picture.items.iter().filter(|i| i.role == role).filter_map(|i| match i.mark {
             Mark::Area(_) => Some(Swatch::Area),

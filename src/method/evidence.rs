@@ -207,22 +207,36 @@ impl<S: Space> Tested<S> {
         let mark = if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
         to.push(Layer::Evidence, Role::Evidence, Subject::Plane(test.plane), mark);
 
-        // The corner that decided, and its distance from the plane.
+        // The corner that decided, and its distance from the plane; where the plane cuts, both corners.
         let (normal, _) = frustum.plane(test.plane as usize);
-        let is_outside = matches!(self.found, Found::Outside(_));
-        let inward = if is_outside { normal } else { -normal };
-        let corner = S::Vector::from_fn(|a| {
-            if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) }
-        });
-        let distance = if is_outside { test.far_corner } else { test.near_corner };
-        let foot = corner - normal * distance;
-        to.line(Layer::Evidence, Role::Evidence, Subject::None, [corner, foot]);
-        to.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Dot { at: corner, radius_pt: 2.5 });
-        label(
-            to,
-            (corner + foot) * 0.5,
-            format!("{} units {}", short(distance.abs()), if distance < 0.0 { "outside" } else { "inside" }),
-        );
+        let mut leg = |inward: S::Vector, distance: f32| {
+            let corner = S::Vector::from_fn(|a| {
+                if inward.get(a) >= 0.0 { self.bounds.max.get(a) } else { self.bounds.min.get(a) }
+            });
+            let foot = corner - normal * distance;
+            to.line(Layer::Evidence, Role::Evidence, Subject::None, [corner, foot]);
+            to.push(Layer::Evidence, Role::Evidence, Subject::None, Mark::Dot { at: corner, radius_pt: 2.5 });
+            (corner + foot) * 0.5
+        };
+        let at = match self.found {
+            Found::Outside(_) => leg(normal, test.far_corner),
+            Found::Inside => leg(-normal, test.near_corner),
+            Found::Partial(_) => {
+                leg(normal, test.far_corner);
+                leg(-normal, test.near_corner)
+            }
+        };
+        label(to, at, self.corners_text(&test));
+    }
+    /// The plane by its name, and on which side of it the box reaches how far.
+    fn corners_text(&self, test: &PlaneTest) -> String {
+        let plane = Frustum::<S::Vector>::plane_name(test.plane as usize);
+        let (reaches_in, reaches_out) = (short(test.far_corner.abs()), short(test.near_corner.abs()));
+        match self.found {
+            Found::Outside(_) => format!("{plane}: all out, by {reaches_in}"),
+            Found::Inside => format!("{plane}: all in, by {reaches_out}"),
+            Found::Partial(_) => format!("{plane}: {reaches_in} in, {reaches_out} out"),
+        }
     }
 }
 

@@ -181,6 +181,8 @@ impl Screen<'_> {
     }
 
     fn path(&mut self, points: &[Vec2], closed: bool, paint: &Paint) {
+        // There and back: egui would make nothing of two corners of 180 degrees.
+        let closed = closed && points.len() > 2;
         if let Some((fill, alpha)) = paint.fill {
             let polygon = points.iter().map(|p| self.at(*p)).collect();
             self.shapes.push(Shape::convex_polygon(polygon, color_with(fill, alpha), PathStroke::NONE));

@@ -332,7 +332,8 @@ fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
     hash.finalize().into()
 }
 
-/// A view that frames the whole scene: from the front, right and above in space; from below in flatland.
+/// A view that frames the whole scene: from the front, right and above in space; from below in flatland. Its
+/// depths reach from a thousandth of the scene's diagonal to a diagonal beyond it, so that one can walk in.
 pub fn framing_view<S: Space>(bounds: &Aabb<S::Vector>, width: u32, height: u32) -> View<S> {
     use crate::geometry::{Eye, Vector};
     let fov = 60f32.to_radians();
@@ -348,8 +349,8 @@ pub fn framing_view<S: Space>(bounds: &Aabb<S::Vector>, width: u32, height: u32)
         target: center,
         up,
         fov,
-        near: (distance - radius * 1.02).max(distance * 1e-3),
-        far: distance + radius * 1.1,
+        near: radius * 2e-3,
+        far: distance + radius * 3.0,
     };
     View { eye, width, height: if S::Vector::AXES == 2 { 1 } else { height } }
 }

@@ -19,7 +19,7 @@ pub struct Cache {
     /// Of the method's own pictures.
     pub picture: pictures::Shown,
     /// Of the timeline.
-    pub lanes: Option<timeline::Lanes>,
+    pub timeline: timeline::Kept,
     /// Of the event tree.
     pub scroll: events::Scroll,
     /// Of the dialogs.

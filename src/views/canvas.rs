@@ -32,7 +32,7 @@ pub fn show(
         egui::WidgetInfo::labeled(egui::Role::Image, true, format!("Observer view. {}", state.sentence()))
     });
     hand.is_picture_focused |= response.has_focus();
-    if std::mem::take(&mut hand.frame) {
+    if state.is_to_frame {
         let mut camera = state.observer;
         camera.frame_flat(
             &target_box(state, stage),

@@ -163,7 +163,7 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
                     Pane::Why => why::show(state, ui, answers),
                     Pane::Inspector => inspector::show(state, ui, answers),
                     Pane::Parameters => parameters::show(state, &mut cache.hand.gesture, ui, answers),
-                    Pane::Timeline => timeline::show(state, &mut cache.lanes, ui, answers),
+                    Pane::Timeline => timeline::show(state, &mut cache.timeline, ui, answers),
                     Pane::Pictures => pictures::show(state, &mut cache.picture, ui),
                     _ => code::show(state, ui, answers),
                 });

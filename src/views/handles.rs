@@ -30,8 +30,6 @@ pub struct Hand {
     pub is_flying: bool,
     /// Whether a picture has the focus.
     pub is_picture_focused: bool,
-    /// Bring the selection, or everything, into the Observer's picture.
-    pub frame: bool,
     /// Width over height of the Observer's picture.
     pub aspect: f32,
 }

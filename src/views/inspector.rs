@@ -75,7 +75,7 @@ fn bookmarks(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     for (i, mark) in state.bookmarks.iter().enumerate() {
         ui.horizontal(|ui| {
             if ui.link(format!("{}: step {}", i + 1, mark.step)).clicked() {
-                answers.push(Command::GoTo(mark.step));
+                answers.push(Command::Bookmark(i));
             }
             let mut note = mark.note.clone();
             let edit = egui::TextEdit::singleline(&mut note)

@@ -4,8 +4,11 @@ use eframe::egui;
 
 use super::Answers;
 use super::icons::Icon;
-use crate::app::{Action, Command, Dialog, Menu, State, Surface, Theme};
+use crate::app::{Action, Command, Dialog, LookIn, Menu, State, Surface, Theme};
 use crate::drawing::words::count;
+
+/// Room for the buttons at the right.
+const AT_RIGHT: f32 = 150.0;
 
 /// Shows the menus.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -22,7 +25,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                             {
                                 continue;
                             }
-                            let button = egui::Button::new(info.title)
+                            let is_on = state.is_on(info.action);
+                            let button = egui::Button::selectable(is_on, info.title)
                                 .shortcut_text(*info.keys.first().unwrap_or(&""));
                             if ui
                                 .add_enabled(state.can(info.action), button)
@@ -42,6 +46,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             method(state, ui, answers);
             if matches!(state.stage, Some(crate::geometry::Either::Solid(_))) {
                 surface(state, ui, answers);
+                look_in(state, ui, answers);
             }
             let boxes = egui::Button::selectable(state.shown.nodes, "Boxes");
             if ui.add(boxes).on_hover_text(Action::ShowNodes.info().help).clicked() {
@@ -53,6 +58,10 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             let text = format!("{}: {} {}s", scene.name(), count(scene.live_count()), scene.prim_name());
             let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
             let text = if has_news { format!("{text} (!)") } else { text };
+            // The buttons at the right come after it and would be painted over its end.
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let width = ui.fonts_mut(|f| f.layout_no_wrap(text.clone(), font, egui::Color32::BLACK).size().x);
+            let text = if width > ui.available_width() - AT_RIGHT { scene.name().to_owned() } else { text };
             if ui.link(text).on_hover_text("Loading report").clicked() {
                 answers.push(Command::Dialog(Dialog::Report));
             }
@@ -82,6 +91,19 @@ fn method(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         }
     });
     combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Method"));
+}
+
+fn look_in(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    let now = state.shown.look_in;
+    let text = if now == LookIn::Off { "look in…" } else { now.title() };
+    let combo = egui::ComboBox::from_id_salt("look in").selected_text(text).width(90.0).show_ui(ui, |ui| {
+        for way in LookIn::ALL {
+            if ui.selectable_label(way == now, way.title()).clicked() {
+                answers.push(Command::LookIn(way));
+            }
+        }
+    });
+    combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Look in"));
 }
 
 fn surface(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {

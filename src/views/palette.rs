@@ -40,6 +40,12 @@ pub fn role(state: &State, role: Role) -> Color32 {
     color(state.shown.theme.style(role).stroke)
 }
 
+/// The color of the band around the marks of a role, or that of its lines if it has none.
+pub fn halo(state: &State, role: Role) -> Color32 {
+    let style = state.shown.theme.style(role);
+    color(style.halo.map_or(style.stroke, |(halo, _)| halo))
+}
+
 /// Dresses egui in the theme; large type for a room.
 pub fn dress(ctx: &Context, state: &State, is_large: bool) {
     let base = if state.shown.theme == crate::app::Theme::Dark { EguiTheme::Dark } else { EguiTheme::Light };
@@ -47,6 +53,8 @@ pub fn dress(ctx: &Context, state: &State, is_large: bool) {
     let mut style = Style { visuals: visuals(state.shown.theme), ..Style::default() };
     style.spacing.item_spacing = eframe::egui::vec2(6.0, 4.0);
     style.url_in_tooltip = true;
+    // A menu is as high as it needs; it scrolls at the window's edge.
+    style.spacing.default_area_size.y = f32::INFINITY;
     // Moves of a step are not smoothed: nothing slides that a person did not move.
     style.animation_time = 0.0;
     if is_large {

@@ -24,7 +24,11 @@ pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
             let around = Vec3::splat(whole.diagonal() * 0.1);
             Aabb { min: eye - around, max: eye + around }
         }
-        selected => stage.bounds_of(selected).unwrap_or(whole),
+        // The Eye too, unless it stands so far off that the scene would be a spot.
+        selected => stage.bounds_of(selected).unwrap_or_else(|| {
+            let is_by = (eye - whole.center()).length() < 1.2 * whole.diagonal();
+            if is_by { whole.with(eye) } else { whole }
+        }),
     }
 }
 

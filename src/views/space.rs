@@ -6,12 +6,15 @@ use glam::{Vec2, Vec3};
 
 use super::handles::Hand;
 use super::{Answers, palette, reach};
-use crate::app::{Command, Stage, State, Surface};
+use crate::app::{Command, LookIn, Stage, Staged, State, Surface, Theme, WIDTH_PT};
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure;
 use crate::geometry::{Solid, View};
 use crate::render::gpu::{self, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, ViewportId};
 use crate::render::screen;
+
+/// Pixels an inch of figures of space.
+const FIGURE_DPI: f32 = 300.0;
 
 /// What lies on the graphics card.
 #[derive(Clone, Debug, Default)]
@@ -49,9 +52,9 @@ pub fn show(
     });
     hand.is_picture_focused |= response.has_focus();
     ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
-    if !is_eye && std::mem::take(&mut hand.frame) {
+    if !is_eye && state.is_to_frame {
         let mut camera = state.observer;
-        camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds());
+        camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds(), pane.aspect_ratio());
         answers.push(Command::Observe(camera));
     }
     let rect =
@@ -62,7 +65,7 @@ pub fn show(
     match gpu {
         Some(gpu) => {
             upload(state, stage, uploaded, gpu);
-            picture(state, is_eye, ui, rect, &view);
+            picture(state, stage, is_eye, ui, rect, &view);
         }
         None => {
             ui.painter().text(
@@ -84,12 +87,23 @@ pub fn show(
             egui::Stroke::new(1.0, palette::panel(state).border),
             egui::StrokeKind::Inside,
         );
+        changed_depths(state, stage, ui, rect);
         reach::look_around(state, stage, hand, ui, &response, rect, answers);
     } else {
         labels(state, stage, uploaded, ui, rect, &view);
         reach::observe(state, stage, hand, ui, &response, &view, answers);
     }
     super::canvas::focus_ring(state, ui, &response);
+}
+
+/// Says in the Eye's picture that near and far are no longer those of its path.
+pub fn changed_depths(state: &State, stage: &dyn Staged, ui: &egui::Ui, rect: egui::Rect) {
+    let Some(text) = stage.changed_depths() else { return };
+    let (colors, painter) = (palette::panel(state), ui.painter_at(rect));
+    let galley = painter.layout(text, egui::FontId::proportional(12.0), colors.faint, rect.width() - 12.0);
+    let at = rect.left_bottom() + egui::vec2(6.0, -galley.size().y - 4.0);
+    painter.rect_filled(egui::Rect::from_min_size(at, galley.size()).expand(2.0), 2.0, colors.canvas);
+    painter.galley(at, galley, colors.faint);
 }
 
 /// The largest rectangle of this aspect in the middle of another one.
@@ -102,14 +116,21 @@ fn fitted(pane: egui::Rect, aspect: f32) -> egui::Rect {
     egui::Rect::from_center_size(pane.center(), size)
 }
 
-fn picture(state: &State, is_eye: bool, ui: &egui::Ui, rect: egui::Rect, view: &View<Solid>) {
+fn picture(
+    state: &State,
+    stage: &Stage<Solid>,
+    is_eye: bool,
+    ui: &egui::Ui,
+    rect: egui::Rect,
+    view: &View<Solid>,
+) {
     let ppp = ui.ctx().pixels_per_point();
     let size_px = [(rect.width() * ppp).round() as u32, (rect.height() * ppp).round() as u32];
     let call = Call {
         id: ViewportId(u32::from(is_eye)),
         size_px,
         camera: view.eye.into(),
-        style: style(state, is_eye, ppp),
+        style: style(state, stage, is_eye, ppp),
     };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, call));
 }
@@ -148,7 +169,7 @@ fn upload(state: &State, stage: &Stage<Solid>, now: &mut Uploaded, gpu: &RenderS
 }
 
 /// What a viewport shows.
-pub fn style(state: &State, is_eye: bool, pixels_per_point: f32) -> SpaceStyle {
+pub fn style(state: &State, stage: &Stage<Solid>, is_eye: bool, pixels_per_point: f32) -> SpaceStyle {
     let palette = Palette::of(state.shown.theme);
     let base =
         if is_eye { SpaceStyle::eye(state.step, palette) } else { SpaceStyle::observer(state.step, palette) };
@@ -165,12 +186,19 @@ pub fn style(state: &State, is_eye: bool, pixels_per_point: f32) -> SpaceStyle {
     if state.shown.surface == Surface::Translucent {
         (style.kept, style.undecided, style.ghost) = (Shown::Ghost, Shown::Ghost, 0.3);
     }
+    if !is_eye {
+        match state.shown.look_in {
+            LookIn::Off => {}
+            LookIn::Cut => style.section = Some((-Vec3::Y, stage.view.eye.position.y)),
+            LookIn::Faces => style.only_fronts = true,
+        }
+    }
     if !state.shown.nodes {
         style.nodes = NodeBoxes::None;
     }
     let current = state.current_subject();
     style.highlights = vec![(current, Role::Current), (state.selection, Role::Selected)];
-    style.highlights.retain(|(s, _)| *s != Subject::None && !(is_eye && matches!(s, Subject::Node(_))));
+    style.highlights.retain(|(s, _)| *s != Subject::None);
     style
 }
 
@@ -233,10 +261,27 @@ fn labels(
     screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
 }
 
-/// The Observer's picture as it is on the graphics card.
-pub fn pixels(gpu: &RenderState) -> Option<Pixels> {
+/// The Observer's picture for print: the same surfaces, boxes and marks in the same style, drawn again as large
+/// as paper needs and in the colors of print.
+pub fn figure(
+    state: &State,
+    stage: &Stage<Solid>,
+    uploaded: &mut Uploaded,
+    gpu: &RenderState,
+    aspect: f32,
+) -> Option<Pixels> {
+    upload(state, stage, uploaded, gpu);
+    let scale = FIGURE_DPI / 72.0;
+    let size_px = [WIDTH_PT * scale, WIDTH_PT * scale / aspect.clamp(0.2, 5.0)].map(|v| v.round() as u32);
+    let style = SpaceStyle {
+        palette: Palette::of(Theme::Print),
+        transparent: true,
+        ..style(state, stage, false, scale)
+    };
+    let camera = state.observer.view(size_px[0], size_px[1]).eye.into();
     let renderer = gpu.renderer.read();
     let layer = renderer.callback_resources.get::<SpaceLayer>()?;
-    let (width, height, rgba) = layer.read_rgba(&gpu.device, &gpu.queue, ViewportId(0)).ok()??;
+    let drawn = layer.snapshot(&gpu.device, &gpu.queue, size_px, 2, &camera, &style);
+    let (width, height, rgba) = drawn.ok()?;
     Some(Pixels { width, height, rgba: rgba.into() })
 }

@@ -5,6 +5,7 @@ use eframe::egui::{self, RichText};
 
 use super::{Answers, legend};
 use crate::app::{Action, Command, Layout, State};
+use crate::drawing::Subject;
 
 /// Shows the status and the legend.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -24,9 +25,19 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             // The sentence stands in the caption, in large type.
             ui.label(step);
         } else {
-            announced(ui, egui::Label::new(format!("{step} {}", state.sentence())).truncate());
+            let text = format!("{step} {} {}", state.sentence(), marked(state));
+            announced(ui, egui::Label::new(text).truncate());
         }
     });
+}
+
+/// What the pictures mark at this step, or that there is nothing to mark.
+fn marked(state: &State) -> String {
+    match state.current_subject() {
+        _ if state.current().is_none() => String::new(),
+        Subject::None => "(About no node or primitive: nothing is marked.)".into(),
+        subject => format!("(Marked: {}.)", super::why::subject_name(state, subject)),
+    }
 }
 
 /// A label that screen readers read out when it changes.
@@ -52,6 +63,7 @@ fn notices(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
 pub fn caption(state: &State, ui: &mut egui::Ui) {
     let size = egui::TextStyle::Heading.resolve(ui.style()).size;
     announced(ui, egui::Label::new(RichText::new(state.sentence()).size(size)).wrap());
+    ui.weak(marked(state));
     let note =
         state.bookmarks.iter().find(|b| b.step == state.step).map(|b| b.note.as_str()).unwrap_or_default();
     if !note.is_empty() {

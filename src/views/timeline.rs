@@ -4,21 +4,33 @@ use eframe::egui::{self, Align2, FontId, Rect, Sense, Stroke, pos2, vec2};
 
 use super::icons::Icon;
 use super::{Answers, palette};
-use crate::app::{Action, Breakpoint, Cell, Command, Lane, Staged, State, lanes};
+use crate::app::{Action, Breakpoint, Cell, Command, Concern, Lane, Staged, State, lanes};
 use crate::drawing::words::count;
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
 use crate::method::{Event, Verdict};
 use crate::trace::{Detail, State as Known};
 
+/// Marks of one kind that a person can tell apart.
+const MARKS: usize = 500;
 /// Room for the names of lanes.
 const NAMES: f32 = 72.0;
 
 /// The cells of the lanes, and the film and width that they were counted for.
 pub type Lanes = ((u64, usize), [Vec<Cell>; 4]);
 
+/// The events about what the step is about, and the film and the thing that they were looked up for.
+pub type About = ((u64, Subject), Vec<usize>);
+
+/// What the timeline keeps.
+#[derive(Default)]
+pub struct Kept {
+    lanes: Option<Lanes>,
+    about: Option<About>,
+}
+
 /// Shows the timeline.
-pub fn show(state: &State, lanes: &mut Option<Lanes>, ui: &mut egui::Ui, answers: &mut Answers) {
+pub fn show(state: &State, kept: &mut Kept, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = state.staged() else { return };
     moves(state, ui, answers);
     frames(state, stage, ui, answers);
@@ -31,7 +43,7 @@ pub fn show(state: &State, lanes: &mut Option<Lanes>, ui: &mut egui::Ui, answers
         );
         ui.colored_label(ui.visuals().warn_fg_color, text);
     }
-    scrubber(state, lanes, ui, answers);
+    scrubber(state, kept, ui, answers);
 }
 
 fn moves(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
@@ -134,7 +146,7 @@ impl Bar {
     }
 }
 
-fn scrubber(state: &State, kept: &mut Option<Lanes>, ui: &mut egui::Ui, answers: &mut Answers) {
+fn scrubber(state: &State, kept: &mut Kept, ui: &mut egui::Ui, answers: &mut Answers) {
     let size = vec2(ui.available_width(), ui.available_height().max(40.0));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
     response.widget_info(|| egui::WidgetInfo::slider(true, state.step as f64, "Timeline"));
@@ -154,11 +166,12 @@ fn scrubber(state: &State, kept: &mut Option<Lanes>, ui: &mut egui::Ui, answers:
     }
     let columns = bar.rect.width().max(1.0) as usize;
     let key = (film.serial, columns);
-    if kept.as_ref().is_none_or(|(k, _)| *k != key) {
-        *kept = Some((key, lanes(events, columns)));
+    if kept.lanes.as_ref().is_none_or(|(k, _)| *k != key) {
+        kept.lanes = Some((key, lanes(events, columns)));
     }
-    let Some((_, lanes)) = kept else { return };
+    let Some((_, lanes)) = &kept.lanes else { return };
     let painter = ui.painter_at(rect);
+    paint_about(state, &mut kept.about, &bar, &painter);
     paint_lanes(state, lanes, &bar, &painter, rect);
     marks(state, events, &painter, &bar);
     let (x, accent) = (bar.x_of(state.step), palette::panel(state).accent);
@@ -168,6 +181,23 @@ fn scrubber(state: &State, kept: &mut Option<Lanes>, ui: &mut egui::Ui, answers:
         let step = bar.step_at(at.x);
         let text = step.checked_sub(1).map_or("before the first event".into(), |i| film.reel.sentence(i));
         response.on_hover_text_at_pointer(format!("Step {step}: {text}"));
+    }
+}
+
+/// Bands behind the lanes where the film is about the same thing as this step.
+fn paint_about(state: &State, kept: &mut Option<About>, bar: &Bar, painter: &egui::Painter) {
+    let (Some(film), Some(stage)) = (state.film(), state.staged()) else { return };
+    let subject = state.current_subject();
+    let key = (film.serial, subject);
+    if kept.as_ref().is_none_or(|(k, _)| *k != key) {
+        let concern = Concern::of(film, stage.scene(), subject);
+        let about = (0..film.reel.events().len()).filter(|&i| concern.holds(i)).take(MARKS).collect();
+        *kept = Some((key, about));
+    }
+    let Some((_, about)) = kept else { return };
+    let (color, width) = (palette::halo(state, Role::Current), bar.per_step().clamp(3.0, 8.0));
+    for &event in about.iter() {
+        painter.vline(bar.x_of(event + 1), bar.rect.y_range(), Stroke::new(width, color));
     }
 }
 
@@ -238,12 +268,12 @@ fn marks(state: &State, events: &[Event], painter: &egui::Painter, bar: &Bar) {
         painter.circle_filled(pos2(bar.x_of(i + 1), bar.rect.bottom() - 3.0), 2.5, colors.text);
     };
     if state.breakpoints.iter().any(|b| !matches!(b, Breakpoint::Verdict(_))) {
-        let stops = (0..events.len()).filter(|&i| state.stops_at(i)).take(500);
-        stops.for_each(dot);
+        let stops = state.stops();
+        (0..events.len()).filter(|&i| stops(i)).take(MARKS).for_each(dot);
     } else {
         let wanted =
             |e: &Event| e.verdict().is_some_and(|v| state.breakpoints.contains(&Breakpoint::Verdict(v)));
-        let stops = events.iter().enumerate().filter(|(_, e)| wanted(e)).take(500);
+        let stops = events.iter().enumerate().filter(|(_, e)| wanted(e)).take(MARKS);
         stops.for_each(|(i, _)| dot(i));
     }
 }

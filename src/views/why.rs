@@ -50,11 +50,23 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         });
         for because in why(stage, state.selection, state.step) {
             ui.label(&because.text);
-            if let Some(step) = because.step.filter(|&s| s != state.step)
-                && ui.link(format!("Go to step {step}")).clicked()
-            {
-                answers.push(Command::GoTo(step));
+            let step = because.step.filter(|&s| s != state.step);
+            if step.is_none() && because.by.is_none() {
+                ui.add_space(4.0);
+                continue;
             }
+            ui.horizontal_wrapped(|ui| {
+                if let Some(step) = step
+                    && ui.link(format!("Go to step {step}")).clicked()
+                {
+                    answers.push(Command::GoTo(step));
+                }
+                if let Some((subject, name)) = &because.by
+                    && ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked()
+                {
+                    answers.push(Command::Select(*subject));
+                }
+            });
             ui.add_space(4.0);
         }
         ui.horizontal_wrapped(|ui| {
@@ -62,6 +74,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             super::action_button(state, ui, Action::NextOnSelected, "about it ›", answers);
             if matches!(state.selection, Subject::Node(_) | Subject::Prim(_)) {
                 super::action_button(state, ui, Action::SelectParent, "Node above", answers);
+            }
+            if matches!(state.selection, Subject::Node(_) | Subject::Prim(_) | Subject::Object(_)) {
                 super::action_button(state, ui, Action::Breakpoint, "Breakpoint", answers);
             }
         });

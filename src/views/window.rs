@@ -5,10 +5,9 @@ use egui_tiles::Tree;
 
 use super::cache::Cache;
 use super::dock::{self, Dock, Pane};
-use super::handles::Hand;
 use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
-use crate::app::{Action, Command, Dialog, Effect, Layout, Session, Start, State, Theme, VECTOR_PRIMS};
+use crate::app::{Action, Command, Dialog, Effect, Layout, Session, Start, State, Theme};
 use crate::drawing::Pixels;
 use crate::geometry::Either;
 use crate::render::screen;
@@ -56,11 +55,9 @@ impl App {
             .and_then(|text| serde_json::from_str::<(String, Tree<Pane>)>(&text).ok());
         let layout = layout.filter(|(name, tree)| *name == state.shown.layout.name() && dock::is_sound(tree));
         let tree = layout.map_or_else(|| dock::tree(state.shown.layout), |(_, tree)| tree);
-        let hand = Hand { frame: true, ..Hand::default() };
-        let cache = Cache { hand, ..Cache::default() };
         Self {
             state,
-            cache,
+            cache: Cache::default(),
             tree,
             keys,
             start,
@@ -141,22 +138,18 @@ impl App {
                     self.is_fullscreen = !self.is_fullscreen;
                     ctx.send_viewport_cmd(ViewportCommand::Fullscreen(self.is_fullscreen));
                 }
-                Effect::ResetLayout => {
-                    self.tree = dock::tree(self.state.shown.layout);
-                    self.cache.hand.frame = true;
-                }
+                Effect::ResetLayout => self.tree = dock::tree(self.state.shown.layout),
                 Effect::FocusFilter => self.cache.scroll.focus_filter = true,
-                Effect::Frame => self.cache.hand.frame = true,
                 Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             }
         }
     }
 
-    /// The Observer's picture of a scene that is too large for vectors.
-    fn pixels(&self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<Pixels> {
-        let large =
-            matches!(&self.state.stage, Some(Either::Solid(s)) if s.scene.live().len() > VECTOR_PRIMS);
-        gpu.filter(|_| large).and_then(super::space::pixels)
+    /// The Observer's picture of space as a figure has it.
+    fn pixels(&mut self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<Pixels> {
+        let (state, cache) = (&self.state, &mut self.cache);
+        let Some(Either::Solid(stage)) = &state.stage else { return None };
+        super::space::figure(state, stage, &mut cache.uploaded, gpu?, cache.hand.aspect)
     }
 
     /// Writes the screenshot of the command line once the window has been quiet for some frames, and quits.
@@ -221,7 +214,7 @@ impl eframe::App for App {
         if let Ok(text) = serde_json::to_string(&(self.state.shown.layout.name(), &self.tree)) {
             storage.set_string(LAYOUT, text);
         }
-        storage.set_string(SESSION, self.state.session().text());
+        storage.set_string(SESSION, self.state.session_in(None).text());
     }
 }
 

@@ -7,6 +7,7 @@ use super::memory::Owner;
 use super::occluders::Occluders;
 use super::relation::{Classified, Decisive, EdgeTest, EyeSide, Margin, Occlusion, Planes, Reason, Relation};
 use super::space::{Point, Shape, corner};
+use crate::drawing::words::capitalized;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, short};
@@ -223,8 +224,8 @@ impl Related {
         if let Reason::Plane(d) = self.reason { Some(d) } else { None }
     }
 
-    fn sentence<S: Shape>(&self) -> String {
-        let (who, by) = (owner_name(self.owner), format!("the occluder of {} {}", S::PRIM, self.name));
+    fn sentence<S: Shape>(&self, context: &Context<'_, S>) -> String {
+        let (who, by) = (owner_name(self.owner), occluder_name(context, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
         let plane = plane_word::<S>();
         let why = match self.reason {
@@ -379,6 +380,14 @@ impl Joined {
     }
 }
 
+/// An occluder by the first primitive of its face, and by its object where that has a name.
+fn occluder_name<S: Shape>(context: &Context<'_, S>, prim: PrimId) -> String {
+    let object = context.scene.object_of(prim);
+    let name = context.scene.objects().get(object.at()).map_or("", |o| &o.name);
+    let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+    format!("the occluder of {} {prim}{of}", S::PRIM)
+}
+
 fn owner_name(owner: Owner) -> String {
     match owner {
         Owner::Node(n) => format!("node {n}"),
@@ -517,10 +526,9 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Chosen(n) => format!(
                 // Leaf and direction are named too: the pick is from their list, so that they decide what can
                 // be active.
-                "The occluder of {} {} is active, number {} by area-angle ({}) as seen from the Eye, of \
-                 those listed for leaf {} and direction {}{}.",
-                S::PRIM,
-                n.name,
+                "{} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf {} \
+                 and direction {}{}.",
+                capitalized(&occluder_name(context, n.name)),
                 n.rank + 1,
                 short(n.area_angle),
                 n.leaf,
@@ -529,7 +537,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
             ),
             Self::Tested(n) => n.sentence(context),
             Self::Edge(n) => n.sentence::<S>(),
-            Self::Related(n) => n.sentence::<S>(),
+            Self::Related(n) => n.sentence(context),
             Self::Joined(n) => format!(
                 "{} occluders hide {} together: the eye is inside all their supporting {}s but those through \
                  edges that two of them share from opposite sides ({} in all).",
