@@ -329,9 +329,8 @@ fn one_looks_into_what_is_closed_and_the_figure_shows_the_same() {
         h.state_mut().state.notices.clear();
         settle(&mut h);
         let image = h.render().expect("a picture");
-        let view = |label: &str| {
-            part(image.as_raw(), image.width() as usize, h.get_by_label_contains(label).rect())
-        };
+        let view =
+            |label: &str| part(image.as_raw(), image.width() as usize, h.get_by_label_contains(label).rect());
         pictures.push((view("Eye view."), view("Observer view."), figure));
     }
     std::fs::remove_dir_all(&folder).expect("a folder of our own");

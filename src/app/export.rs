@@ -97,7 +97,9 @@ impl State {
         let knobs = self.film().map_or(&[][..], |f| f.reel.knobs()).iter();
         let set = knobs.filter(|(k, _)| self.settings.0.contains_key(k.name));
         let mut said: Vec<String> = set.map(|(k, v)| format!("{} {v}", k.name)).collect();
-        said.push(if said.is_empty() { "all parameters at their defaults" } else { "the rest by default" }.into());
+        said.push(
+            if said.is_empty() { "all parameters at their defaults" } else { "the rest by default" }.into(),
+        );
         said.extend(match self.shown.look_in {
             _ if matches!(self.stage, Some(Either::Flat(_))) => None,
             LookIn::Off => None,

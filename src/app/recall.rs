@@ -78,8 +78,7 @@ impl State {
             return;
         }
         let folder = Path::new(file.unwrap_or_default()).parent().unwrap_or(Path::new("")).to_owned();
-        let wanted =
-            Wanted { source: session.scene.clone(), hash_hex: session.scene_hash.clone(), folder };
+        let wanted = Wanted { source: session.scene.clone(), hash_hex: session.scene_hash.clone(), folder };
         self.recall = Some(session);
         self.load(wanted, None);
     }

@@ -156,7 +156,10 @@ impl State {
             (Subject::Prim(prim), _) => Breakpoint::Prim(prim),
             (Subject::Object(object), _) => Breakpoint::Object(object),
             (_, Some(line)) => Breakpoint::Line(line),
-            _ => return self.tell("Select a node, a primitive or an object, or step to a line, to set a breakpoint."),
+            _ => {
+                return self
+                    .tell("Select a node, a primitive or an object, or step to a line, to set a breakpoint.");
+            }
         };
         self.flip(breakpoint);
     }

@@ -60,9 +60,8 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
         by_verdict.entry(verdict).or_default().0 += 1;
         let ground = film.reel.evidence_of(at - 1);
         // Without evidence, a node decided as a whole is a reason and each primitive by itself is none.
-        let ground = ground.or_else(|| {
-            matches!(film.reel.events()[at - 1], Event::DecidedNode(..)).then_some(at - 1)
-        });
+        let ground =
+            ground.or_else(|| matches!(film.reel.events()[at - 1], Event::DecidedNode(..)).then_some(at - 1));
         let way = ways.entry((verdict, ground.unwrap_or(usize::MAX))).or_insert((0, at));
         (way.0, way.1) = (way.0 + 1, way.1.min(at));
     }
@@ -86,7 +85,8 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
             Event::DecidedNode(node, _) => format!(" with node {node}"),
             _ => String::new(),
         };
-        let reason = if *ground < film.reel.events().len() { film.reel.sentence(*ground) } else { String::new() };
+        let reason =
+            if *ground < film.reel.events().len() { film.reel.sentence(*ground) } else { String::new() };
         let text = format!("{} {}{place}, at step {at}. {reason}", count(*n), spoken(*verdict));
         lines.push(Because { by: hider(scene, film, *ground), ..because(text.trim_end(), Some(*at)) });
     }

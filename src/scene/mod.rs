@@ -344,13 +344,6 @@ pub fn framing_view<S: Space>(bounds: &Aabb<S::Vector>, width: u32, height: u32)
     let distance = radius / (fov * 0.5).sin() * 1.05;
     let position = center + toward * (distance / toward.length());
     let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { 0.0 });
-    let eye = Eye {
-        position,
-        target: center,
-        up,
-        fov,
-        near: radius * 2e-3,
-        far: distance + radius * 3.0,
-    };
+    let eye = Eye { position, target: center, up, fov, near: radius * 2e-3, far: distance + radius * 3.0 };
     View { eye, width, height: if S::Vector::AXES == 2 { 1 } else { height } }
 }

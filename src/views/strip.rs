@@ -100,7 +100,7 @@ fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: 
     ] {
         if let Some((from, to)) = extent(stage, subject) {
             let x = |ndc: f32| rect.left() + (ndc * 0.5 + 0.5) * rect.width();
-            let place = Rangef::new(x(from), x(to).max(x(from) + 2.0));
+            let place = Rangef::new(x(from), x(to).max(x(from) + 8.0));
             painter.hline(place, y, Stroke::new(5.0, palette::halo(state, role)));
             painter.hline(place, y, Stroke::new(1.5, palette::role(state, role)));
         }
@@ -110,7 +110,9 @@ fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: 
 /// From where to where a thing reaches in the image, −1 to 1; `None` if nothing of it is before the Eye.
 fn extent(stage: &Stage<Flat>, subject: Subject) -> Option<(f32, f32)> {
     let corners: Vec<_> = match subject {
-        Subject::Prim(prim) if prim.at() < stage.scene.prim_count() => stage.scene.prim_points(prim).collect(),
+        Subject::Prim(prim) if prim.at() < stage.scene.prim_count() => {
+            stage.scene.prim_points(prim).collect()
+        }
         _ => stage.bounds_of(subject).filter(|b| !b.is_empty())?.corners().collect(),
     };
     let (projection, near) = (stage.view.projection(), stage.view.eye.near);
