@@ -1,10 +1,10 @@
 //! The only way that anything changes.
 
-use super::any::AnyStage;
+use super::any::{AnyStage, AnyView};
 use super::command::{Action, Command};
 use super::open::{AnyOpened, Wanted};
 use super::session::{Session, write_file};
-use super::shown::{Breakpoint, Dialog, Layout, LookIn, Surface, Theme};
+use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
 use super::state::{Effect, State};
 use super::undo::Inputs;
@@ -35,13 +35,7 @@ impl State {
             Command::Set(name, value, gesture) => self.change(gesture, |s| {
                 s.settings.0.insert(name, value);
             }),
-            Command::Eye(view, gesture) if !self.is_eye_locked => self.change(gesture, |s| {
-                let moved = s.stage.as_mut().is_some_and(|stage| stage.move_eye(&view));
-                if !moved {
-                    s.tell("The Eye cannot look from there.");
-                }
-            }),
-            Command::Eye(..) => self.tell("The Eye is locked; press L to unlock it."),
+            Command::Eye(view, gesture) => self.move_eye(&view, gesture),
             Command::Frame(path, frame) => self.go_frame(path, frame),
             Command::Observe(camera) if camera.is_sound() => {
                 self.observer = camera;
@@ -79,6 +73,18 @@ impl State {
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    fn move_eye(&mut self, view: &AnyView, gesture: Gesture) {
+        if self.is_eye_locked {
+            return self.tell("The Eye is locked; press L to unlock it.");
+        }
+        self.change(gesture, |s| {
+            let moved = s.stage.as_mut().is_some_and(|stage| stage.move_eye(view));
+            if !moved {
+                s.tell("The Eye cannot look from there.");
+            }
+        });
     }
 
     /// Updates what is derived from the rest: the rows of the event tree.
@@ -288,17 +294,20 @@ impl State {
             Action::SurfaceWire => shown.surface = Surface::Wire,
             Action::SurfaceClear => shown.surface = Surface::Translucent,
             Action::CycleSurface => shown.surface = Surface::ALL[(shown.surface as usize + 1) % 3],
-            Action::LookInOff => shown.look_in = LookIn::Off,
-            Action::LookInCut => shown.look_in = LookIn::Cut,
-            Action::LookInFaces => shown.look_in = LookIn::Faces,
-            Action::CycleLookIn => shown.look_in = LookIn::ALL[(shown.look_in as usize + 1) % 3],
+            Action::LookInOff | Action::LookInCut | Action::LookInFaces | Action::CycleLookIn => {
+                shown.look_in = match action {
+                    Action::LookInOff => LookIn::Off,
+                    Action::LookInCut => LookIn::Cut,
+                    Action::LookInFaces => LookIn::Faces,
+                    _ => LookIn::ALL[(shown.look_in as usize + 1) % 3],
+                }
+            }
             Action::ThemeLight => shown.theme = Theme::Light,
             Action::ThemeDark => shown.theme = Theme::Dark,
             Action::ThemePrint => shown.theme = Theme::Print,
-            Action::LayoutDebug => self.set_layout(Layout::Debug),
-            Action::LayoutLecture => self.set_layout(Layout::Lecture),
-            Action::LayoutFigure => self.set_layout(Layout::Figure),
-            Action::LayoutPictures => self.set_layout(Layout::Pictures),
+            _ if (Action::LayoutDebug..=Action::LayoutPictures).contains(&action) => {
+                self.set_layout(Layout::ALL[action as usize - Action::LayoutDebug as usize]);
+            }
             Action::ResetLayout => self.effects.push(Effect::ResetLayout),
             Action::ScaleUp => shown.scale = (shown.scale * 1.1).min(4.0),
             Action::ScaleDown => shown.scale = (shown.scale / 1.1).max(0.5),

@@ -36,8 +36,8 @@ impl Default for ObserverCamera {
 }
 
 impl ObserverCamera {
-    /// Frames a box of space from the present direction in a picture of this aspect (width by height): as near
-    /// as every corner allows.
+    /// Frames a box of space from the present direction in a picture of this aspect (width by height): as
+    /// near as every corner allows.
     pub fn frame_solid(&mut self, bounds: &Aabb<Vec3>, whole: &Aabb<Vec3>, aspect: f32) {
         let (center, turn) = (bounds.center(), self.rotation().inverse());
         self.pivot = center.to_array();

@@ -83,8 +83,8 @@ actions! {
     File Reload "reload" "Reload scene" ["Ctrl+R"] "Reads the scene again.";
     File Save "save" "Save session" ["Ctrl+S"] "Saves what is open, so that it can be opened again.";
     File SaveAs "save-as" "Save session as…" ["Ctrl+Shift+S"] "Saves what is open under another name.";
-    File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors; surfaces \
-        of space as pixels.";
+    File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors; \
+        surfaces of space as pixels.";
     File ExportPdf "export-pdf" "Export figure as PDF…" [] "Writes the picture on screen as a page.";
     File ExportPng "export-png" "Export figure as PNG…" ["Ctrl+E"] "Writes the picture on screen as pixels.";
     File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
@@ -134,11 +134,10 @@ actions! {
         selected thing.";
     Step PreviousOnSelected "previous-on-selected" "Previous about the selection" ["Shift+K"] "To the event \
         about the selected thing before.";
-    Step Run "run" "Run to breakpoint" ["F5"] "To the next breakpoint, or to the end.";
-    Step RunBack "run-back" "Run back to breakpoint" ["Shift+F5"] "Back to the last breakpoint, or to the \
-        beginning.";
+    Step Run "run" "Run to breakpoint" ["F5"] "To the next breakpoint.";
+    Step RunBack "run-back" "Run back to breakpoint" ["Shift+F5"] "Back to the last breakpoint.";
     Step RunToCursor "run-to-cursor" "Run to cursor" ["Ctrl+F10"] "To the next event about the selected \
-        thing, or to the end.";
+        thing.";
     Step BackToCursor "back-to-cursor" "Run back to cursor" ["Ctrl+Shift+F10"] "Back to the last event about \
         the selected thing.";
     Step Breakpoint "breakpoint" "Toggle breakpoint" ["F9"] "Stops whenever the selected thing, or this \
@@ -184,10 +183,10 @@ actions! {
     View SurfaceClear "surface-translucent" "Translucent" [] "Draws surfaces that one sees through.";
     View CycleSurface "surface" "Next surface style" ["X"] "Solid, wireframe, translucent.";
     View LookInOff "look-in-off" "Look in: off" [] "Closed buildings stay closed.";
-    View LookInCut "look-in-cut" "Look in: cut above the Eye" [] "Cuts away in the Observer's picture what lies \
-        higher than the Eye, as a floor plan does.";
-    View LookInFaces "look-in-faces" "Look in: without backs" [] "Leaves out faces that turn their back to the \
-        Observer: opens rooms whose faces look inward.";
+    View LookInCut "look-in-cut" "Look in: cut above the Eye" [] "Cuts away in the Observer's picture what \
+        lies higher than the Eye, as a floor plan does.";
+    View LookInFaces "look-in-faces" "Look in: without backs" [] "Leaves out faces that turn their back to \
+        the Observer: opens rooms whose faces look inward.";
     View CycleLookIn "look-in" "Look in: next way" ["I"] "Closed, cut above the Eye, without backs.";
     View ThemeLight "theme-light" "Light theme" [] "Dark on light.";
     View ThemeDark "theme-dark" "Dark theme" [] "Light on dark.";

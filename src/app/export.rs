@@ -20,8 +20,8 @@ const LIMIT_BYTES: u64 = 256 << 20;
 
 impl State {
     /// The present picture as a page; `aspect` is that of the Observer's window, width over height. `pixels`
-    /// are the Observer's picture of space, whose surfaces hide each other as they do on screen; its labels are
-    /// written over it. Without a graphics card space is drawn as vectors, sorted by depth.
+    /// are the Observer's picture of space, whose surfaces hide each other as they do on screen; its labels
+    /// are written over it. Without a graphics card space is drawn as vectors, sorted by depth.
     pub fn figure(&self, aspect: f32, pixels: Option<Pixels>) -> Option<Drawing> {
         let (stage, look) = (self.staged()?, self.look());
         let scene = stage.scene();

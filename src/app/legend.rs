@@ -9,11 +9,12 @@ use crate::method::Verdict;
 use crate::trace::{Counts, State as Known};
 
 /// States that the legend names, with their words.
-const STATES: [(Role, &str); 9] = [
+const STATES: [(Role, &str); 10] = [
     (Role::Scene, "not decided"),
     (Role::Partial, "open, partly in view"),
     (Role::Visible, "drawn"),
     (Role::Outside, "outside"),
+    (Role::FacesAway, "faces away"),
     (Role::Hidden, "hidden"),
     (Role::Approximated, "left out or replaced"),
     (Role::Occluder, "active occluder"),

@@ -70,7 +70,7 @@ impl State {
         }
     }
 
-    /// Opens the scene of a session that was read from a file (or from where the explorer keeps the last one);
+    /// Opens the scene of a session, which was read from a file or is the last one that the explorer kept;
     /// the rest follows when it is loaded.
     pub fn restore(&mut self, session: Session, file: Option<&str>) {
         self.recall_look(&session);

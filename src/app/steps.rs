@@ -49,14 +49,31 @@ impl State {
                 let concern = Concern::of(self.film()?, self.staged()?.scene(), wanted);
                 self.seek(forward, |i| concern.holds(i))
             }
-            Action::Run => Some(self.seek(true, self.stops()).unwrap_or(events.len())),
-            Action::RunBack => Some(self.seek(false, self.stops()).unwrap_or(0)),
+            Action::Run => self.seek(true, self.stops()),
+            Action::RunBack => self.seek(false, self.stops()),
             Action::First => Some(0),
             Action::Last => Some(events.len()),
             Action::PresentNext => moves.next(events, step, Moves::is_verdict),
             Action::PresentPrevious => moves.previous(events, step, Moves::is_verdict),
             _ => None,
         }
+    }
+
+    /// Why an action leads nowhere.
+    fn no_target(&self, action: Action) -> String {
+        match action {
+            Action::Run | Action::RunBack if self.breakpoints.is_empty() => {
+                "There is no breakpoint. F9 sets one at the selected thing or at this line.".into()
+            }
+            Action::Run => "No breakpoint stops a run after this step.".into(),
+            Action::RunBack => "No breakpoint stops a run before this step.".into(),
+            _ => format!("{}: there is none.", action.info().title),
+        }
+    }
+
+    /// Whether this film ever comes to a line of pseudocode.
+    pub fn reaches(&self, line: u8) -> bool {
+        self.events().contains(&Event::Line(line))
     }
 
     /// Goes to a bookmark, and looks from where the person looked then.
@@ -142,7 +159,7 @@ impl State {
                 self.is_playing = false;
                 match self.target_of(action) {
                     Some(step) => self.go_to(step),
-                    None => self.tell(format!("{}: there is none.", action.info().title)),
+                    None => self.tell(self.no_target(action)),
                 }
             }
             _ => return false,
@@ -157,16 +174,24 @@ impl State {
             (Subject::Object(object), _) => Breakpoint::Object(object),
             (_, Some(line)) => Breakpoint::Line(line),
             _ => {
-                return self
-                    .tell("Select a node, a primitive or an object, or step to a line, to set a breakpoint.");
+                return self.tell(
+                    "Select a node, a primitive or an object, or step to a line, to set a breakpoint.",
+                );
             }
         };
         self.flip(breakpoint);
     }
 
     pub(super) fn flip(&mut self, breakpoint: Breakpoint) {
-        if !self.breakpoints.remove(&breakpoint) {
-            self.breakpoints.insert(breakpoint);
+        if self.breakpoints.remove(&breakpoint) {
+            return;
+        }
+        self.breakpoints.insert(breakpoint);
+        if let (Breakpoint::Line(line), Some(film)) = (breakpoint, self.film())
+            && !self.reaches(line)
+            && let Some(line) = film.reel.card().code.get(usize::from(line))
+        {
+            self.tell(format!("This frame never comes to {}: no run will stop there.", line.label));
         }
     }
 

@@ -103,18 +103,26 @@ fn a_run_stops_at_breakpoints_forwards_and_backwards() {
     let mut state = opened(FLAT);
     state.apply(Command::BreakVerdict(Verdict::Outside));
     let mut stops = vec![];
-    while state.step < state.len() {
+    loop {
+        let before = state.step;
         state.apply(Action::Run);
+        if state.step == before {
+            break;
+        }
         stops.push(state.step);
     }
     assert!(stops.len() > 3, "{stops:?}");
+    let said = |state: &State| state.notices.last().map(|n| n.text.clone()).unwrap_or_default();
+    assert!(said(&state).contains("after this step"), "a run that stops nowhere says so: {}", said(&state));
     stops.pop();
     while let Some(stop) = stops.pop() {
         state.apply(Action::RunBack);
         assert_eq!(state.step, stop);
     }
+    let first = state.step;
     state.apply(Action::RunBack);
-    assert_eq!(state.step, 0);
+    assert_eq!(state.step, first, "and stays where it is");
+    state.apply(Command::GoTo(0));
     state.apply(Command::Select(Subject::Node(NodeId(3))));
     state.apply(Action::Breakpoint);
     assert!(state.breakpoints.contains(&Breakpoint::Node(NodeId(3))));
@@ -124,6 +132,25 @@ fn a_run_stops_at_breakpoints_forwards_and_backwards() {
     state.apply(Action::PlayPause);
     while state.tick(0.5) {}
     assert_eq!(state.current_subject(), Subject::Node(NodeId(3)));
+}
+
+#[test]
+fn a_breakpoint_where_no_run_comes_says_so() {
+    let mut state = opened("scenes2d/street.json");
+    state.apply(Command::Method("frustum".into()));
+    state.block_until_idle();
+    let lines = state.film().expect("a film").reel.card().code.len() as u8;
+    let lost = (0..lines).find(|&l| !state.reaches(l)).expect("a line that this frame never comes to");
+    state.apply(Command::BreakLine(lost));
+    assert!(state.notices.iter().any(|n| n.text.contains("never comes to")), "{:?}", state.notices);
+    state.apply(Action::Run);
+    assert_eq!(state.step, 0, "no run stops there, and none goes to the end");
+    state.notices.clear();
+    let reached = (0..lines).find(|&l| state.reaches(l)).expect("a line");
+    state.apply(Command::BreakLine(reached));
+    assert!(state.notices.is_empty(), "{:?}", state.notices);
+    state.apply(Action::Run);
+    assert!(state.step > 0);
 }
 
 #[test]
@@ -225,6 +252,8 @@ fn why_names_the_decision_and_its_evidence() {
         // Before that step nothing is claimed.
         let early = why(stage, Subject::Prim(p), at - 1);
         assert!(early[0].text.contains("yet"), "{early:?}");
+        // The reasons stay when one goes to the step of one of them.
+        assert_eq!(early[1..], lines[1..]);
     }
     assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [Verdict::Outside, Verdict::Visible]);
     for n in (0..film.node_count() as u32).map(NodeId) {

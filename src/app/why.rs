@@ -1,5 +1,6 @@
 //! Why a thing has the state it has, read from the film alone.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::stage::{Reading, SceneFacts, Staged};
@@ -50,14 +51,15 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
     let scene = stage.scene();
     let prims = scene.prims_of(object);
     // By verdict and what it rests on: how many, and the first such step.
-    let mut ways: BTreeMap<(Verdict, usize), (usize, usize)> = BTreeMap::new();
+    let mut ways = Ways::new();
     let (mut by_verdict, mut open) = (BTreeMap::<Verdict, (usize, BTreeSet<String>)>::new(), 0);
     for &prim in &prims {
-        let Some((at, verdict)) = film.stamps.prim_decision(prim).filter(|(at, _)| *at <= step) else {
-            open += 1;
-            continue;
-        };
-        by_verdict.entry(verdict).or_default().0 += 1;
+        let decision = film.stamps.prim_decision(prim);
+        open += usize::from(decision.is_none_or(|(at, _)| at > step));
+        let Some((at, verdict)) = decision else { continue };
+        if at <= step {
+            by_verdict.entry(verdict).or_default().0 += 1;
+        }
         let ground = film.reel.evidence_of(at - 1);
         // Without evidence, a node decided as a whole is a reason and each primitive by itself is none.
         let ground =
@@ -65,9 +67,10 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
         let way = ways.entry((verdict, ground.unwrap_or(usize::MAX))).or_insert((0, at));
         (way.0, way.1) = (way.0 + 1, way.1.min(at));
     }
-    for &(verdict, ground) in ways.keys() {
-        let names = by_verdict.entry(verdict).or_default();
-        names.1.extend(hider(scene, film, ground).map(|(_, name)| name));
+    for (&(verdict, ground), (_, first)) in &ways {
+        if let Some(told) = by_verdict.get_mut(&verdict).filter(|_| *first <= step) {
+            told.1.extend(hider(scene, film, ground).map(|(_, name)| name));
+        }
     }
     let told = |(verdict, (n, by)): (&Verdict, &(usize, BTreeSet<String>))| {
         let by = if by.is_empty() { String::new() } else { format!(" by {}", few(by)) };
@@ -78,15 +81,25 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
     let holds = counted(prims.len(), scene.prim_name());
     let mut lines =
         vec![because(format!("{} holds {holds}: {}.", called(scene, object), states.join(", ")), None)];
+    reasons(scene, film, ways, &mut lines);
+    lines
+}
+
+/// How many primitives of an object ended with a verdict for a reason, and the first step of it; by verdict
+/// and the event that is the reason.
+type Ways = BTreeMap<(Verdict, usize), (usize, usize)>;
+
+/// The ways in which the primitives of an object ended, the commonest first.
+fn reasons(scene: &dyn SceneFacts, film: Reading<'_>, ways: Ways, lines: &mut Vec<Because>) {
     let mut ways: Vec<_> = ways.into_iter().collect();
-    ways.sort_by_key(|(_, (n, at))| (std::cmp::Reverse(*n), *at));
+    ways.sort_by_key(|(_, (n, at))| (Reverse(*n), *at));
+    let events = film.reel.events();
     for ((verdict, ground), (n, at)) in ways.iter().take(WAYS) {
-        let place = match film.reel.events()[at - 1] {
+        let place = match events[at - 1] {
             Event::DecidedNode(node, _) => format!(" with node {node}"),
             _ => String::new(),
         };
-        let reason =
-            if *ground < film.reel.events().len() { film.reel.sentence(*ground) } else { String::new() };
+        let reason = if *ground < events.len() { film.reel.sentence(*ground) } else { String::new() };
         let text = format!("{} {}{place}, at step {at}. {reason}", count(*n), spoken(*verdict));
         lines.push(Because { by: hider(scene, film, *ground), ..because(text.trim_end(), Some(*at)) });
     }
@@ -94,7 +107,6 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
     if more > 0 {
         lines.push(because(format!("{} more for {} other reasons.", count(more), ways.len() - WAYS), None));
     }
-    lines
 }
 
 /// What the evidence `at` says hides the thing, if it names one.
@@ -153,15 +165,13 @@ fn why_prim(stage: &dyn Staged, film: Reading<'_>, prim: PrimId, step: usize) ->
             format!("Nothing was ever said about {name}: this method does not look at it."),
             None,
         )],
-        Some((at, verdict)) if at > step => {
-            vec![because(
-                format!("At step {step} nothing is known of {name} yet. It will be {}.", spoken(verdict)),
-                Some(at),
-            )]
-        }
         Some((at, verdict)) => {
-            let mut lines =
-                vec![because(format!("The {name} is {} since step {at}.", spoken(verdict)), Some(at))];
+            let text = if at > step {
+                format!("At step {step} nothing is known of {name} yet. It will be {}.", spoken(verdict))
+            } else {
+                format!("The {name} is {} since step {at}.", spoken(verdict))
+            };
+            let mut lines = vec![because(text, Some(at))];
             match film.reel.events()[at - 1] {
                 Event::DecidedNode(node, _) => {
                     lines.push(because(
@@ -195,7 +205,9 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
                     spoken(verdict)
                 ),
             };
-            return vec![because(text, Some(at))];
+            let mut lines = vec![because(text, Some(at))];
+            lines.extend(evidence(stage.scene(), film, at));
+            return lines;
         }
         let mut lines =
             vec![because(format!("Node {node} is {} since step {at}.", spoken(verdict)), Some(at))];
@@ -219,10 +231,13 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
             lines.extend(evidence(stage.scene(), film, at));
             lines
         }
-        Some((n, at, verdict)) => vec![because(
-            format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict)),
-            Some(at),
-        )],
+        Some((n, at, verdict)) => {
+            let text =
+                format!("Node {node} will not be visited: node {n} above it will be {}.", spoken(verdict));
+            let mut lines = vec![because(text, Some(at))];
+            lines.extend(evidence(stage.scene(), film, at));
+            lines
+        }
         None if film.stamps.entered_at(node).is_some_and(|e| e <= step) => {
             vec![because(
                 format!("Node {node} was entered; nothing was decided about it as a whole."),

@@ -52,8 +52,10 @@ pub enum Role {
     Visible,
     /// Culled by occlusion.
     Hidden,
-    /// Culled as outside the view frustum, or facing away.
+    /// Culled as outside the view frustum.
     Outside,
+    /// Culled as facing away from the Eye.
+    FacesAway,
     /// Hides something.
     Occluder,
     /// Replaced by a stand-in, or left out by a budget.
@@ -74,18 +76,19 @@ pub enum Role {
 
 impl Role {
     /// The states of a primitive or node, which a picture must keep apart without color too.
-    pub const STATES: [Role; 8] = [
+    pub const STATES: [Role; 9] = [
         Role::Undecided,
         Role::Partial,
         Role::Visible,
         Role::Hidden,
         Role::Outside,
+        Role::FacesAway,
         Role::Occluder,
         Role::Approximated,
         Role::Wrong,
     ];
     /// Every role, in the order of legends.
-    pub const ALL: [Role; 16] = [
+    pub const ALL: [Role; 17] = [
         Role::Ink,
         Role::Faint,
         Role::Scene,
@@ -94,6 +97,7 @@ impl Role {
         Role::Visible,
         Role::Hidden,
         Role::Outside,
+        Role::FacesAway,
         Role::Occluder,
         Role::Approximated,
         Role::Wrong,
@@ -114,6 +118,7 @@ impl Role {
             Role::Visible => "visible",
             Role::Hidden => "hidden",
             Role::Outside => "outside",
+            Role::FacesAway => "faces-away",
             Role::Occluder => "occluder",
             Role::Approximated => "approximated",
             Role::Wrong => "wrong",

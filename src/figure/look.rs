@@ -44,7 +44,8 @@ pub fn role_of(state: State) -> Role {
     match state {
         State::Unseen => Role::Scene,
         State::Open | State::Decided(Verdict::Partial) => Role::Partial,
-        State::Decided(Verdict::Outside | Verdict::FacesAway) => Role::Outside,
+        State::Decided(Verdict::Outside) => Role::Outside,
+        State::Decided(Verdict::FacesAway) => Role::FacesAway,
         State::Decided(Verdict::Hidden) => Role::Hidden,
         State::Decided(Verdict::Visible) => Role::Visible,
         State::Decided(Verdict::Presumed | Verdict::Approximated | Verdict::OverBudget) => Role::Approximated,

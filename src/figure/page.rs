@@ -342,7 +342,8 @@ pub fn label(role: Role) -> Option<&'static str> {
         Role::Partial => "entered, part visible",
         Role::Visible => "visible: kept",
         Role::Hidden => "occluded: culled",
-        Role::Outside => "outside, back-facing: culled",
+        Role::Outside => "outside: culled",
+        Role::FacesAway => "faces away: culled",
         Role::Occluder => "occluder",
         Role::Approximated => "approximated, over budget",
         Role::Wrong => "visible, yet culled",
@@ -397,7 +398,7 @@ mod tests {
             height_mm: rng.next_u32().is_multiple_of(2).then_some(60.0 + (rng.next_u32() % 200) as f32),
         };
         let paper = [Paper::Column, Paper::TwoColumns, Paper::Slide, custom][rng.next_u32() as usize % 4];
-        let legend = Role::STATES[..rng.next_u32() as usize % 9].iter().enumerate();
+        let legend = Role::STATES[..rng.next_u32() as usize % 10].iter().enumerate();
         let swatches = [Swatch::Area, Swatch::Line, Swatch::Dot];
         let legend = legend
             .map(|(i, role)| Entry { role: *role, label: random_text(rng, 4), swatch: swatches[i % 3] })

@@ -24,6 +24,7 @@ pub(super) fn hatching(points: &[Vec2], hatch: Hatch, window: [Vec2; 2]) -> Hatc
     match hatch {
         Hatch::None => {}
         Hatch::Diagonal => scan(points, rising, window, &mut |a, b| out.lines.push([a, b])),
+        Hatch::Falling => scan(points, falling, window, &mut |a, b| out.lines.push([a, b])),
         Hatch::Cross => {
             scan(points, rising, window, &mut |a, b| out.lines.push([a, b]));
             scan(points, falling, window, &mut |a, b| out.lines.push([a, b]));
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn cost_is_bounded_by_the_window() {
         let huge = [vec2(-9e5, -9e5), vec2(9e5, -9e5), vec2(9e5, 9e5), vec2(-9e5, 9e5)];
-        for hatch in [Hatch::Diagonal, Hatch::Cross, Hatch::Dots] {
+        for hatch in [Hatch::Diagonal, Hatch::Falling, Hatch::Cross, Hatch::Dots] {
             let h = hatching(&huge, hatch, WINDOW);
             assert!(h.lines.len() < 120 && h.dots.len() < 1000, "{hatch:?}");
             assert!(h.lines.len() + h.dots.len() > 30, "{hatch:?}");

@@ -217,6 +217,9 @@ impl Writer {
                 Hatch::Diagonal => {
                     write!(out, "<path d=\"M{half} 0V{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>")
                 }
+                Hatch::Falling => {
+                    write!(out, "<path d=\"M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>")
+                }
                 Hatch::Cross => write!(
                     out,
                     "<path d=\"M{half} 0V{s}M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\" \

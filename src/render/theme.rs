@@ -46,6 +46,8 @@ pub enum Hatch {
     None,
     /// Parallel lines that rise to the right.
     Diagonal,
+    /// Parallel lines that fall to the right.
+    Falling,
     /// Lines in both directions.
     Cross,
     /// A grid of dots.
@@ -97,6 +99,7 @@ const DOTTED: &[f32] = &[0.9, 2.1];
 const DASH_DOT: &[f32] = &[7.0, 2.0, 1.2, 2.0];
 const DASH_DOTS: &[f32] = &[3.6, 1.5, 0.9, 1.5, 0.9, 1.5];
 const LONG: &[f32] = &[9.0, 1.8];
+const SHORT: &[f32] = &[2.4, 2.4];
 
 /// The few colors that a theme is mixed from.
 struct Base {
@@ -212,6 +215,12 @@ impl Theme {
                 ..plain(b.orange, 1.1)
             },
             Role::Outside => Style { dash: DOTTED, dot: b.paper, ..plain(b.outside, 0.9) },
+            Role::FacesAway => Style {
+                dash: SHORT,
+                hatch: Hatch::Falling,
+                dot: b.paper,
+                ..plain(mix(b.outside, b.ink, 0.4), 0.9)
+            },
             Role::Occluder => Style { fill: Some((b.ink, 0.62)), ..plain(b.ink, 2.4) },
             Role::Approximated => Style {
                 dash: DASH_DOTS,
@@ -249,6 +258,7 @@ impl Theme {
         match role {
             Role::Ink | Role::Occluder => mix(b.ink, b.paper, 0.18),
             Role::Faint | Role::Outside => mix(b.outside, b.paper, 0.45),
+            Role::FacesAway => mix(b.outside, b.ink, 0.25),
             Role::Scene => mix(b.scene, b.paper, 0.35),
             Role::Undecided => mix(b.paper, b.ink, 0.06),
             Role::Partial => b.sky,

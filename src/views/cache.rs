@@ -2,7 +2,7 @@
 //! holds. Each panel is given its own part.
 
 use super::handles::Hand;
-use super::{canvas, dialogs, events, pictures, space, strip, timeline};
+use super::{canvas, code, dialogs, events, pictures, space, strip, timeline};
 use crate::app::Example;
 
 /// The parts, by the panels that keep them.
@@ -20,6 +20,8 @@ pub struct Cache {
     pub picture: pictures::Shown,
     /// Of the timeline.
     pub timeline: timeline::Kept,
+    /// Of the pseudocode.
+    pub code: Option<code::Reached>,
     /// Of the event tree.
     pub scroll: events::Scroll,
     /// Of the dialogs.

@@ -5,16 +5,65 @@ use eframe::egui::{self, RichText, ScrollArea, Sense};
 use super::icons::{self, Icon};
 use super::inspector::value;
 use super::{Answers, palette};
-use crate::app::{Breakpoint, Command, State};
-use crate::method::{CodeLine, Event, Verdict};
+use crate::app::{Breakpoint, Command, Layout, Reading, State};
+use crate::method::{Card, CodeLine, Event, Verdict};
 use crate::trace::Counts;
 
-/// Shows the pseudocode.
-pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+/// The lines that a film reaches, and the film.
+pub type Reached = (u64, Vec<bool>);
+
+/// Least sizes of type: on a desk, and on a wall.
+const LEAST: f32 = 10.0;
+const LEAST_IN_A_ROOM: f32 = 15.0;
+/// Indent of what stands below a line.
+const INDENT: f32 = 48.0;
+
+/// Shows the pseudocode: of its lines those that the parameters have.
+pub fn show(state: &State, kept: &mut Option<Reached>, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(film) = state.film() else { return };
     let card = film.reel.card();
+    if kept.as_ref().is_none_or(|(serial, _)| *serial != film.serial) {
+        *kept = Some((film.serial, (0..card.code.len()).map(|i| state.reaches(i as u8)).collect()));
+    }
+    let Some((_, reached)) = kept else { return };
     let lit = state.line();
     let values = values(state);
+    stops(state, film, ui, answers);
+    // A step scrolls to its line; in between the person may scroll away.
+    let is_new = ui.data_mut(|d| {
+        d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)
+    }) != Some(state.step);
+    let width = ui.available_width() - ui.spacing().scroll.bar_width;
+    ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
+        let right = ui.cursor().left() + width;
+        let least = if state.shown.layout == Layout::Lecture { LEAST_IN_A_ROOM } else { LEAST };
+        let size = fitting_size(ui, card.code, width, least);
+        for (i, line) in card.code.iter().enumerate().filter(|(i, _)| film.reel.has_line(*i as u8)) {
+            let row = Row {
+                number: i as u8,
+                line,
+                is_lit: lit == Some(i as u8),
+                is_reached: reached.get(i).copied().unwrap_or(false),
+                size,
+            };
+            let shown = ui.horizontal(|ui| row.show(state, ui, answers)).response.rect;
+            let mut shown = shown;
+            if row.is_lit && !values.is_empty() {
+                shown = shown.union(values_beside(state, ui, shown, right, &values));
+            }
+            if !line.paper.is_empty() {
+                aside(ui, right, &format!("paper: {}", line.paper.trim()));
+            }
+            if row.is_lit && is_new {
+                ui.scroll_to_rect(shown, None);
+            }
+        }
+        departures(card, ui, right);
+    });
+}
+
+/// The verdicts at which a run can stop.
+fn stops(state: &State, film: Reading<'_>, ui: &mut egui::Ui, answers: &mut Answers) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Stop at");
         let end = film.stamps.counts(state.len());
@@ -29,79 +78,91 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         }
     });
-    // A step scrolls to its line; in between the person may scroll away.
-    let is_new = ui.data_mut(|d| {
-        d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)
-    }) != Some(state.step);
-    let width = ui.available_width() - ui.spacing().scroll.bar_width;
-    ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
-        let right = ui.cursor().left() + width;
-        let size = fitting_size(ui, card.code, width);
-        for (i, line) in card.code.iter().enumerate() {
-            let i = i as u8;
-            let is_lit = lit == Some(i);
-            let row = ui.horizontal(|ui| line_row(state, ui, i, line, is_lit, size, answers)).response;
-            let mut shown = row.rect;
-            if is_lit && !values.is_empty() {
-                shown = shown.union(values_beside(state, ui, row.rect, right, &values));
-            }
-            if is_lit && is_new {
-                ui.scroll_to_rect(shown, None);
-            }
+}
+
+/// Where the method differs from its paper on purpose.
+fn departures(card: &Card, ui: &mut egui::Ui, right: f32) {
+    if card.departures.is_empty() {
+        return;
+    }
+    ui.add_space(6.0);
+    let title = format!("Departures from the paper ({})", card.departures.len());
+    egui::CollapsingHeader::new(title).id_salt(card.key).show(ui, |ui| {
+        for d in card.departures {
+            let text = format!("{}: {}. Why: {}.", d.section, d.what, d.why);
+            ui.set_max_width((right - ui.cursor().left()).max(60.0));
+            ui.add(egui::Label::new(text).wrap());
         }
     });
 }
 
+/// A remark below a line, wrapped at the panel's edge.
+fn aside(ui: &mut egui::Ui, right: f32, text: &str) {
+    ui.horizontal(|ui| {
+        ui.add_space(INDENT);
+        ui.vertical(|ui| {
+            ui.set_max_width((right - ui.cursor().left()).max(60.0));
+            ui.add(egui::Label::new(RichText::new(text).weak().italics()).wrap());
+        });
+    });
+}
+
 /// Size of type in which every line fits into a panel of that width, if it can be read.
-fn fitting_size(ui: &egui::Ui, code: &[CodeLine], width: f32) -> f32 {
-    const LEAST: f32 = 10.0;
+fn fitting_size(ui: &egui::Ui, code: &[CodeLine], width: f32, least: f32) -> f32 {
     /// Breakpoint, mark, padding and the gaps between.
     const BEFORE: f32 = 48.0;
     let body = egui::TextStyle::Body.resolve(ui.style()).size;
     let longest = code.iter().map(|l| l.text.chars().count()).max().unwrap_or(0);
     let advance = ui.fonts_mut(|f| f.glyph_width(&egui::FontId::monospace(body), 'M'));
-    (body * (width - BEFORE) / (longest as f32 * advance).max(1.0)).clamp(LEAST.min(body), body)
+    (body * (width - BEFORE) / (longest as f32 * advance).max(1.0)).clamp(least.min(body), body)
 }
 
-/// A line of pseudocode: its breakpoint, a mark at the current one, its text.
-fn line_row(
-    state: &State,
-    ui: &mut egui::Ui,
-    i: u8,
-    line: &CodeLine,
+/// A line of pseudocode.
+struct Row<'a> {
+    number: u8,
+    line: &'a CodeLine,
     is_lit: bool,
+    /// Whether this film ever comes to it.
+    is_reached: bool,
     size: f32,
-    answers: &mut Answers,
-) {
-    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-    ui.spacing_mut().item_spacing.x = 4.0;
-    let stops = state.breakpoints.contains(&Breakpoint::Line(i));
-    let (icon, color) = if stops {
-        (Icon::Dot, ui.visuals().error_fg_color)
-    } else {
-        (Icon::Ring, palette::panel(state).border)
-    };
-    let response =
-        icons::plain(ui, icon, Sense::click(), color).on_hover_text("Stop at this line, or no longer (F9)");
-    response.widget_info(|| {
-        egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {}", line.label))
-    });
-    if response.clicked() {
-        answers.push(Command::BreakLine(i));
-    }
-    let here = if is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
-    icons::plain(ui, Icon::Here, Sense::hover(), here);
-    let mut text = RichText::new(line.text).monospace().size(size);
-    if is_lit {
-        text = text.background_color(palette::panel(state).lit_line);
-    }
-    let response = ui
-        .selectable_label(false, text)
-        .on_hover_text(format!("{}\nClick: to the next time that it runs", line.label));
-    if response.clicked()
-        && let Some(step) = next_time(state, i)
-    {
-        answers.push(Command::GoTo(step));
+}
+
+impl Row<'_> {
+    /// Its breakpoint, a mark at the current one, its text; faint where this film never comes.
+    fn show(&self, state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let stops = state.breakpoints.contains(&Breakpoint::Line(self.number));
+        let (icon, color) = match (stops, self.is_reached) {
+            (true, true) => (Icon::Dot, ui.visuals().error_fg_color),
+            (true, false) => (Icon::Dot, palette::panel(state).border),
+            (false, _) => (Icon::Ring, palette::panel(state).border),
+        };
+        let (label, never) = (self.line.label, "This frame never comes to this line.");
+        let help = if self.is_reached { "Stop at this line, or no longer (F9)" } else { never };
+        let response = icons::plain(ui, icon, Sense::click(), color).on_hover_text(help);
+        response.widget_info(|| {
+            egui::WidgetInfo::selected(egui::Role::CheckBox, true, stops, format!("Breakpoint at {label}"))
+        });
+        if response.clicked() {
+            answers.push(Command::BreakLine(self.number));
+        }
+        let here = if self.is_lit { palette::panel(state).text } else { egui::Color32::TRANSPARENT };
+        icons::plain(ui, Icon::Here, Sense::hover(), here);
+        let mut text = RichText::new(self.line.text).monospace().size(self.size);
+        if self.is_lit {
+            text = text.background_color(palette::panel(state).lit_line);
+        }
+        if !self.is_reached {
+            text = text.weak();
+        }
+        let click = if self.is_reached { "Click: to the next time that it runs" } else { never };
+        let response = ui.selectable_label(false, text).on_hover_text(format!("{label}\n{click}"));
+        if response.clicked()
+            && let Some(step) = next_time(state, self.number)
+        {
+            answers.push(Command::GoTo(step));
+        }
     }
 }
 
@@ -126,7 +187,7 @@ fn values_beside(state: &State, ui: &mut egui::Ui, row: egui::Rect, right: f32, 
             .response
             .rect;
     }
-    let indent = 3.0 * GAP;
+    let indent = INDENT;
     let width = (right - row.left() - indent).max(60.0);
     let wrapped = ui.horizontal(|ui| {
         ui.add_space(indent);
@@ -145,13 +206,17 @@ fn next_time(state: &State, line: u8) -> Option<usize> {
     (state.step..events.len()).find(at).or_else(|| (0..events.len()).find(at)).map(|i| i + 1)
 }
 
-/// The values that matter at this step: of the event itself, at a line of pseudocode those of the evidence
-/// around it.
+/// The values that matter at this step: the two numbers that the evidence compared; where nothing was
+/// compared, the first of the event's own.
 fn values(state: &State) -> String {
     let (Some(film), Some(at)) = (state.film(), state.current()) else { return String::new() };
     let event = film.reel.events()[at];
+    let found = film.reel.evidence_at(state.step);
+    if let Some(compared) = found.and_then(|i| film.reel.compared(i)) {
+        return compared.to_string();
+    }
     let is_line = matches!(event, Event::Line(_) | Event::FrameBegan);
-    let shown = if is_line { film.reel.evidence_at(state.step) } else { Some(at) };
+    let shown = if is_line { found } else { Some(at) };
     let Some(i) = shown else { return String::new() };
     let fields = film.reel.fields(i).1;
     fields

@@ -88,7 +88,7 @@ fn debug(tiles: &mut Tiles<Pane>) -> TileId {
         Pane::ALL.map(|p| tiles.insert_pane(p));
     let eye = tiles.insert_tab_tile(vec![eye, own]);
     let pictures = linear(tiles, LinearDir::Horizontal, &[(eye, 1.0), (observer, 1.25)]);
-    let side = linear(tiles, LinearDir::Vertical, &[(why, 1.0), (inspector, 1.2), (parameters, 1.0)]);
+    let side = linear(tiles, LinearDir::Vertical, &[(why, 1.5), (inspector, 1.0), (parameters, 1.0)]);
     let below = linear(tiles, LinearDir::Horizontal, &[(timeline, 1.3), (code, 1.0)]);
     let middle = linear(tiles, LinearDir::Vertical, &[(pictures, 2.1), (below, 1.0)]);
     linear(tiles, LinearDir::Horizontal, &[(events, 0.95), (middle, 3.0), (side, 1.0)])
@@ -165,7 +165,7 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
                     Pane::Parameters => parameters::show(state, &mut cache.hand.gesture, ui, answers),
                     Pane::Timeline => timeline::show(state, &mut cache.timeline, ui, answers),
                     Pane::Pictures => pictures::show(state, &mut cache.picture, ui),
-                    _ => code::show(state, ui, answers),
+                    _ => code::show(state, &mut cache.code, ui, answers),
                 });
             }
         });

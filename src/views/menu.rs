@@ -4,7 +4,7 @@ use eframe::egui;
 
 use super::Answers;
 use super::icons::Icon;
-use crate::app::{Action, Command, Dialog, LookIn, Menu, State, Surface, Theme};
+use crate::app::{Action, Command, Dialog, LookIn, Menu, SceneFacts, State, Surface, Theme};
 use crate::drawing::words::count;
 
 /// Room for the buttons at the right.
@@ -53,18 +53,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 answers.push(Action::ShowNodes.into());
             }
             ui.separator();
-            let scene = stage.scene();
-            let report = scene.report();
-            let text = format!("{}: {} {}s", scene.name(), count(scene.live_count()), scene.prim_name());
-            let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
-            let text = if has_news { format!("{text} (!)") } else { text };
-            // The buttons at the right come after it and would be painted over its end.
-            let font = egui::TextStyle::Body.resolve(ui.style());
-            let width = ui.fonts_mut(|f| f.layout_no_wrap(text.clone(), font, egui::Color32::BLACK).size().x);
-            let text = if width > ui.available_width() - AT_RIGHT { scene.name().to_owned() } else { text };
-            if ui.link(text).on_hover_text("Loading report").clicked() {
-                answers.push(Command::Dialog(Dialog::Report));
-            }
+            scene_link(stage.scene(), ui, answers);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             super::action_button(state, ui, Action::Keys, "?", answers);
@@ -77,6 +66,21 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             super::icon_button(state, ui, next, Icon::Theme, answers);
         });
     });
+}
+
+/// The scene by name and size; a click tells what was noticed while it was loaded.
+fn scene_link(scene: &dyn SceneFacts, ui: &mut egui::Ui, answers: &mut Answers) {
+    let report = scene.report();
+    let text = format!("{}: {} {}s", scene.name(), count(scene.live_count()), scene.prim_name());
+    let has_news = report.dropped_total() > 0 || !report.notes.is_empty();
+    let text = if has_news { format!("{text} (!)") } else { text };
+    // The buttons at the right come after it and would be painted over its end.
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let width = ui.fonts_mut(|f| f.layout_no_wrap(text.clone(), font, egui::Color32::BLACK).size().x);
+    let text = if width > ui.available_width() - AT_RIGHT { scene.name().to_owned() } else { text };
+    if ui.link(text).on_hover_text("Loading report").clicked() {
+        answers.push(Command::Dialog(Dialog::Report));
+    }
 }
 
 fn method(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {

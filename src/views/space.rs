@@ -261,8 +261,8 @@ fn labels(
     screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
 }
 
-/// The Observer's picture for print: the same surfaces, boxes and marks in the same style, drawn again as large
-/// as paper needs and in the colors of print.
+/// The Observer's picture for print: the same surfaces, boxes and marks in the same style, drawn again as
+/// large as paper needs and in the colors of print.
 pub fn figure(
     state: &State,
     stage: &Stage<Solid>,

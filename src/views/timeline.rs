@@ -112,7 +112,9 @@ fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut An
         super::action_button(state, ui, Action::PreviousFrame, "[", answers);
         let last = names[path].1 - 1;
         let mut at = frame;
-        let width = (ui.available_width() - 110.0).clamp(60.0, 400.0);
+        // Room for what comes after it.
+        let after = if stage.is_eye_moved() { 175.0 } else { 110.0 };
+        let width = (ui.available_width() - after).clamp(40.0, 400.0);
         ui.spacing_mut().slider_width = width;
         let slider = egui::Slider::new(&mut at, 0..=last).show_value(false);
         let response = ui.add_enabled(last > 0, slider);

@@ -1,6 +1,6 @@
 //! Why the selected thing has the state it has, in sentences, each with the step that shows it.
 
-use eframe::egui::{self, ScrollArea};
+use eframe::egui::{self, RichText, ScrollArea};
 
 use super::Answers;
 use crate::app::{Action, Command, State, why};
@@ -49,7 +49,17 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         });
         for because in why(stage, state.selection, state.step) {
-            ui.label(&because.text);
+            let is_here = because.step == Some(state.step);
+            let mut text = RichText::new(&because.text);
+            if is_here {
+                text = text.background_color(super::palette::panel(state).lit_line);
+            } else if because.step.is_some_and(|s| s > state.step) {
+                text = text.weak();
+            }
+            ui.label(text);
+            if is_here {
+                ui.weak("This is the present step.");
+            }
             let step = because.step.filter(|&s| s != state.step);
             if step.is_none() && because.by.is_none() {
                 ui.add_space(4.0);

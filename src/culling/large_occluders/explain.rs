@@ -526,8 +526,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Chosen(n) => format!(
                 // Leaf and direction are named too: the pick is from their list, so that they decide what can
                 // be active.
-                "{} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf {} \
-                 and direction {}{}.",
+                "{} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf \
+                 {} and direction {}{}.",
                 capitalized(&occluder_name(context, n.name)),
                 n.rank + 1,
                 short(n.area_angle),

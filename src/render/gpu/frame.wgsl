@@ -23,18 +23,18 @@ struct Frame {
     shown: vec4<u32>,
     // By role: color of surfaces; color of lines and their width; two dashes with their gaps; inside
     // of dots and width of halo; color of halo and hatch; color and opacity of areas.
-    flat_color: array<vec4<f32>, 16>,
-    stroke: array<vec4<f32>, 16>,
-    dash_px: array<vec4<f32>, 16>,
-    dot: array<vec4<f32>, 16>,
-    halo: array<vec4<f32>, 16>,
-    area: array<vec4<f32>, 16>,
+    flat_color: array<vec4<f32>, 17>,
+    stroke: array<vec4<f32>, 17>,
+    dash_px: array<vec4<f32>, 17>,
+    dot: array<vec4<f32>, 17>,
+    halo: array<vec4<f32>, 17>,
+    area: array<vec4<f32>, 17>,
 }
 @group(0) @binding(0) var<uniform> f: Frame;
 
 const SCENE: u32 = 2u;
 const PARTIAL: u32 = 4u;
-const PAPER: u32 = 15u;
+const PAPER: u32 = 16u;
 
 // Image coordinates times depth, and depth, of a world point; relative to the eye first.
 fn clip_xyw(point: vec3<f32>) -> vec3<f32> {
@@ -52,9 +52,10 @@ fn nowhere() -> vec4<f32> {
 }
 // The role of a stamp at the current step.
 fn role_at(stamp: u32, before: u32) -> u32 {
-    return select(before, stamp & 15u, (stamp >> 4u) <= f.what.x);
+    return select(before, stamp & 31u, (stamp >> 5u) <= f.what.x);
 }
-// How much of a pixel the lines of a hatch cover; 0 none, 1 diagonal, 2 cross, 3 dots.
+// How much of a pixel the lines of a hatch cover; 0 none, 1 rising, 2 cross, 3 dots,
+// 4 falling.
 fn hatched(hatch: f32, at: vec2<f32>) -> f32 {
     let scale = f.target_px.z;
     let p = (at + f.origin_px.xy) / scale;
@@ -65,6 +66,7 @@ fn hatched(hatch: f32, at: vec2<f32>) -> f32 {
     var d = 1e3;
     if hatch == 1.0 { d = rising - 0.55; }
     if hatch == 2.0 { d = min(rising, falling) - 0.5; }
+    if hatch == 4.0 { d = falling - 0.55; }
     if hatch == 3.0 { d = length(grid) - 0.95; }
     return clamp(0.5 - d * scale, 0.0, 1.0);
 }

@@ -6,14 +6,14 @@ struct Stroke {
     @location(0) along: vec3<f32>,
     // Half the width of the line and of its halo, pixels.
     @location(1) @interpolate(flat, either) half_px: vec2<f32>,
-    // Role in the low four bits, then the kind.
+    // Role in the low five bits, then the kind.
     @location(2) @interpolate(flat, either) role: u32,
 }
-const DOT: u32 = 16u;
-const HEAD: u32 = 32u;
-const NODE: u32 = 64u;
+const DOT: u32 = 32u;
+const HEAD: u32 = 64u;
+const NODE: u32 = 128u;
 // A node that is decided: there are hundreds of them in the end, and none is what the step is about.
-const DONE: u32 = 128u;
+const DONE: u32 = 256u;
 const DONE_STRENGTH: f32 = 0.6;
 
 // Where a segment enters the half-space in which `from` and `to` are the signed distances of its ends.
@@ -53,9 +53,9 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     let across = vec2<f32>(-dir.y, dir.x);
     // Boxes of nodes are many, so they are thinner.
     let thin = select(select(0.5, 0.3, (role & NODE) != 0u), 0.22, (role & DONE) != 0u);
-    let line_px = select(thin * f.stroke[role & 15u].w, radius_px, (role & DOT) != 0u);
+    let line_px = select(thin * f.stroke[role & 31u].w, radius_px, (role & DOT) != 0u);
     // A line without a halo gets a thin casing of paper, so that it is read on any ground.
-    out.half_px = vec2<f32>(line_px, line_px + max(f.dot[role & 15u].w, 0.7 * f.target_px.z));
+    out.half_px = vec2<f32>(line_px, line_px + max(f.dot[role & 31u].w, 0.7 * f.target_px.z));
     out.role = role;
     var pixel: vec2<f32>;
     var z = b.z / b.w;
@@ -97,7 +97,7 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
     let role = role_at(times.y, PARTIAL);
     let is_leaf = times.z == 1u;
     // The frontier: decided as a whole, a leaf, or entered and not yet decided.
-    let decided = (times.y >> 4u) <= f.what.x;
+    let decided = (times.y >> 5u) <= f.what.x;
     let frontier = role != PARTIAL || is_leaf || !decided;
     let kind = NODE | select(0u, DONE, decided);
     var out = stroke(i % 6u, mix(low, high, from_c), mix(low, high, to_c), role | kind, 0.0);
@@ -106,7 +106,7 @@ fn stroke(index: u32, from_p: vec3<f32>, to_p: vec3<f32>, role: u32, radius_px: 
 }
 
 fn inked(in: Stroke, strength: f32) -> vec4<f32> {
-    let role = in.role & 15u;
+    let role = in.role & 31u;
     let u = in.along.x;
     let away = length(vec2<f32>(max(max(-u, u - in.along.z), 0.0), in.along.y));
     let d = select(away, -1.0, (in.role & HEAD) != 0u);

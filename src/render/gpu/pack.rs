@@ -27,29 +27,32 @@ pub(super) type SegmentWords = [u32; 7];
 pub(super) type AreaWords = [u32; 4];
 
 /// Kinds of segment, as in the shader.
-const DOT: u32 = 16;
-const HEAD: u32 = 32;
+const DOT: u32 = 32;
+const HEAD: u32 = 64;
 
-/// Step in the upper 28 bits (a film is capped far below), role in the lower four.
+/// Bits of a role.
+const ROLE_BITS: u32 = 5;
+
+/// Step in the upper 27 bits (a film is capped far below), role in the lower five.
 fn stamp_word(stamp: Stamp, wrong: bool) -> u32 {
     let role = if wrong && stamp.verdict != Verdict::Visible {
         Role::Wrong
     } else {
         role_of(State::Decided(stamp.verdict))
     };
-    step_word(stamp.step) << 4 | role as u32
+    step_word(stamp.step) << ROLE_BITS | role as u32
 }
 /// A step that the shader can compare; what never happens stays later than every step.
 pub(super) fn step_word(step: u32) -> u32 {
     step.min(NEVER)
 }
 /// Later than every step.
-pub(super) const NEVER: u32 = (1 << 28) - 1;
+pub(super) const NEVER: u32 = (1 << (32 - ROLE_BITS)) - 1;
 
 /// Stamps of three corners for each of `prims`; `wrong` is ascending.
 pub(super) fn stamps(prims: &[PrimId], stamps: Option<&Stamps>, wrong: &[PrimId]) -> Vec<[u32; 3]> {
     let word = |p: &PrimId| {
-        stamps.map_or(NEVER << 4, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()))
+        stamps.map_or(NEVER << ROLE_BITS, |s| stamp_word(s.prims()[p.at()], wrong.binary_search(p).is_ok()))
     };
     prims.iter().map(|p| [word(p); 3]).collect()
 }
@@ -67,12 +70,12 @@ impl Order {
         let mut keys: Vec<u64> = stamps
             .iter()
             .enumerate()
-            .map(|(i, s)| u64::from(s[0].rotate_right(4)) << 32 | i as u64)
+            .map(|(i, s)| u64::from(s[0].rotate_right(ROLE_BITS)) << 32 | i as u64)
             .collect();
         keys.sort_unstable();
         let mut runs: Vec<(u32, Vec<u32>)> = Vec::new();
         for key in &keys {
-            let (role, step) = ((key >> 60) as u32, (key >> 32) as u32 & NEVER);
+            let (role, step) = ((key >> (64 - ROLE_BITS)) as u32, (key >> 32) as u32 & NEVER);
             if runs.last().is_none_or(|(last, _)| *last != role) {
                 runs.push((role, Vec::new()));
             }
@@ -245,17 +248,23 @@ pub(super) fn marks(drawing: &Drawing<Vec3>) -> MarkWords {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const ROLE: u32 = (1 << ROLE_BITS) - 1;
     use crate::drawing::Subject;
 
     #[test]
     fn a_stamp_keeps_order_and_role() {
         let stamp = |step, verdict| stamp_word(Stamp { step, verdict }, false);
         assert!(
-            stamp(7, Verdict::OverBudget) >> 4 == 7 && stamp(7, Verdict::Hidden) & 15 == Role::Hidden as u32
+            stamp(7, Verdict::OverBudget) >> ROLE_BITS == 7
+                && stamp(7, Verdict::Hidden) & ROLE == Role::Hidden as u32
         );
-        assert!(stamp(Stamp::NEVER, Verdict::Partial) >> 4 > 10_000_000);
-        assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Outside }, true) & 15, Role::Wrong as u32);
-        assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Visible }, true) & 15, Role::Visible as u32);
+        assert!(stamp(Stamp::NEVER, Verdict::Partial) >> ROLE_BITS > 10_000_000);
+        assert_eq!(stamp_word(Stamp { step: 3, verdict: Verdict::Outside }, true) & ROLE, Role::Wrong as u32);
+        assert_eq!(
+            stamp_word(Stamp { step: 3, verdict: Verdict::Visible }, true) & ROLE,
+            Role::Visible as u32
+        );
     }
 
     #[test]
@@ -279,7 +288,7 @@ mod tests {
             let (order, indices) = Order::of(&stamps);
             for step in [0, 8, 20, 39, NEVER - 1] {
                 let shown = random.next_u32() & 0xffff;
-                let role = |w: u32| if w >> 4 <= step { w & 15 } else { Role::Scene as u32 };
+                let role = |w: u32| if w >> ROLE_BITS <= step { w & ROLE } else { Role::Scene as u32 };
                 let expected: Vec<u32> =
                     (0..60).filter(|&i| shown >> role(stamps[i as usize][0]) & 1 == 1).collect();
                 let mut found: Vec<u32> = order

@@ -32,7 +32,7 @@ pub struct Palette {
     /// Behind everything.
     pub paper: [u8; 3],
     /// By role, in the order of [`Role::ALL`].
-    pub paints: [Paint; 16],
+    pub paints: [Paint; Role::ALL.len()],
 }
 
 impl Palette {

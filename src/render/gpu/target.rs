@@ -10,7 +10,7 @@ use crate::drawing::Role;
 use crate::render::theme::Hatch;
 
 /// Words of the uniform `Frame`.
-const FRAME_WORDS: usize = 4 * (11 + 6 * 16);
+const FRAME_WORDS: usize = 4 * (11 + 6 * Role::ALL.len());
 
 /// The part of a whole picture that a target shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,6 +152,7 @@ fn hatch(hatch: Hatch) -> f32 {
         Hatch::Diagonal => 1.0,
         Hatch::Cross => 2.0,
         Hatch::Dots => 3.0,
+        Hatch::Falling => 4.0,
     }
 }
 
