@@ -11,12 +11,20 @@ use super::space::{Point, Shape};
 use super::{LargeOccluders, Params};
 use crate::culling::Methods;
 use crate::drawing::{Drawing, Mark, Role};
-use crate::geometry::{Eye, Flat, Space, Vector, View};
+use crate::geometry::{Eye, Flat, Solid, Space, Vector, View};
 use crate::method::{Film, Settings, notes};
 use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, Scene, example, load, random_views};
 
 fn index<S: Shape>(scene: &Arc<Scene<S>>) -> Index<S> {
     Index::build(scene, &Params::default(), None, &Quiet).expect("nothing saved").expect("not cancelled")
+}
+
+fn building() -> Arc<Scene<Solid>> {
+    let call = "generate:building?polygons=1500&seed=3";
+    let Ok(AnyScene::Solid(scene)) = load(call, &LoadOptions::default(), &Quiet) else {
+        unreachable!("a building is in space")
+    };
+    scene
 }
 
 fn film<S: Methods>(scene: &Arc<Scene<S>>, view: &View<S>) -> Arc<dyn Film<S>> {
@@ -83,10 +91,7 @@ fn edges_say_what_corners_say<S: Methods + Shape>(scene: &Arc<Scene<S>>) -> [u32
 
 #[test]
 fn edge_by_edge_the_planes_are_those_of_the_corners() {
-    let scene = match load("generate:building?polygons=1500&seed=3", &LoadOptions::default(), &Quiet) {
-        Ok(AnyScene::Solid(scene)) => scene,
-        _ => unreachable!("a building is in space"),
-    };
+    let scene = building();
     for seen in
         [edges_say_what_corners_say(&example("street").expect("a scene")), edges_say_what_corners_say(&scene)]
     {
@@ -147,10 +152,7 @@ fn drawn_is_said<S: Methods + Shape>(scene: &Arc<Scene<S>>) -> u32 {
 #[test]
 fn the_plane_that_is_drawn_is_the_one_that_the_sentence_names() {
     assert!(drawn_is_said(&example("street").expect("a scene")) > 50);
-    let scene = match load("generate:building?polygons=1500&seed=3", &LoadOptions::default(), &Quiet) {
-        Ok(AnyScene::Solid(scene)) => scene,
-        _ => unreachable!("a building is in space"),
-    };
+    let scene = building();
     assert!(drawn_is_said(&scene) > 50);
 }
 
