@@ -327,7 +327,7 @@ impl Related {
         ];
         if let Some(d) = self.decisive() {
             fields.extend([
-                integer("edge", d.edge.into()),
+                integer("edge", u32::from(d.edge) + 1),
                 integer("tangent_corner", d.vertex.into()),
                 number("viewpoint_distance_units", d.distance),
                 number("needed_units", d.needed),
@@ -494,7 +494,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
                     owner_field(n.owner),
                     integer("occluder", n.occluder),
                     integer("occluder_prim", n.name.0),
-                    integer("edge", n.edge.into()),
+                    // From 1, as in the sentence.
+                    integer("edge", u32::from(n.edge) + 1),
                     Field { name: "result", value: Value::Word(n.result().into()) },
                 ];
                 if let Some(test) = n.test {

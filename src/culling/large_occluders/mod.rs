@@ -112,7 +112,7 @@ const CODE: &[CodeLine] = &[
     CodeLine::new("TestOcclusion:5", "    for each edge of A: test P against its planes"),
     CodeLine::departing(
         "TestOcclusion:6",
-        "    if P satisfies all supporting planes, by the margin",
+        "    if P satisfies all supporting planes by ε",
         "if P satisfies all supporting planes",
     ),
     CodeLine::new("TestOcclusion:7", "      T is occluded by A"),
