@@ -76,7 +76,11 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
         film.explain(step, &mut to);
         if S::Vector::AXES == 2 {
             // A line cannot show two things side by side: occluders lie under the verdicts, as their rims.
-            let under = |i: &&mut Item<_>| i.role == Role::Occluder && i.layer == Layer::Evidence;
+            let under = |i: &&mut Item<_>| {
+                i.role == Role::Occluder
+                    && i.layer == Layer::Evidence
+                    && matches!(i.subject, Subject::Prim(_))
+            };
             to.items[from..].iter_mut().filter(under).for_each(|i| i.layer = Layer::Areas);
         }
     }
@@ -174,7 +178,7 @@ mod tests {
     use crate::scene::{Quiet, samples};
 
     #[test]
-    fn every_step_about_a_node_marks_it() {
+    fn every_step_marks_once_what_it_is_about() {
         let scene = samples::soup::<Flat>(7, 60);
         let mut run = Flat::method("frustum")
             .expect("a method")
@@ -183,10 +187,14 @@ mod tests {
             .expect("ok");
         let film = run.record(&framing_view(&scene.bounds(), 64, 1), usize::MAX).film;
         let stamps = Stamps::new(&*film);
-        let current = Subject::Node(NodeId(1));
         for step in 1..=film.events().len() {
+            let current = film.subject(step - 1);
+            if current == Subject::None {
+                continue;
+            }
             let marked = |look: &Look| {
-                world(&*film, &stamps, step, look).items.iter().filter(|i| i.role == Role::Current).count()
+                let is_it = |i: &&Item<_>| i.role == Role::Current && i.subject == current;
+                world(&*film, &stamps, step, look).items.iter().filter(is_it).count()
             };
             assert_eq!(
                 marked(&Look { current, ..Look::default() }),

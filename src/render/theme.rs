@@ -91,6 +91,7 @@ const GREEN: Rgb = [0, 158, 115];
 const YELLOW: Rgb = [240, 228, 66];
 const BLUE: Rgb = [0, 114, 178];
 const VERMILLION: Rgb = [213, 94, 0];
+const BROWN: Rgb = [150, 110, 70];
 const PURPLE: Rgb = [204, 121, 167];
 
 const SOLID: &[f32] = &[];
@@ -219,7 +220,7 @@ impl Theme {
                 dash: SHORT,
                 hatch: Hatch::Falling,
                 dot: b.paper,
-                ..plain(mix(b.outside, b.ink, 0.4), 0.9)
+                ..plain(mix(BROWN, b.ink, 0.2), 0.9)
             },
             Role::Occluder => Style { fill: Some((b.ink, 0.62)), ..plain(b.ink, 2.4) },
             Role::Approximated => Style {
@@ -258,7 +259,7 @@ impl Theme {
         match role {
             Role::Ink | Role::Occluder => mix(b.ink, b.paper, 0.18),
             Role::Faint | Role::Outside => mix(b.outside, b.paper, 0.45),
-            Role::FacesAway => mix(b.outside, b.ink, 0.25),
+            Role::FacesAway => mix(BROWN, b.ink, 0.2),
             Role::Scene => mix(b.scene, b.paper, 0.35),
             Role::Undecided => mix(b.paper, b.ink, 0.06),
             Role::Partial => b.sky,

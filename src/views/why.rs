@@ -3,7 +3,7 @@
 use eframe::egui::{self, RichText, ScrollArea};
 
 use super::Answers;
-use crate::app::{Action, Command, State, why};
+use crate::app::{Action, Because, Command, State, why};
 use crate::drawing::Subject;
 use crate::drawing::words::capitalized;
 
@@ -49,35 +49,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         });
         for because in why(stage, state.selection, state.step) {
-            let is_here = because.step == Some(state.step);
-            let mut text = RichText::new(&because.text);
-            if is_here {
-                text = text.background_color(super::palette::panel(state).lit_line);
-            } else if because.step.is_some_and(|s| s > state.step) {
-                text = text.weak();
-            }
-            ui.label(text);
-            if is_here {
-                ui.weak("This is the present step.");
-            }
-            let step = because.step.filter(|&s| s != state.step);
-            if step.is_none() && because.by.is_none() {
-                ui.add_space(4.0);
-                continue;
-            }
-            ui.horizontal_wrapped(|ui| {
-                if let Some(step) = step
-                    && ui.link(format!("Go to step {step}")).clicked()
-                {
-                    answers.push(Command::GoTo(step));
-                }
-                if let Some((subject, name)) = &because.by
-                    && ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked()
-                {
-                    answers.push(Command::Select(*subject));
-                }
-            });
-            ui.add_space(4.0);
+            reason(state, &because, ui, answers);
         }
         ui.horizontal_wrapped(|ui| {
             super::action_button(state, ui, Action::PreviousOnSelected, "‹ about it", answers);
@@ -90,4 +62,37 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             }
         });
     });
+}
+
+/// A sentence of the explanation with its links: the present step is lit, what comes later is faint.
+fn reason(state: &State, because: &Because, ui: &mut egui::Ui, answers: &mut Answers) {
+    let is_here = because.step == Some(state.step);
+    let mut text = RichText::new(&because.text);
+    if is_here {
+        text = text.background_color(super::palette::panel(state).lit_line);
+    } else if because.step.is_some_and(|s| s > state.step) {
+        text = text.weak();
+    }
+    ui.label(text);
+    if because.step.is_some() || because.by.is_some() {
+        ui.horizontal_wrapped(|ui| {
+            match because.step {
+                Some(_) if is_here => {
+                    ui.weak("This is the present step.");
+                }
+                Some(step) => {
+                    if ui.link(format!("Go to step {step}")).clicked() {
+                        answers.push(Command::GoTo(step));
+                    }
+                }
+                None => {}
+            }
+            if let Some((subject, name)) = &because.by
+                && ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked()
+            {
+                answers.push(Command::Select(*subject));
+            }
+        });
+    }
+    ui.add_space(4.0);
 }
