@@ -274,14 +274,40 @@ impl Pyramid {
         let level = u32::BITS - differ.leading_zeros();
         PyramidCell { level: level as u8, x: (r.x0 >> level) as u16, y: (r.y0 >> level) as u16 }
     }
-    /// The farthest depth that it holds for a rectangle of pixels, from at most four cells.
+    /// The farthest depth that it holds for a rectangle of pixels, from at most four cells above level 0. What
+    /// is drawn until the next refresh does not change it, so it does not matter in which order or on how many
+    /// threads.
     #[inline]
     pub fn farthest_over(&self, depth: &[f32], r: PixelRect) -> f32 {
-        let (first, last) = self.cover(r);
+        let (mut first, mut last) = self.cover(r);
+        if first.level == 0 {
+            first = PyramidCell { level: 1, x: first.x / 2, y: first.y / 2 };
+            last = first;
+        }
         let mut farthest = f32::INFINITY;
         for y in first.y..=last.y {
             for x in first.x..=last.x {
                 farthest = farthest.min(self.farthest(depth, PyramidCell { level: first.level, x, y }));
+            }
+        }
+        farthest
+    }
+    /// The farthest depth of all pixels as they are now; nothing is brought up to date.
+    pub fn farthest_of_all(&self, depth: &[f32]) -> f32 {
+        let held = &self.coarse[0].values;
+        let is_stale = |tile: &usize| self.state[*tile] & STALE != 0;
+        let fresh = (0..held.len()).filter(|t| !is_stale(t)).map(|t| held[t]);
+        let mut farthest = fresh.fold(f32::INFINITY, f32::min);
+        for tile in (0..held.len()).filter(is_stale) {
+            // No pixel of a tile is farther than what it holds: most need not be looked at.
+            if farthest <= self.far || held[tile] >= farthest {
+                continue;
+            }
+            let (x0, y0) = (tile as u32 % self.columns * TILE_PX, tile as u32 / self.columns * TILE_PX);
+            for y in y0..(y0 + TILE_PX).min(self.height) {
+                let at = (y * self.width) as usize;
+                let row = &depth[at + x0 as usize..at + (x0 + TILE_PX).min(self.width) as usize];
+                farthest = row.iter().fold(farthest, |least, &d| if d < least { d } else { least });
             }
         }
         farthest

@@ -26,8 +26,7 @@ pub enum Step<'a, S: Drawable> {
     /// Drawing them one by one leads to the same state as drawing them at once, and so may be replayed from
     /// one note a primitive. The image is a function of the set of primitives that are drawn. Drawing marks
     /// tiles as stale and refreshes none, so what the pyramid holds on its levels above 0 is the same for
-    /// each of them; level 0 is the image, and a primitive of one pixel that is left out only because of one
-    /// drawn just before it lies in a tile that is stale already and changes no pixel.
+    /// each of them, and level 0, which is the image, is not asked about primitives.
     Draw {
         /// The scene that they are of.
         scene: &'a Scene<S>,
@@ -133,8 +132,8 @@ impl<S: Drawable> Buffer<S> {
         }
     }
     /// What [`Buffer::draw`] compares for a primitive: its extent and the farthest depth that the pyramid
-    /// holds for it. The same before and after it was drawn, unless it is one pixel: only refreshing changes
-    /// what the pyramid holds above level 0.
+    /// holds for it. The same before and after it was drawn: only refreshing changes what the pyramid holds
+    /// above level 0.
     pub fn operands(&self, scene: &Scene<S>, prim: PrimId, options: &Options) -> Option<(Extent, f32)> {
         // Nothing is refreshed for it, so to record what was compared does not change what is read next.
         let extent = S::extent(scene, &self.projected.as_ref()?.view, prim, options)?;
@@ -149,9 +148,17 @@ impl<S: Drawable> Buffer<S> {
     pub fn farthest(&self, cell: PyramidCell) -> f32 {
         self.pyramid.farthest(&self.target.depth, cell)
     }
-    /// Farthest depth that is held for a rectangle.
-    pub fn farthest_over(&self, pixels: PixelRect) -> f32 {
-        self.pyramid.farthest_over(&self.target.depth, pixels)
+    /// Farthest depth of the whole image as it is; nothing is brought up to date.
+    pub fn farthest_of_all(&self) -> f32 {
+        self.pyramid.farthest_of_all(&self.target.depth)
+    }
+    /// Farthest depth of a rectangle as it is, from its pixels.
+    pub fn farthest_in(&self, r: PixelRect) -> f32 {
+        let row = |y: u32| {
+            let first = (y * self.target.width) as usize;
+            &self.target.depth[first + r.x0 as usize..first + r.x1 as usize]
+        };
+        (r.y0..r.y1).flat_map(row).fold(f32::INFINITY, |least, &d| if d < least { d } else { least })
     }
     /// Brings the tile of a cell up to date.
     #[inline]

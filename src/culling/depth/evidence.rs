@@ -41,8 +41,35 @@ pub struct Answered<S: Faces> {
     pub pixels: PixelRect,
     /// What the query found.
     pub answer: Answer,
-    /// It reaches the near plane, so it counts as visible.
-    pub crosses_near: bool,
+    /// What that rests on.
+    pub ground: Ground,
+}
+
+/// What an answer rests on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// Cells of the pyramid, or that the box covers no pixel's center.
+    Cells,
+    /// The box reaches the near plane, so it counts as visible.
+    CrossesNear,
+    /// It lies beside the image, if by less than what the frustum's test allows for.
+    BesideImage,
+    /// A part of the image that it covers cannot be read, so it counts as visible.
+    Unread,
+    /// It lies behind the farthest depth of every region of the screen that it covers.
+    Regions,
+}
+
+impl Ground {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::CrossesNear => "crosses-near",
+            Self::BesideImage => "beside-image",
+            Self::Unread => "unread",
+            Self::Regions => "regions",
+        }
+    }
 }
 
 /// A primitive was compared with its cells and drawn, or not.
@@ -51,7 +78,7 @@ pub struct Rasterized {
     /// Which.
     pub prim: PrimId,
     /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None`
-    /// if it covers no pixel or had to be clipped: then it is drawn without a test.
+    /// if it is not tested: it covers no pixel, had to be clipped, or the pyramid is not asked.
     pub operands: Option<(Extent, f32)>,
     /// Whether it was left out.
     pub is_hidden: bool,
@@ -181,7 +208,8 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Read(node, n) => {
                 let mut fields = vec![integer("node", node.0)];
-                fields.extend(n.face.map(|face| integer("face", face.into())));
+                // Counted from 1, as in the sentence.
+                fields.extend(n.face.map(|face| integer("face", u32::from(face) + 1)));
                 fields.extend(cell_fields(n.cell));
                 // View depths, so that they compare with lengths in the world.
                 fields.push(number("face_depth_units", units(n.nearest).into()));
@@ -196,7 +224,8 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             Self::Rasterized(n) => n.fields(),
         }
     }
-    fn sentence(&self, _: &Context<'_, S>) -> String {
+    fn sentence(&self, context: &Context<'_, S>) -> String {
+        let far = 1.0 / context.view.eye.far;
         match self {
             Self::Read(node, n) => {
                 let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
@@ -216,8 +245,8 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 )
             }
             Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
-            Self::Answered(n) => n.sentence(),
-            Self::Rasterized(n) => n.sentence::<S>(),
+            Self::Answered(n) => n.sentence(far),
+            Self::Rasterized(n) => n.sentence::<S>(far),
         }
     }
 }
@@ -261,46 +290,58 @@ fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, 
 impl<S: Faces> Answered<S> {
     fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
         to.bounds(Layer::Emphasis, Role::Current, Subject::Node(self.node), &self.bounds);
-        if let (Some((cell, held)), false) = (self.answer.decisive, self.crosses_near) {
+        if let Some((cell, held)) = self.answer.decisive {
             behind(view, cell.pixels(view.width, view.height), self.answer.nearest, held, to);
         }
     }
-    fn sentence(&self) -> String {
+    /// `far`: the depth of an empty pixel.
+    fn sentence(&self, far: f32) -> String {
         let (node, near) = (self.node, short(units(self.answer.nearest)));
-        if self.crosses_near {
-            return format!("Node {node} reaches the near plane, so it counts as visible.");
-        }
+        let by = |held: f32| short((units(self.answer.nearest) - units(held)).abs());
         let reads = self.answer.reads;
-        let cells = if reads == 1 { "one cell was".into() } else { format!("{reads} cells were") };
-        match (self.answer.decisive, self.answer.is_hidden) {
-            (None, false) => {
+        let cells = if reads == 1 { "One cell was read".into() } else { format!("{reads} cells were read") };
+        match (self.ground, self.answer.decisive, self.answer.is_hidden) {
+            (Ground::CrossesNear, ..) => {
+                format!("Node {node} reaches the near plane, so it counts as visible.")
+            }
+            (Ground::BesideImage, ..) => {
+                format!("The box of node {node} lies beside the image: nothing of it can show.")
+            }
+            (Ground::Unread, ..) => format!(
+                "Node {node} counts as visible: a region of the screen that it covers is held by no renderer \
+                 and cannot be queried."
+            ),
+            (Ground::Regions, Some((_, held)), _) => format!(
+                "Node {node} is hidden: its nearest point, at depth {near}, lies behind the farthest depth of \
+                 every region that it covers; of these the farthest is {}, nearer by {}.",
+                short(units(held)),
+                by(held)
+            ),
+            (_, Some((cell, held)), true) => format!(
+                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in \
+                 its place. {cells}; the closest is {}, where the farthest thing drawn is at {}, nearer by \
+                 {}.",
+                place(cell),
+                short(units(held)),
+                by(held)
+            ),
+            (_, Some((cell, held)), false) => format!(
+                "Node {node} may be seen: it comes as near as {near}, and {}. {cells}.",
+                shown(cell, held, far, &format!("{} behind that", by(held)))
+            ),
+            (_, None, true) => {
+                format!("The image of node {node} covers no pixel's center: nothing of it can show.")
+            }
+            (_, None, false) => {
                 format!("Node {node} counts as visible: what is drawn in its place could not be read.")
             }
-            (None, true) => {
-                format!("The image of node {node} falls between the pixels' centers: nothing of it can show.")
-            }
-            (Some((cell, held)), true) => format!(
-                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in \
-                 its place. {cells} read; the closest is {}, where the farthest thing drawn is at {}, nearer \
-                 by {}.",
-                place(cell),
-                short(units(held)),
-                short(units(self.answer.nearest) - units(held))
-            ),
-            (Some((cell, held)), false) => format!(
-                "Node {node} may be seen: it comes as near as {near}, and {} shows nothing nearer than {}, \
-                 which is {} beyond. {cells} read.",
-                place(cell),
-                short(units(held)),
-                short(units(held) - units(self.answer.nearest))
-            ),
         }
     }
     fn fields(&self) -> Vec<Field> {
         let mut fields = vec![
             integer("node", self.node.0),
             Field { name: "hidden", value: Value::Switch(self.answer.is_hidden) },
-            Field { name: "crosses_near", value: Value::Switch(self.crosses_near) },
+            Field { name: "ground", value: Value::Word(self.ground.word().into()) },
             number("nearest_depth_units", units(self.answer.nearest).into()),
             integer("cells_read", self.answer.reads),
             pixels_field(self.pixels),
@@ -337,6 +378,21 @@ pub fn place(cell: PyramidCell) -> String {
     }
 }
 
+/// What a cell holds that does not hide something: `behind` says how it lies against that.
+fn shown(cell: PyramidCell, held: f32, far: f32, behind: &str) -> String {
+    // A cell holds the farthest depth in it, which is at some of its pixels; nearer things may be at others.
+    match (cell.level, held <= far) {
+        (0, true) => format!("nothing is drawn yet at {}", place(cell)),
+        (0, false) => format!("the thing drawn at {} is at {}, {behind}", place(cell), short(units(held))),
+        (_, true) => format!("somewhere in {} nothing is drawn yet", place(cell)),
+        (_, false) => format!(
+            "somewhere in {} the farthest thing drawn is at {}, {behind}",
+            place(cell),
+            short(units(held))
+        ),
+    }
+}
+
 impl Rasterized {
     fn fields(&self) -> Vec<Field> {
         let mut fields = vec![
@@ -353,7 +409,8 @@ impl Rasterized {
         }
         fields
     }
-    fn sentence<S: Faces>(&self) -> String {
+    /// `far`: the depth of an empty pixel.
+    fn sentence<S: Faces>(&self, far: f32) -> String {
         let (kind, prim) = (S::PRIM, self.prim);
         // Drawn in a part of the image, it is not tested: there is nothing to compare in the sentence.
         if let Some(w) = self.window {
@@ -365,29 +422,32 @@ impl Rasterized {
                 w.y1 - 1
             );
         }
-        match self.operands {
-            None => format!(
-                "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by the \
-                 near plane or the image's wide border."
-            ),
-            Some((extent, held)) => {
-                let (near, held) = (units(extent.nearest), units(held));
-                if self.is_hidden {
-                    format!(
-                        "The {kind} {prim} is left out: its nearest point, at depth {}, lies behind all that \
-                         is drawn in its cells, which is no farther than {}.",
-                        short(near),
-                        short(held)
-                    )
-                } else {
-                    format!(
-                        "The {kind} {prim} is drawn: it comes as near as {}, and its cells show nothing \
-                         nearer than {} somewhere.",
-                        short(near),
-                        short(held)
-                    )
-                }
-            }
+        let Some((extent, held)) = self.operands else {
+            return if self.is_sieved {
+                format!(
+                    "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by \
+                     the near plane or the image's wide border."
+                )
+            } else {
+                format!("The {kind} {prim} is drawn; no primitive is tested by itself.")
+            };
+        };
+        let (near, at) = (short(units(extent.nearest)), short(units(held)));
+        if self.is_hidden {
+            format!(
+                "The {kind} {prim} is left out: its nearest point, at depth {near}, lies behind all that is \
+                 drawn in its cells, which is no farther than {at}."
+            )
+        } else if held <= far {
+            format!(
+                "The {kind} {prim} is drawn: it comes as near as {near}, and as far as its cells know, \
+                 nothing is drawn yet somewhere in them."
+            )
+        } else {
+            format!(
+                "The {kind} {prim} is drawn: it comes as near as {near}, and as far as its cells know, the \
+                 farthest thing drawn in them is at {at}, not nearer."
+            )
         }
     }
 }

@@ -14,7 +14,7 @@ mod query;
 mod tests;
 
 pub use buffer::{Buffer, Step};
-pub use evidence::{Answered, DepthNote, QueryReporter, Rasterized};
+pub use evidence::{Answered, DepthNote, Ground, QueryReporter, Rasterized};
 pub use faces::{FaceImage, Faces, footprint, project_sphere};
 #[cfg(test)]
 pub use query::Outcome;

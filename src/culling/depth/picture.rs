@@ -22,10 +22,26 @@ const VALUE_ROOM_PT: f32 = 15.0;
 /// Levels with more columns or rows are left out: their cells are far smaller than a point.
 const MOST_COLUMNS: u32 = 1024;
 
+/// What a query has read so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reads {
+    /// In order.
+    pub all: Vec<Read>,
+    /// The cell that the sentence of the step names: the one read last, or of an answer the one that decided.
+    pub named: Option<PyramidCell>,
+}
+
+impl Reads {
+    /// The read of the cell that is named; by its number.
+    fn named(&self) -> Option<usize> {
+        self.all.iter().rposition(|r| Some(r.cell) == self.named)
+    }
+}
+
 /// The reads of the query that the last of some notes belongs to. `notes`: last first; `None` for what is no
 /// note about depth.
-pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote<S>>>) -> Vec<Read> {
-    let (mut reads, mut whose): (Vec<Read>, _) = (Vec::new(), None);
+pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote<S>>>) -> Reads {
+    let (mut reads, mut whose, mut decisive): (Vec<Read>, _, _) = (Vec::new(), None, None);
     for note in notes {
         match note {
             Some(DepthNote::Read(node, r)) if whose.is_none_or(|n| n == *node) => {
@@ -35,12 +51,14 @@ pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote
             // Made for the read that follows it, so it is part of the same query.
             Some(DepthNote::Refreshed(_)) => {}
             // A query ends with its answer: behind it only if nothing was read since.
-            Some(DepthNote::Answered(_)) if reads.is_empty() => {}
+            Some(DepthNote::Answered(a)) if reads.is_empty() && whose.is_none() => {
+                (whose, decisive) = (Some(a.node), a.answer.decisive.map(|(cell, _)| cell));
+            }
             _ => break,
         }
     }
     reads.reverse();
-    reads
+    Reads { named: decisive.or(reads.last().map(|r| r.cell)), all: reads }
 }
 
 /// Where a level stands on paper: its corner, the size of a cell, and how far the image goes.
@@ -257,15 +275,15 @@ fn role_of(read: &Read) -> Role {
     }
 }
 
-/// Lights the cells that a query read, numbered in order, the last one most.
-fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
-    for (number, read) in reads.iter().enumerate() {
+/// Lights the cells that a query read, numbered in order, the one that the sentence names most.
+fn light(reads: &Reads, frames: &[Frame], to: &mut Drawing) {
+    for (number, read) in reads.all.iter().enumerate() {
         // A level whose cells are too fine to be shown has no frame.
         let Some(frame) = frames.iter().find(|f| f.level == u32::from(read.cell.level)) else { continue };
         let [a, b] = frame.rect(read.cell);
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
         to.outline(Layer::Emphasis, role_of(read), Subject::None, corners);
-        if number + 1 == reads.len() {
+        if Some(number) == reads.named() {
             to.outline(
                 Layer::Emphasis,
                 Role::Current,
@@ -276,7 +294,7 @@ fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
         }
         // A cell may be read for several faces; the first time writes all its numbers.
         let same = |r: &&(usize, &Read)| r.1.cell == read.cell;
-        let all: Vec<(usize, &Read)> = reads.iter().enumerate().collect();
+        let all: Vec<(usize, &Read)> = reads.all.iter().enumerate().collect();
         let numbers: Vec<String> = all.iter().filter(same).map(|(n, _)| (n + 1).to_string()).collect();
         let text = format!("{}.", numbers.join(", "));
         let room =
@@ -289,15 +307,20 @@ fn light(reads: &[Read], frames: &[Frame], to: &mut Drawing) {
 }
 
 /// The last comparisons in words, below a picture that ends at `top`; returns where they end.
-fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
+fn comparisons(reads: &Reads, top: f32, to: &mut Drawing) -> f32 {
     const LINES: usize = 6;
-    // The last ones, since the very last is what this step is about; it alone is in ink.
+    let (named, reads) = (reads.named(), &reads.all);
+    // The last ones, and before them the one that this step is about; it alone is in ink.
     let first = reads.len().saturating_sub(LINES);
-    for (line, (number, read)) in reads.iter().enumerate().skip(first).enumerate() {
+    let shown: Vec<usize> = match named.filter(|n| *n < first) {
+        Some(earlier) => std::iter::once(earlier).chain(first + 1..reads.len()).collect(),
+        None => (first..reads.len()).collect(),
+    };
+    for (line, (number, read)) in shown.into_iter().map(|n| (n, &reads[n])).enumerate() {
         let text = format!("{}. {}: {}", number + 1, place(read.cell), read.comparison());
         to.text(
             Layer::Labels,
-            if number + 1 == reads.len() { Role::Ink } else { Role::Faint },
+            if Some(number) == named { Role::Ink } else { Role::Faint },
             vec2(0.0, top + 11.0 * (line + 1) as f32),
             8.5,
             Anchor::Start,
@@ -319,7 +342,7 @@ fn comparisons(reads: &[Read], top: f32, to: &mut Drawing) -> f32 {
 }
 
 /// The levels side by side, each as large as the others; in flatland strips below each other.
-pub fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], scale: DepthScale) -> Drawing {
+pub fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
     let (frames, height) = frames(buffer, view);
     let mut to = Drawing::default();
     frames.iter().for_each(|f| draw_level(buffer, view, f, scale, &mut to));
@@ -383,7 +406,7 @@ impl Stack {
 }
 
 /// The levels above each other, seen askew, the image at the bottom.
-pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], scale: DepthScale) -> Drawing {
+pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
     let root = buffer.pyramid().root();
     let shown: Vec<u32> = (0..=root).filter(|&l| buffer.pyramid().size(l).0 <= MOST_COLUMNS).collect();
     let (base, lean, rise) = (WIDTH_PT * 0.62, WIDTH_PT * 0.2, 46.0);
@@ -401,10 +424,15 @@ pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], sca
         to.outline(Layer::Scene, Role::Faint, Subject::None, corners);
         let side =
             vec2((1u32 << level) as f32 / view.width as f32, (1u32 << level) as f32 / view.height as f32);
-        for read in reads.iter().filter(|r| u32::from(r.cell.level) == level) {
+        for (number, read) in reads.all.iter().enumerate().filter(|(_, r)| u32::from(r.cell.level) == level) {
             let a = side * vec2(read.cell.x.into(), read.cell.y.into());
             let lit = stack.quad(k, a, (a + side).min(Vec2::ONE));
             to.outline(Layer::Emphasis, role_of(read), Subject::None, lit);
+            if Some(number) == reads.named() {
+                let middle = (lit[0] + lit[2]) * 0.5;
+                let around = lit.map(|c| c + (c - middle).signum() * 1.5);
+                to.outline(Layer::Emphasis, Role::Current, Subject::None, around);
+            }
         }
         let name = vec2(lean + base + 6.0, stack.at(k, vec2(1.0, 0.0)).y + 4.0);
         let text = format!("level {level}, {columns} × {rows}");
@@ -419,8 +447,12 @@ pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &[Read], sca
 pub struct Lists {
     /// Drawn, and why.
     pub drawn: Vec<(NodeId, &'static str)>,
-    /// Queried, and the answer.
+    /// Queried while the frame was drawn, and the answer.
     pub queried: Vec<(NodeId, String)>,
+    /// Whether the frame is drawn and the list is being checked.
+    pub is_checking: bool,
+    /// Queried then.
+    pub checked: Vec<(NodeId, String)>,
     /// Taken off the list.
     pub unlisted: Vec<NodeId>,
 }
@@ -429,7 +461,10 @@ impl Lists {
     /// The answer for a node's box.
     pub fn query<S: Faces>(&mut self, a: &Answered<S>) {
         let seen = if a.answer.is_hidden { "hidden" } else { "seen" };
-        self.queried.push((a.node, format!("{seen}, {} cells read", a.answer.reads)));
+        let reads = a.answer.reads;
+        let cells = if reads == 1 { "cell" } else { "cells" };
+        let to = if self.is_checking { &mut self.checked } else { &mut self.queried };
+        to.push((a.node, format!("{seen}, {reads} {cells}")));
     }
     /// The lists beside each other, each with its last rows.
     pub fn draw(&self) -> Drawing {
@@ -446,21 +481,22 @@ impl Lists {
                 to.text(Layer::Labels, Role::Ink, at, 8.0, Anchor::Start, row);
             }
         };
+        let answers = |answers: &[(NodeId, String)]| {
+            answers.iter().map(|(node, answer)| format!("node {node}: {answer}")).collect()
+        };
         let drawn = self.drawn.iter().enumerate();
         column(
             0.0,
             format!("Drawn, in this order: {}", self.drawn.len()),
             drawn.map(|(i, (node, why))| format!("{}. node {node}: {why}", i + 1)).collect(),
         );
+        column(140.0, format!("Asked for: {}", self.queried.len()), answers(&self.queried));
+        // Against the finished image: nothing is drawn because of it.
+        column(265.0, format!("Asked at the end: {}", self.checked.len()), answers(&self.checked));
         column(
-            170.0,
-            format!("Asked for: {}", self.queried.len()),
-            self.queried.iter().map(|(node, answer)| format!("node {node}: {answer}")).collect(),
-        );
-        column(
-            340.0,
+            390.0,
             format!("Left the list: {}", self.unlisted.len()),
-            self.unlisted.iter().map(|node| format!("node {node}: off the list")).collect(),
+            self.unlisted.iter().map(|node| format!("node {node}")).collect(),
         );
         // As high with few rows as with many: the picture keeps its size from step to step.
         finished(to, 24.0 + 11.0 * ROWS as f32, "The visible list")

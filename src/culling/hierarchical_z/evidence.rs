@@ -4,8 +4,8 @@ use crate::culling::cubes::CubeNote;
 use crate::culling::depth::{DepthNote, Faces};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, View};
-use crate::method::evidence::{Facing, Tested, integer, number, outline};
-use crate::method::{Claim, Context, Field, Note, Tallied, Tally, Value};
+use crate::method::evidence::{Facing, Tested, integer, outline};
+use crate::method::{Claim, Context, Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -19,10 +19,8 @@ pub(crate) enum Evidence<S: Faces> {
     Facing(Facing),
     /// What was read of the image and its pyramid, or changed.
     Depth(DepthNote<S>),
-    /// What became of a cube, or of a primitive that cubes share.
+    /// What became of a cube, of a primitive that cubes share, or of the list.
     Cube(CubeNote),
-    /// What is due at the end of a frame.
-    Checked(Check),
 }
 
 impl<S: Faces> From<DepthNote<S>> for Evidence<S> {
@@ -30,23 +28,6 @@ impl<S: Faces> From<DepthNote<S>> for Evidence<S> {
     fn from(note: DepthNote<S>) -> Self {
         Self::Depth(note)
     }
-}
-
-/// Whether the visible list is checked at the end of a frame, and why.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Check {
-    /// Frames since the last check, this one included.
-    pub frames: u32,
-    /// Frames between checks.
-    pub interval: u32,
-    /// Cubes that came onto the list in this frame.
-    pub added: u32,
-    /// Cubes on it.
-    pub listed: u32,
-    /// The farthest depth of the image, `1/w`, in this frame and in the one before.
-    pub farthest: [f32; 2],
-    /// Whether it is made.
-    pub is_due: bool,
 }
 
 impl<S: Faces> Evidence<S> {
@@ -63,7 +44,7 @@ impl<S: Faces> Evidence<S> {
             Self::Depth(n) => n.draw(scene, view, to),
             Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
             // Marks on the tree and counts have no place in the world.
-            Self::Listed(..) | Self::Cube(CubeNote::Unlisted(_)) | Self::Checked(_) => {}
+            Self::Listed(..) | Self::Cube(CubeNote::Unlisted { .. } | CubeNote::Checked(_)) => {}
         }
     }
 }
@@ -77,8 +58,6 @@ impl<S: Faces> Tallied for Evidence<S> {
             Self::Facing(_) => Facing::tally(tally),
             Self::Depth(n) => n.tally(tally),
             Self::Cube(n) => n.tally(tally),
-            // Every frame records whether a check is due; those that are made count.
-            Self::Checked(n) => tally.add("checks", n.is_due.into()),
         }
     }
 }
@@ -91,7 +70,6 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
             Self::Depth(n) => n.kind(),
             Self::Cube(n) => Note::<S>::kind(n),
-            Self::Checked(_) => "ListChecked",
         }
     }
     fn subject(&self) -> Subject {
@@ -102,8 +80,6 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(n) => n.subject(),
             Self::Depth(n) => n.subject(),
             Self::Cube(n) => Note::<S>::subject(n),
-            // About the list as a whole.
-            Self::Checked(_) => Subject::None,
         }
     }
     fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
@@ -121,14 +97,15 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(n) => n.fields(context),
             Self::Depth(n) => n.fields(context),
             Self::Cube(n) => n.fields(context),
-            Self::Checked(n) => n.fields(),
         }
     }
     fn sentence(&self, context: &Context<'_, S>) -> String {
         match self {
-            Self::Listed(n, true) => {
-                format!("Node {n} was visible in the last frame, so it is drawn at once, without a test.")
-            }
+            // A cube may have been out of view since, or not have been checked.
+            Self::Listed(n, true) => format!(
+                "Node {n} is on the visible list, since it could be seen when it was last tested: it is drawn \
+                 at once, without a test."
+            ),
             Self::Listed(n, false) => format!(
                 "Node {n} is on the visible list: it was drawn at the start of the frame, without a test."
             ),
@@ -136,35 +113,6 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence(context),
             Self::Depth(n) => n.sentence(context),
             Self::Cube(n) => n.sentence(context),
-            Self::Checked(n) => n.sentence(),
-        }
-    }
-}
-
-impl Check {
-    fn fields(&self) -> Vec<Field> {
-        vec![
-            // Recorded as a whole: the memory of the last frame is written over when this one ends.
-            Field { name: "due", value: Value::Switch(self.is_due) },
-            integer("frames", self.frames),
-            integer("interval", self.interval),
-            integer("added", self.added),
-            integer("listed", self.listed),
-            // View depths for the reader; the shift is a ratio and the same in both measures.
-            number("farthest_units", (1.0 / self.farthest[0]).into()),
-            number("farthest_before_units", (1.0 / self.farthest[1]).into()),
-        ]
-    }
-    fn sentence(&self) -> String {
-        let of = format!(
-            "{} of {} cubes are new on the visible list, {} frames since it was checked",
-            self.added, self.listed, self.frames
-        );
-        if self.is_due {
-            format!("{of}: every cube on it is asked against the finished image.")
-        } else {
-            // Only the interval is foreseen: a check that is due early depends on frames to come.
-            format!("{of}: no check is due before {}.", self.interval)
         }
     }
 }

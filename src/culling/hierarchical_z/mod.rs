@@ -255,9 +255,11 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         }
         let mut walk = Walk::new(frame, listed, scratch, buffer, out, watch);
         walk.run();
-        // Section 3.3: against the final z-buffer, so after all is drawn.
-        let check = walk.check(*farthest, *frames + 1);
-        (*frames, *farthest) = (if check.is_due { 0 } else { check.frames }, check.farthest[0]);
+        // Section 3.3: against the final z-buffer, so after all is drawn. No list is kept without coherence.
+        if frame.params.coherence {
+            let (is_checked, now) = walk.check(*farthest, *frames + 1);
+            (*frames, *farthest) = (if is_checked { 0 } else { *frames + 1 }, now);
+        }
     }
 }
 

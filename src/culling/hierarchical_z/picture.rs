@@ -25,26 +25,28 @@ pub(super) fn picture<S: Faces>(
     match which {
         0 => levels(buffer, view, &reads(), scale),
         1 => stacked(buffer, view, &reads(), scale),
-        _ => list(notes),
+        _ => lists(notes).draw(),
     }
 }
 
 /// The visible list in the order of drawing, and what came of every cube that was queried.
-fn list<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
+pub(super) fn lists<S: Faces>(notes: &[Evidence<S>]) -> Lists {
     let mut lists = Lists::default();
     for note in notes {
         match note {
             // The same cube is recorded once more when the visit meets it, with false: it is not drawn again.
             Evidence::Listed(node, true) => lists.drawn.push((*node, "from the list")),
             Evidence::Depth(DepthNote::Answered(a)) => {
-                lists.query(a);
-                if !a.answer.is_hidden {
+                // What passes its check at the end of the frame is drawn already.
+                if !a.answer.is_hidden && !lists.is_checking {
                     lists.drawn.push((a.node, "passed its test"));
                 }
+                lists.query(a);
             }
-            Evidence::Cube(CubeNote::Unlisted(node)) => lists.unlisted.push(*node),
+            Evidence::Cube(CubeNote::Checked(_)) => lists.is_checking = true,
+            Evidence::Cube(CubeNote::Unlisted { node, .. }) => lists.unlisted.push(*node),
             _ => {}
         }
     }
-    lists.draw()
+    lists
 }

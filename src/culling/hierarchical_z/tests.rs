@@ -5,9 +5,10 @@ use rand_pcg::rand_core::Rng;
 
 use super::parts::figure_1;
 use super::*;
-use crate::culling::depth::{DepthNote, FaceImage, Outcome, Query, QueryReporter};
+use crate::culling::cubes::CubeNote;
+use crate::culling::depth::{Answered, DepthNote, FaceImage, Ground, Outcome, Query, QueryReporter};
 use crate::geometry::{Flat, NodeId, PixelRect, Solid, Space, Vector, View};
-use crate::method::{Recorder, Unobserved};
+use crate::method::{Context, Note, Recorder, Unobserved, Verdict};
 use crate::raster::{Options, render};
 use crate::scene::Parts;
 
@@ -160,4 +161,158 @@ fn threads_leave_no_trace() {
             assert_eq!(pool.install(run), alone, "form {form:?}, {threads} threads");
         }
     }
+}
+
+/// The answer for a box over some pixels of Figure 1 whose nearest point is at a depth, with the notes before
+/// it.
+fn answered(pixels: PixelRect, depth: f32) -> (Vec<Evidence<Solid>>, String) {
+    let (scene, view) = figure_1().expect("a valid scene");
+    let mut buffer = Buffer::default();
+    buffer.clear(&view);
+    buffer.draw(&scene, scene.live(), &Options::default());
+    buffer.refresh_all();
+    let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
+    let reporter = QueryReporter::new(NodeId(7), [0, 0], &mut recorder);
+    let mut query = Query::new(&mut buffer, 1.0 / depth, reporter);
+    query.face(0, &FaceImage::rectangle(pixels));
+    let (answer, ground, bounds) = (query.answer, Ground::Cells, scene.bounds());
+    let note =
+        Evidence::Depth(DepthNote::Answered(Answered { node: NodeId(7), bounds, pixels, answer, ground }));
+    let sentence = note.sentence(&Context { scene: &scene, view: &view });
+    recorder.notes.push(note);
+    (recorder.notes, sentence)
+}
+
+#[test]
+fn an_answer_says_what_the_cell_that_decided_holds() {
+    let lower = PixelRect { x0: 0, x1: 4, y0: 2, y1: 4 };
+    assert_eq!(
+        answered(lower, 5.0).1,
+        "Node 7 may be seen: it comes as near as 5.00, and somewhere in cell (0, 1) of level 1 the farthest \
+         thing drawn is at 6.00, 1.00 behind that. 2 cells were read."
+    );
+    let upper = PixelRect { x0: 0, x1: 2, y0: 0, y1: 1 };
+    assert_eq!(
+        answered(upper, 6.0).1,
+        "Node 7 may be seen: it comes as near as 6.00, and the thing drawn at pixel (1, 0) is at 9.00, 3.00 \
+         behind that. 3 cells were read."
+    );
+    let quarter = PixelRect { x0: 2, x1: 4, y0: 2, y1: 4 };
+    assert_eq!(
+        answered(quarter, 6.0).1,
+        "Node 7 is hidden: its nearest point, at depth 6.00, lies behind all that is drawn in its place. One \
+         cell was read; the closest is cell (1, 1) of level 1, where the farthest thing drawn is at 4.00, \
+         nearer by 2.00."
+    );
+}
+
+/// Faces are counted alike in sentence and field, and the picture lights the cell that the sentence names.
+#[test]
+fn faces_and_cells_are_named_alike() {
+    // The two samples that hide it are alike: the first of them is named, and the second was read last.
+    let (notes, sentence) = answered(PixelRect { x0: 0, x1: 1, y0: 0, y1: 2 }, 6.0);
+    let reads = crate::culling::depth::picture::last_reads(notes.iter().rev().map(Evidence::depth));
+    let (scene, view) = figure_1().expect("a valid scene");
+    let context = Context { scene: &scene, view: &view };
+    let named = reads.named.expect("a cell decided");
+    assert_ne!(reads.all.last().map(|r| r.cell), Some(named));
+    assert!(sentence.contains("the closest is pixel (0, 0), where the farthest thing drawn is at 4.00"));
+    assert_eq!((named.level, named.x, named.y), (0, 0, 0));
+    let face = notes[0].fields(&context).into_iter().find(|f| f.name == "face").expect("a face");
+    assert_eq!(face.value, crate::method::Value::Integer(1));
+    assert!(notes[0].sentence(&context).starts_with("Face 1 of node 7"));
+    // While the query reads it is the cell read last.
+    let reads = crate::culling::depth::picture::last_reads(notes[..2].iter().rev().map(Evidence::depth));
+    assert_eq!((reads.all.len(), reads.named), (2, reads.all.last().map(|r| r.cell)));
+}
+
+/// The picture of the list counts a cube that is drawn once, though it passes its check as well.
+#[test]
+fn a_cube_that_is_drawn_is_listed_once() {
+    let mut rng = Pcg32::new(8, 9);
+    let scene = soup::<Solid>(&mut rng, 200, |c| c);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let params = Params { cubes, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let view = View { width: 80, height: 60, ..crate::scene::random_views(&scene, 1, 3)[0] };
+    for frame in 0..2 {
+        let mut recorder = Recorder::new(usize::MAX);
+        tried.cull(&view, &mut recorder);
+        let lists = super::picture::lists(&recorder.notes);
+        let mut drawn: Vec<NodeId> = lists.drawn.iter().map(|(node, _)| *node).collect();
+        let count = drawn.len();
+        drawn.sort();
+        drawn.dedup();
+        assert_eq!(drawn.len(), count, "frame {frame}: each once");
+        let partial = |e: &&Event| matches!(e, Event::DecidedNode(_, Verdict::Partial));
+        assert_eq!(count, recorder.events.iter().filter(partial).count(), "frame {frame}: all that are seen");
+        assert!(!lists.checked.is_empty() && lists.checked.len() <= count, "frame {frame}");
+    }
+}
+
+/// What was hidden in the last frame is not drawn from the list, though the list is checked only now and then.
+#[test]
+fn what_was_hidden_is_not_on_the_list() {
+    let mut rng = Pcg32::new(9, 9);
+    let scene = soup::<Solid>(&mut rng, 400, |c| c);
+    let cubes = Cubes { leaf_primitives: 2, ..Cubes::default() };
+    let params = Params { check_interval: 3, cubes, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let (mut hidden, mut unlisted, mut listed) = (Vec::new(), 0, 0);
+    let start = crate::scene::random_views(&scene, 1, 5)[0];
+    for step in 0..60 {
+        let mut view = View { width: 80, height: 60, ..start };
+        let turn = glam::Quat::from_rotation_y(0.2 * step as f32);
+        view.eye.target = view.eye.position + turn * glam::Vec3::X;
+        view.eye.position += glam::Vec3::new(0.0, 0.0, 3.0) * (0.3 * step as f32).sin();
+        let mut recorder = Recorder::new(usize::MAX);
+        tried.cull(&view, &mut recorder);
+        for note in &recorder.notes {
+            match note {
+                Evidence::Listed(node, true) => {
+                    listed += 1;
+                    let above = std::iter::successors(Some(*node), |n| index.parent_of(*n));
+                    assert!(above.into_iter().all(|n| !hidden.contains(&n)), "node {node} in frame {step}");
+                }
+                Evidence::Cube(CubeNote::Unlisted { .. }) => unlisted += 1,
+                _ => {}
+            }
+        }
+        let of = |e: &Event| match e {
+            Event::DecidedNode(node, Verdict::Hidden) => Some(*node),
+            _ => None,
+        };
+        hidden = recorder.events.iter().filter_map(of).collect();
+    }
+    assert!(unlisted > 20 && listed > 200, "{unlisted} left the list, {listed} drawn from it");
+}
+
+/// The list is checked early when all is new, or when the farthest depth shifts; and after its interval.
+#[test]
+fn a_list_is_checked_early_for_the_two_reasons_of_the_paper() {
+    // A room with a window: the farthest depth is that of the back wall until the eye passes the front one.
+    let quad = |z: f32, half: f32| [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| glam::vec3(x, y, z));
+    let points: Vec<_> = quad(-40.0, 90.0).into_iter().chain(quad(-5.0, 90.0)).collect();
+    let prims = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+    let scene = Arc::new(Scene::<Solid>::new(Parts::simple("two walls", points, prims)).expect("valid"));
+    let params = Params { check_interval: 4, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let mut dues = Vec::new();
+    for z in [0.0, 0.0, 0.0, -6.0, -6.0, -6.0, -6.0, -6.0] {
+        let position = glam::vec3(0.0, 0.0, z);
+        let target = position - glam::Vec3::Z;
+        let fov = std::f32::consts::FRAC_PI_2;
+        let eye = crate::geometry::Eye { position, target, up: glam::Vec3::Y, fov, near: 0.5, far: 100.0 };
+        let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(usize::MAX);
+        tried.cull(&View { eye, width: 64, height: 64 }, &mut recorder);
+        dues.extend(recorder.notes.iter().filter_map(|n| match n {
+            Evidence::Cube(CubeNote::Checked(check)) => Some(check.due),
+            _ => None,
+        }));
+    }
+    use crate::culling::cubes::Due::{Added, Interval, Shifted};
+    assert_eq!(dues, [Some(Added), None, None, Some(Shifted), None, None, None, Some(Interval)]);
 }

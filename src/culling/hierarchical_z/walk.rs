@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::evidence::{Check, Evidence};
+use super::evidence::Evidence;
 use super::{Form, Params, Volume, line};
-use crate::culling::cubes::CubeNote;
+use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, Buffer, DepthNote, FaceImage, Faces, Held, Listener, Nobody, Query, QueryReporter,
-    Rasterized, Step, footprint, project_sphere,
+    Answer, Answered, Buffer, DepthNote, FaceImage, Faces, Ground, Held, Listener, Nobody, Query,
+    QueryReporter, Rasterized, Step, footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
@@ -17,7 +17,7 @@ use crate::geometry::{
 use crate::index::{Octree, OctreeNode};
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
-use crate::raster::{Options, PyramidCell};
+use crate::raster::Options;
 use crate::scene::Scene;
 
 /// Buffers that frames reuse. A copy of the memory does not hold them.
@@ -39,13 +39,6 @@ impl Clone for Scratch {
 
 /// Fewer primitives are drawn on one thread: handing them out would take longer.
 const PARALLEL_PRIMS: usize = 2048;
-/// The share of new cubes on the list from which on it is checked early (Section 4.2: "a large number of
-/// structures were suddenly added"; it gives no number): a quarter.
-const MANY_ADDED: u32 = 4;
-/// The change of the farthest depth, as a factor, from which on the list is checked early (Section 4.2: "a
-/// rapid shift in this value"; again without a number).
-const RAPID_SHIFT: f32 = 1.5;
-
 /// Threads that draw: all of the pool that the run was put into, or the calling one alone.
 fn threads() -> usize {
     rayon::current_thread_index().map_or(1, |_| rayon::current_num_threads())
@@ -146,15 +139,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Step 3: takes off the list what the finished image hides, if a check is due.
-    /// `before`: the farthest depth of the frame before; `frames`: how many since the last check.
-    pub(super) fn check(&mut self, before: f32, frames: u32) -> Check {
+    /// Step 3: takes off the list what the finished image hides, if a check is due (Section 4.2).
+    /// `before`: the farthest depth of the frame before, 0 if there was none; `frames`: how many since the
+    /// last check. Returns whether it was due, and the farthest depth.
+    pub(super) fn check(&mut self, before: f32, frames: u32) -> (bool, f32) {
         self.watch.stage("check");
-        let check = self.check_due(before, frames);
-        if check.is_due {
+        let interval = self.params.check_interval;
+        // Where every frame checks, nothing is to be decided by the farthest depth.
+        let farthest = if interval == 1 { 0.0 } else { self.buffer.farthest_of_all() };
+        let listed = self.listed.iter().filter(|l| **l).count() as u32;
+        let check = Check::new([frames, interval], [self.added, listed], [farthest, before]);
+        self.watch.event(Event::Line(line::CHECK));
+        self.watch.note(move || Evidence::Cube(CubeNote::Checked(check)));
+        if check.due.is_some() {
             self.unlist(NodeId(0), Frustum::<S::Vector>::ALL);
         }
-        check
+        (check.due.is_some(), farthest)
     }
 
     /// Brings the pyramid up to date in the way that a note says.
@@ -183,7 +183,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let is_hidden = |id: NodeId| {
             let node = &index.nodes()[id.at()];
             match question(node, view, projection, params) {
-                Question::Decided { crosses_near } => !crosses_near,
+                Question::Decided(ground) => ground != Ground::CrossesNear,
                 Question::Open(image, nearest) => {
                     ask(Query::new(buffer, nearest, Nobody), params, &node.bounds, &image, view).is_hidden
                 }
@@ -245,7 +245,6 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Inside => 0,
         };
         self.watch.event(Event::Line(line::IN_LIST));
-        // A mark below a cube that left the list means nothing: such a cube was not drawn in step 1.
         if self.cubes[id.at()] {
             self.watch.note(|| Evidence::Listed(id, false));
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
@@ -345,9 +344,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let buffer = &*self.buffer;
             self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
             self.watch.note(move || {
-                // What was compared can still be read after drawing, which refreshes nothing; only that of
-                // one pixel may have changed.
-                let operands = buffer.operands(scene, prim, options);
+                // What was compared can still be read after drawing, which refreshes nothing.
+                let operands = is_sieved.then(|| buffer.operands(scene, prim, options)).flatten();
                 let (backface_culling, window) = (options.backface_culling, None);
                 let rasterized =
                     Rasterized { prim, operands, is_hidden, is_sieved, backface_culling, window };
@@ -365,23 +363,24 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn is_obscured(&mut self, node: NodeId) -> bool {
         let OctreeNode { bounds, .. } = self.index.nodes()[node.at()];
         let question = question(&self.index.nodes()[node.at()], self.view, &self.projection, self.params);
-        let crosses_near = matches!(question, Question::Decided { crosses_near: true });
-        let (pixels, answer) = match question {
-            Question::Decided { .. } => {
+        let (pixels, answer, ground) = match question {
+            Question::Decided(ground) => {
+                let crosses_near = ground == Ground::CrossesNear;
                 if crosses_near {
                     self.watch.event(Event::Line(line::NEAR));
                 }
                 let nearest = 1.0 / self.view.eye.near;
-                (PixelRect::default(), Answer { is_hidden: !crosses_near, nearest, reads: 0, decisive: None })
+                let answer = Answer { is_hidden: !crosses_near, nearest, reads: 0, decisive: None };
+                (PixelRect::default(), answer, ground)
             }
             Question::Open(image, nearest) => {
                 let reporter = QueryReporter::new(node, [line::WHOLE, line::BEHIND], &mut *self.watch);
                 let query = Query::new(&mut *self.buffer, nearest, reporter);
-                (image.pixels, ask(query, self.params, &bounds, &image, self.view))
+                (image.pixels, ask(query, self.params, &bounds, &image, self.view), Ground::Cells)
             }
         };
         self.watch.note(move || {
-            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, crosses_near }))
+            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, ground }))
         });
         answer.is_hidden
     }
@@ -396,26 +395,6 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Whether the list is to be checked in this frame: at fixed intervals, or early where many cubes were
-    /// added or the farthest depth shifted (Section 4.2).
-    fn check_due(&mut self, before: f32, frames: u32) -> Check {
-        let interval = self.params.check_interval;
-        // Where every frame checks, nothing is to be decided by the farthest depth, which costs a refresh.
-        let farthest = if interval == 1 { before } else { self.farthest() };
-        let (added, listed) = (self.added, self.listed.iter().filter(|l| **l).count() as u32);
-        let shift = if before > 0.0 { (farthest / before).max(before / farthest) } else { 1.0 };
-        let is_due = self.params.coherence
-            && (frames >= interval || added * MANY_ADDED > listed || shift > RAPID_SHIFT);
-        let check = Check { frames, interval, added, listed, farthest: [farthest, before], is_due };
-        self.watch.event(Event::Line(line::CHECK));
-        self.watch.note(move || Evidence::Checked(check));
-        check
-    }
-    /// The farthest depth of the image.
-    fn farthest(&mut self) -> f32 {
-        self.refresh(DepthNote::RefreshedAll);
-        self.buffer.farthest(PyramidCell { level: self.buffer.pyramid().root() as u8, x: 0, y: 0 })
-    }
     /// Takes cubes off the list that the finished image hides.
     fn unlist(&mut self, id: NodeId, planes: u8) {
         if !self.listed[id.at()] {
@@ -429,21 +408,28 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         };
         self.watch.event(Event::Line(line::UNLIST));
         if self.is_obscured(id) {
-            self.listed[id.at()] = false;
-            self.watch.note(|| Evidence::Cube(CubeNote::Unlisted(id)));
-            // What is listed below it is not drawn without it, so its marks need not go.
+            self.unmark(id);
+            self.watch.note(|| Evidence::Cube(CubeNote::Unlisted { node: id, processor: None }));
             return;
         }
         for child in node.children() {
             self.unlist(NodeId(child), cutting);
         }
     }
+    /// Takes a cube and all below it off the list.
+    fn unmark(&mut self, id: NodeId) {
+        // Nothing is listed below a cube that is not: a mark that stayed would list a cube again that was
+        // hidden in the last frame, as soon as one above it is seen.
+        if std::mem::replace(&mut self.listed[id.at()], false) {
+            self.index.nodes()[id.at()].children().for_each(|child| self.unmark(NodeId(child)));
+        }
+    }
 }
 
 /// What there is to query for a cube.
 enum Question {
-    /// Nothing: it reaches the near plane and counts as visible, or lies beside the view.
-    Decided { crosses_near: bool },
+    /// Nothing: it reaches the near plane and counts as visible, or lies beside the image.
+    Decided(Ground),
     /// Whether what lies in this image, and no nearer than this depth, is hidden.
     Open(BoxImage, f32),
 }
@@ -470,8 +456,8 @@ fn question<S: Faces>(
             Question::Open(image, nearest_depth(projection, &node.whole, view.eye.near))
         }
         // Beside the view, but not by enough for the frustum's test.
-        Footprint::Outside => Question::Decided { crosses_near: false },
-        Footprint::CrossesNear => Question::Decided { crosses_near: true },
+        Footprint::Outside => Question::Decided(Ground::BesideImage),
+        Footprint::CrossesNear => Question::Decided(Ground::CrossesNear),
     }
 }
 

@@ -52,7 +52,7 @@ impl<S: Faces> Evidence<S> {
             Self::Depth(n) => n.draw(scene, view, to),
             Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
             // The cells that were read for it are notes of their own.
-            Self::Cube(CubeNote::Unlisted(_)) => {}
+            Self::Cube(CubeNote::Unlisted { .. } | CubeNote::Checked(_)) => {}
             Self::Worked(n) => {
                 // The world shows whose geometry it is; which unit and when is for the timeline. While a
                 // processor waits there is nothing to show.
@@ -88,8 +88,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
     }
     fn subject(&self) -> Subject {
         match self {
-            // A primitive, though the box is that of all its structure holds: below the same cube lie other
-            // structures, which this test does not reject.
+            // A cube with all below it, or a primitive where the box is that of what its structure holds:
+            // below the same cube lie other structures, which this test does not reject.
             Self::Tested(n) => n.subject(),
             Self::Facing(n) => n.subject(),
             Self::Depth(n) => n.subject(),

@@ -6,14 +6,17 @@ use crate::method::evidence::integer;
 use crate::method::{Field, Knob, Knobs, Tally, Value, words};
 
 words! {
-    /// How structures go to processors (Section 4.1).
+    /// How structures go to processors: three ways of Section 4.1, and one that is not the paper's.
     pub(super) enum Distribution {
-        /// Structures are dealt finely, so that near ones go to different processors.
+        /// Structures in turn, so that near ones go to different processors, each of which then queries
+        /// several of its own at once.
         Hybrid = "hybrid",
-        /// Whole parts of the scene go to one processor.
+        /// Structures in turn, each by itself: the paper's implementation (Section 5.1).
         Structure = "structure",
         /// Every processor gets a part of every structure.
         Primitive = "primitive",
+        /// Whole parts of the scene go to one processor: what the hybrid avoids.
+        Subtree = "subtree",
     }
 }
 
@@ -22,10 +25,25 @@ words! {
     pub(super) enum Allocation {
         /// Every region has its renderer all the time.
         Static = "static",
-        /// The busiest regions of the last frame first, the others when a renderer is free.
+        /// A renderer holds one region at a time: the busiest of the last frame first, then the next when it
+        /// is free.
         Dynamic = "dynamic",
     }
 }
+
+words! {
+    /// What stands for a structure when it is queried.
+    pub(super) enum Volume {
+        /// Its box, by the faces toward the eye.
+        Faces = "faces",
+        /// The sphere around it: one quadratic expression instead of the sides of twelve triangles (Section
+        /// 5.3).
+        Sphere = "sphere",
+    }
+}
+
+/// Triangles of a box, which a processor transforms to query it.
+const BOX_PRIMS: usize = 12;
 
 /// The machine and what its operations cost, in ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,9 +52,10 @@ pub(super) struct Machine {
     pub renderers: u32,
     pub distribution: Distribution,
     pub allocation: Allocation,
+    pub query: Volume,
     /// A processor goes on with other structures while it waits for answers (Section 5.3).
     pub overlap: bool,
-    /// A processor reads the farthest depth of each region once and rejects by it alone (Section 5.3).
+    /// A processor asks for the farthest depth of each region once and rejects by it alone (Section 5.3).
     pub farthest_first: bool,
     /// Ticks to transform a primitive.
     pub transform: u32,
@@ -59,6 +78,8 @@ impl Default for Machine {
             // be available at once, static allocation is "the only solution".
             distribution: Distribution::default(),
             allocation: Allocation::default(),
+            // Section 5.1: "the triangles composing the bounding box".
+            query: Volume::default(),
             // Section 5.3: to go on while answers are on their way, and the greatest depth of a region.
             overlap: true,
             farthest_first: true,
@@ -90,20 +111,29 @@ impl Machine {
         let distribution = Knob::new(
             "distribution",
             "",
-            "what a processor of the simulated machine gets: structures dealt finely (hybrid), whole parts \
-             of the scene (structure), or a part of every structure (primitive)",
+            "what a processor of the simulated machine gets: structures in turn, of which it queries several \
+             at once (hybrid), structures in turn (structure), a part of every structure (primitive), or, not \
+             in the paper, whole parts of the scene (subtree)",
             "Georges 1995, Section 4.1",
         );
         knobs.words(distribution, &mut self.distribution);
         let allocation = Knob::new(
             "allocation",
             "",
-            "static: every region has its renderer all the time; dynamic: the busiest regions first, the \
-             others when a renderer is free",
+            "static: every region has its renderer all the time; dynamic: a renderer holds one region, the \
+             busiest first, and takes the next when it is free",
             five,
         );
         knobs.words(allocation, &mut self.allocation);
         let source = "Georges 1995, Section 5.3";
+        let query = Knob::new(
+            "query",
+            "",
+            "how a structure is asked for: by the triangles of its box, or by the sphere around it, which is \
+             one expression",
+            source,
+        );
+        knobs.words(query, &mut self.query);
         let overlap = Knob::new(
             "overlap-queries",
             "",
@@ -114,7 +144,8 @@ impl Machine {
         let shortcut = Knob::new(
             "farthest-shortcut",
             "",
-            "a simulated processor first compares a box with the farthest depth of each region",
+            "a simulated processor asks for the farthest depth of each region and first compares boxes with \
+             these",
             source,
         );
         knobs.switch(shortcut, &mut self.farthest_first);
@@ -144,6 +175,16 @@ impl Machine {
     }
 }
 
+impl Machine {
+    /// Ticks in which a processor transforms what stands for a structure.
+    pub fn volume_cost(&self) -> u32 {
+        match self.query {
+            Volume::Faces => ticks(self.transform, BOX_PRIMS),
+            Volume::Sphere => self.transform,
+        }
+    }
+}
+
 /// Ticks of some operations, as many as fit.
 pub(super) fn ticks(each: u32, count: usize) -> u32 {
     // What does not fit costs the most there is: wrapped around, it would cost little.
@@ -164,14 +205,20 @@ pub(crate) enum Job {
     DrawVisible,
     /// A processor transformed a structure that an answer let through.
     DrawFound,
-    /// A processor transformed a box and sent it out.
+    /// A processor transformed the box of a structure from its invisible list, to query it.
     Ask,
-    /// A processor had nothing to do but wait for answers.
+    /// The same of one from its visible list, to check it against the finished image.
+    Recheck,
+    /// A processor asked all renderers for the farthest depths.
+    AskFarthest,
+    /// A processor had nothing to do but wait for replies.
     Wait,
     /// A renderer rasterized a structure's part in a region.
     Rasterize,
     /// A renderer answered for a box.
     Answer,
+    /// A renderer found the farthest depths of the regions it holds.
+    Farthest,
 }
 
 /// A stretch of work.
@@ -182,11 +229,12 @@ pub(crate) struct Worked {
     /// First tick and the one past the last.
     pub from: u32,
     pub to: u32,
-    /// The structure's cube; the root while waiting.
+    /// The structure's cube; the root where the work is of no one structure.
     pub node: NodeId,
-    /// The region, for renderers.
+    /// The region, for renderers that draw or answer.
     pub region: u32,
-    /// Primitives, or whether the renderer saw any pixel left on.
+    /// Primitives, structures that are queried at once, whether a renderer saw any pixel left on, or regions
+    /// whose farthest depths it found.
     pub count: u32,
 }
 
@@ -202,13 +250,18 @@ impl Unit {
 
 impl Worked {
     pub(super) fn subject(&self) -> Subject {
-        // A processor waits for no one structure: its node is a placeholder.
-        if self.job == Job::Wait { Subject::None } else { Subject::Node(self.node) }
+        match self.job {
+            // Of no one structure: the node is a placeholder.
+            Job::Wait | Job::AskFarthest | Job::Farthest => Subject::None,
+            _ => Subject::Node(self.node),
+        }
     }
     pub(super) fn tally(&self, tally: &mut Tally) {
         let (busy, ticks) = match self.job {
             Job::DrawVisible | Job::DrawFound => ("structures_drawn", "ticks_transforming"),
-            Job::Ask => ("boxes_sent", "ticks_asking"),
+            Job::Ask => ("boxes_transformed", "ticks_asking"),
+            Job::Recheck => ("boxes_rechecked", "ticks_rechecking"),
+            Job::AskFarthest | Job::Farthest => ("farthest_depths_jobs", "ticks_for_farthest_depths"),
             Job::Wait => ("waits", "ticks_waiting"),
             Job::Rasterize => ("rasterizations", "ticks_rasterizing"),
             Job::Answer => ("answers", "ticks_answering"),
@@ -222,40 +275,63 @@ impl Worked {
         match self.job {
             Job::DrawVisible => "VisibleDrawn",
             Job::DrawFound => "FoundDrawn",
-            Job::Ask => "BoxSent",
+            Job::Ask => "BoxTransformed",
+            Job::Recheck => "BoxRechecked",
+            Job::AskFarthest => "FarthestAsked",
             Job::Wait => "Waited",
             Job::Rasterize => "RegionRasterized",
             Job::Answer => "RegionAnswered",
+            Job::Farthest => "FarthestFound",
         }
     }
     pub(super) fn fields(&self) -> Vec<Field> {
-        vec![
-            Field { name: "unit", value: Value::Word(self.unit.name()) },
-            integer("node", self.node.0),
-            // Ticks, not seconds: the paper gives no costs, so only proportions mean anything.
-            integer("from_ticks", self.from),
-            integer("to_ticks", self.to),
-            // 0 for processors, which have no region.
-            integer("region", self.region),
-            integer("count", self.count),
-        ]
+        let of = match self.subject() {
+            Subject::Node(node) => Some(integer("node", node.0)),
+            _ => None,
+        };
+        // Only renderers have regions; while waiting nothing is counted.
+        let region = match self.job {
+            Job::Rasterize | Job::Answer => Some(integer("region", self.region)),
+            _ => None,
+        };
+        let count = match self.job {
+            Job::DrawVisible | Job::DrawFound | Job::Rasterize => Some(integer("prims", self.count)),
+            Job::Ask => Some(integer("structures", self.count)),
+            Job::Farthest => Some(integer("regions", self.count)),
+            Job::Answer => Some(Field { name: "seen", value: Value::Switch(self.count > 0) }),
+            Job::Recheck | Job::AskFarthest | Job::Wait => None,
+        };
+        let mut fields = vec![Field { name: "unit", value: Value::Word(self.unit.name()) }];
+        fields.extend(of);
+        // Ticks, not seconds: the paper gives no costs, so only proportions mean anything.
+        fields.extend([integer("from_ticks", self.from), integer("to_ticks", self.to)]);
+        fields.extend(region.into_iter().chain(count));
+        fields
     }
     pub(super) fn sentence(&self) -> String {
         let (who, node, count, region) = (self.unit.name(), self.node, self.count, self.region);
+        let prims = if count == 1 { "1 primitive".to_owned() } else { format!("{count} primitives") };
         let what = match self.job {
             Job::DrawVisible => format!(
-                "transforms and sends out node {node}, which is on its visible list: {count} primitives"
+                "transforms and sends out node {node}, which is on its visible list: {prims}"
             ),
             Job::DrawFound => {
-                format!("transforms and sends out node {node}, which a renderer saw: {count} primitives")
+                format!("transforms and sends out node {node}, which may be seen: {prims}")
             }
             // Section 4.1: a processor "can recombine its own allotment into a tree hierarchy".
             Job::Ask if count > 1 => {
-                format!("asks for the box of node {node}, for {count} of its structures at once")
+                format!("transforms the box of node {node}, to query {count} of its structures at once")
             }
-            Job::Ask => format!("asks for the box of node {node}"),
-            Job::Wait => "waits for answers".into(),
-            Job::Rasterize => format!("rasterizes {count} primitives of node {node} in region {region}"),
+            Job::Ask => format!("transforms the box of node {node}, to query it"),
+            Job::Recheck => {
+                format!("transforms the box of node {node}, to check it against the finished image")
+            }
+            Job::AskFarthest => "asks all renderers for the farthest depths of their regions".into(),
+            Job::Farthest if count == 0 => "holds no region, so it has no farthest depth".into(),
+            Job::Farthest if count == 1 => "finds the farthest depth of its region".into(),
+            Job::Farthest => format!("finds the farthest depth of each of its {count} regions"),
+            Job::Wait => "waits for replies".into(),
+            Job::Rasterize => format!("rasterizes {prims} of node {node} in region {region}"),
             // Section 5: the flag "called the 'All Enables Off', or AEO bit".
             Job::Answer if count == 0 => format!(
                 "answers for the box of node {node} in region {region}: all enables off, nothing of it shows"

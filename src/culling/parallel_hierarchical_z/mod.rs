@@ -5,18 +5,23 @@
 //! A structure is a bounding volume and its geometry: here a cube of an octree and what it holds itself. A
 //! frame ([`simulation`]):
 //!
-//! 1. structures are dealt out to processors (Section 4.1, [`dealing`]);
+//! 1. structures are dealt out to processors, once (Section 4.1, [`dealing`]);
 //! 2. regions of 128 × 128 pixels are given to renderers (Section 5.1, [`screen`]);
 //! 3. each processor draws its visible structures by decreasing area on the screen, then queries its
 //!    invisible ones by increasing number of primitives (Sections 4.2 and 5.1); meanwhile each renderer
 //!    rasterizes what arrives, and answers for a box with whether any pixel of a region is left on (the
 //!    all-enables-off bit);
-//! 4. every n frames all visible structures are checked against the finished image (Sections 4.2 and 5.1).
+//! 4. every n frames, or early, each processor checks its visible structures against the finished image
+//!    (Sections 4.2 and 5.1).
 //!
 //! Departures: the cost of an operation is a parameter, not that of a Pixel-Planes 5; a processor of the
 //! hybrid distribution first queries the cube above several of its invisible structures (the paper leaves
-//! open how it recombines its allotment into a tree); with dynamic allocation a region that no renderer holds
-//! counts as seen, since it cannot be queried. Cost: O(jobs · log jobs) beside what is drawn and queried.
+//! open how it recombines its allotment into a tree); what is out of view is left out before the machine
+//! begins, whole cubes at a time; marks of shared primitives are known to all processors at once, as on a
+//! machine with shared memory; with dynamic allocation a renderer that is free gives its region up for the
+//! next one (on the machine a region is finished when all its primitives are known), and a region that no
+//! renderer holds counts as seen, since it cannot be queried; a sphere is compared by its screen rectangle.
+//! Cost: O(jobs · log jobs) beside what is drawn and queried.
 
 mod dealing;
 mod evidence;
@@ -73,32 +78,44 @@ impl Default for Params {
 const CODE: &[CodeLine] = &[
     // Section 4.1 for the structures, Section 5.1 for the regions.
     CodeLine::new("Frame:1", "Frame(structures, processors, renderers)"),
-    CodeLine::new("Frame:2", "  deal the structures in view out to the processors"),
-    CodeLine::new("Frame:3", "  give the regions of the screen to the renderers"),
-    CodeLine::new("Frame:4", "  all at once: Process(its lists), Render(its regions)"),
+    CodeLine::new("Frame:2", "  in the first frame: deal the structures out to the processors"),
+    CodeLine::new("Frame:3", "  leave out the structures outside the view"),
+    CodeLine::new("Frame:4", "  give the regions of the screen to the renderers"),
+    CodeLine::new("Frame:5", "  all at once: Process(its lists), Render(its regions)"),
+    CodeLine::new("Frame:6", "  a shared primitive that no structure drew is hidden"),
     // Sections 4.2 and 5.1: not in every frame, since a test may take communication.
-    CodeLine::new("Frame:5", "  every n frames, for each C on a visible list"),
-    CodeLine::new("Frame:6", "    if no pixel shows the box of C, C is invisible"),
+    CodeLine::new("Check:1", "Check(visible list V), when the image is finished"),
+    CodeLine::new("Check:2", "  ask the renderers for the farthest depths"),
+    CodeLine::new("Check:3", "  if n frames passed, many structures are new on V or the farthest depth shifted"),
+    CodeLine::new("Check:4", "    for each C of V in view: send its box to its regions"),
+    CodeLine::new("Check:5", "      when all have answered: move C to the invisible list, unless one saw it"),
     // Section 5.1, in the orders of Section 4.2. Section 5.3 adds the farthest depths, and that a processor
     // goes on while it waits.
     CodeLine::new("Process:1", "Process(visible list V, invisible list I)"),
     CodeLine::new("Process:2", "  for each C of V, by decreasing area on the screen"),
     CodeLine::new("Process:3", "    Draw(C)"),
-    CodeLine::new("Process:4", "  for each C of I, by increasing number of primitives"),
-    CodeLine::new("Process:5", "    if its box crosses the near plane: C is visible"),
-    CodeLine::new("Process:6", "    else if behind the farthest depth of its regions: skip C"),
-    CodeLine::new("Process:7", "    else send its box to its regions; go on meanwhile"),
-    CodeLine::new("Process:8", "  when all regions of C have answered: skip C, unless one saw it"),
-    CodeLine::new("Process:9", "    then move C to V; Draw(C)"),
+    CodeLine::new("Process:4", "  ask the renderers for the farthest depths"),
+    CodeLine::new("Process:5", "  for each C of I, by increasing number of primitives"),
+    CodeLine::new("Process:6", "    if its box crosses the near plane: C is visible"),
+    CodeLine::new("Process:7", "    else if its box covers no pixel: skip C"),
+    CodeLine::new("Process:8", "    else if behind the farthest depth of its regions: skip C"),
+    CodeLine::new("Process:9", "    else if no renderer holds one of its regions: C is visible"),
+    CodeLine::new("Process:10", "    else send its box to its regions"),
+    CodeLine::new("Process:11", "  when all regions of C have answered: skip C, unless one saw it"),
+    CodeLine::new("Process:12", "    then move C to V; Draw(C)"),
+    CodeLine::new("Process:13", "  wait while only answers are to come"),
     // Section 5: processors transform, renderers rasterize.
     CodeLine::new("Draw:1", "Draw(structure C)"),
-    CodeLine::new("Draw:2", "  transform its primitives; send each to its regions"),
+    CodeLine::new("Draw:2", "  for each primitive p of C that is not drawn yet"),
+    CodeLine::new("Draw:3", "    if p faces away: skip it"),
+    CodeLine::new("Draw:4", "    transform p; send it to its regions"),
     // Sections 5 and 5.1: whether a pixel is left on is the all-enables-off bit after a box was rasterized
     // without being written.
     CodeLine::new("Render:1", "Render(regions), for each message in order of arrival"),
     CodeLine::new("Render:2", "  primitives: rasterize them"),
     CodeLine::new("Render:3", "  a box: compare its faces with the depths drawn so far"),
     CodeLine::new("Render:4", "    answer whether any pixel is left on"),
+    CodeLine::new("Render:5", "  asked for the farthest depths: answer with those of its regions"),
 ];
 
 /// Lines of [`CODE`] that the run reaches.
@@ -106,18 +123,30 @@ mod line {
     use super::CODE;
     use crate::method::line;
     pub const DEAL: u8 = line(CODE, "Frame:2");
-    pub const ALLOCATE: u8 = line(CODE, "Frame:3");
-    pub const CHECK: u8 = line(CODE, "Frame:6");
+    pub const OUTSIDE: u8 = line(CODE, "Frame:3");
+    pub const ALLOCATE: u8 = line(CODE, "Frame:4");
+    pub const UNSEEN: u8 = line(CODE, "Frame:6");
+    pub const CHECK_FARTHEST: u8 = line(CODE, "Check:2");
+    pub const CHECK: u8 = line(CODE, "Check:3");
+    pub const TAKE_LISTED: u8 = line(CODE, "Check:4");
+    pub const UNLIST: u8 = line(CODE, "Check:5");
     pub const DRAW_VISIBLE: u8 = line(CODE, "Process:3");
-    pub const NEAR: u8 = line(CODE, "Process:5");
-    pub const FARTHEST: u8 = line(CODE, "Process:6");
-    pub const SEND_BOX: u8 = line(CODE, "Process:7");
-    pub const DECIDE: u8 = line(CODE, "Process:8");
-    pub const DRAW_FOUND: u8 = line(CODE, "Process:9");
-    pub const TRANSFORM: u8 = line(CODE, "Draw:2");
+    pub const ASK_FARTHEST: u8 = line(CODE, "Process:4");
+    pub const TAKE: u8 = line(CODE, "Process:5");
+    pub const NEAR: u8 = line(CODE, "Process:6");
+    pub const NO_PIXEL: u8 = line(CODE, "Process:7");
+    pub const FARTHEST: u8 = line(CODE, "Process:8");
+    pub const UNHELD: u8 = line(CODE, "Process:9");
+    pub const SEND_BOX: u8 = line(CODE, "Process:10");
+    pub const DECIDE: u8 = line(CODE, "Process:11");
+    pub const DRAW_FOUND: u8 = line(CODE, "Process:12");
+    pub const WAIT: u8 = line(CODE, "Process:13");
+    pub const FACES_AWAY: u8 = line(CODE, "Draw:3");
+    pub const TRANSFORM: u8 = line(CODE, "Draw:4");
     pub const RASTERIZE: u8 = line(CODE, "Render:2");
     pub const COMPARE: u8 = line(CODE, "Render:3");
     pub const ANSWER: u8 = line(CODE, "Render:4");
+    pub const FIND_FARTHEST: u8 = line(CODE, "Render:5");
 }
 
 /// What is kept from frame to frame.
@@ -243,7 +272,8 @@ fn lists<S: Faces>(notes: &[Evidence<S>]) -> Drawing {
                 lists.drawn.push((*node, "passed its test"))
             }
             Evidence::Depth(DepthNote::Answered(a)) => lists.query(a),
-            Evidence::Cube(CubeNote::Unlisted(node)) => lists.unlisted.push(*node),
+            Evidence::Cube(CubeNote::Checked(_)) => lists.is_checking = true,
+            Evidence::Cube(CubeNote::Unlisted { node, .. }) => lists.unlisted.push(*node),
             _ => {}
         }
     }

@@ -1,4 +1,4 @@
-//! The screen of the machine: regions of pixels, their queues of messages, and the renderers that hold them.
+//! The screen of the machine: regions of pixels, the renderers that hold them, and their queues of messages.
 
 use std::cmp::Reverse;
 use std::collections::VecDeque;
@@ -18,11 +18,21 @@ pub(super) struct Screen {
     width: u32,
     height: u32,
     columns: u32,
-    /// Messages of each region, by number, in the order of arrival.
-    queues: Vec<VecDeque<usize>>,
+    allocation: Allocation,
+    /// Messages of each region that no renderer holds, in the order of arrival.
+    waiting: Vec<VecDeque<usize>>,
     /// The renderer that holds each region.
     holder: Vec<Option<u16>>,
-    busy: Vec<bool>,
+    /// Primitives that each region received in the last frame.
+    load: Vec<u32>,
+    renderers: Vec<Renderer>,
+}
+
+#[derive(Clone, Default)]
+struct Renderer {
+    /// Messages for it, of all regions that it holds, in the order of arrival.
+    queue: VecDeque<usize>,
+    is_busy: bool,
 }
 
 impl Screen {
@@ -34,30 +44,42 @@ impl Screen {
         let renderers = machine.renderers as usize;
         // Loads only order the regions, so those of a window of another size do no harm.
         load.resize(regions, 0);
-        // Section 5.1, static: "the only solution is to have the renderers work on several regions at once".
-        let mut holder: Vec<_> = (0..regions).map(|r| Some((r % renderers) as u16)).collect();
-        if machine.allocation == Allocation::Dynamic {
-            // Section 5.1, dynamic: "the regions that received the most primitives last frame are assigned
-            // renderers first". Equal ones go by number, so that every run is the same.
-            holder.fill(None);
-            let mut busiest: Vec<usize> = (0..regions).collect();
-            busiest.sort_by_key(|&r| (Reverse(load[r]), r));
-            for (renderer, region) in busiest.into_iter().take(renderers).enumerate() {
-                holder[region] = Some(renderer as u16);
-            }
-        }
-        Self {
+        let mut screen = Self {
             width,
             height,
             columns,
-            queues: vec![VecDeque::new(); regions],
-            holder,
-            busy: vec![false; renderers],
+            allocation: machine.allocation,
+            waiting: vec![VecDeque::new(); regions],
+            // Section 5.1, static: "the only solution is to have the renderers work on several regions at
+            // once".
+            holder: (0..regions).map(|r| Some((r % renderers) as u16)).collect(),
+            load: std::mem::take(load),
+            renderers: vec![Renderer::default(); renderers],
+        };
+        *load = vec![0; regions];
+        if screen.allocation == Allocation::Dynamic {
+            // Section 5.1, dynamic: "the regions that received the most primitives last frame are assigned
+            // renderers first".
+            screen.holder.fill(None);
+            let mut busiest: Vec<usize> = (0..regions).collect();
+            busiest.sort_by_key(|&r| screen.turn(r));
+            for (renderer, region) in busiest.into_iter().take(renderers).enumerate() {
+                screen.holder[region] = Some(renderer as u16);
+            }
         }
+        screen
+    }
+    /// Regions by turn: the busiest first; equal ones by number, so that every run is the same.
+    fn turn(&self, region: usize) -> (Reverse<u32>, usize) {
+        (Reverse(self.load[region]), region)
     }
     /// How many regions there are.
     pub fn count(&self) -> usize {
-        self.queues.len()
+        self.holder.len()
+    }
+    /// How many renderers there are.
+    pub fn renderers(&self) -> u16 {
+        self.renderers.len() as u16
     }
     /// The pixels of a region.
     pub fn window(&self, region: u32) -> PixelRect {
@@ -84,41 +106,94 @@ impl Screen {
     pub fn is_held(&self, region: u32) -> bool {
         self.holder[region as usize].is_some()
     }
-    /// Queues a message; returns the renderer that holds the region, if any does.
-    pub fn arrive(&mut self, region: u32, message: usize) -> Option<u16> {
-        self.queues[region as usize].push_back(message);
-        self.holder[region as usize]
+    /// The regions that a renderer holds.
+    pub fn held_by(&self, renderer: u16) -> Vec<u32> {
+        (0..self.count() as u32).filter(|&r| self.holder[r as usize] == Some(renderer)).collect()
     }
-    /// The oldest message of the regions that a free renderer holds, with its region. The renderer is then
-    /// busy.
-    pub fn begin(&mut self, renderer: u16) -> Option<(usize, u32)> {
-        if self.busy[renderer as usize] {
+    /// Queues a message for a region; returns the renderer that may begin with it: the one that holds the
+    /// region, or one that is free to take it.
+    pub fn arrive(&mut self, region: u32, message: usize) -> Option<u16> {
+        if let Some(renderer) = self.holder[region as usize] {
+            self.arrive_at(renderer, message);
+            return Some(renderer);
+        }
+        self.waiting[region as usize].push_back(message);
+        self.renderers.iter().position(|r| !r.is_busy && r.queue.is_empty()).map(|r| r as u16)
+    }
+    /// Queues a message for a renderer, whatever it holds.
+    pub fn arrive_at(&mut self, renderer: u16, message: usize) {
+        self.renderers[renderer as usize].queue.push_back(message);
+    }
+    /// The oldest message for a renderer that is free, if there is one. The renderer is then busy.
+    pub fn begin(&mut self, renderer: u16) -> Option<usize> {
+        let r = renderer as usize;
+        if self.renderers[r].is_busy {
             return None;
         }
-        // In a region messages go as they arrived; between regions the one that was made first.
-        let held = (0..self.queues.len()).filter(|&k| self.holder[k] == Some(renderer));
-        let (message, region) = held.filter_map(|k| Some((*self.queues[k].front()?, k))).min()?;
-        self.queues[region].pop_front();
-        self.busy[renderer as usize] = true;
-        Some((message, region as u32))
+        if self.renderers[r].queue.is_empty() && self.allocation == Allocation::Dynamic {
+            self.take_next(renderer);
+        }
+        let message = self.renderers[r].queue.pop_front()?;
+        self.renderers[r].is_busy = true;
+        Some(message)
+    }
+    /// Section 5.1, dynamic: "when a renderer finishes it is assigned the next available region", one at a
+    /// time.
+    fn take_next(&mut self, renderer: u16) {
+        // A region that nothing was sent to needs no renderer.
+        let available = (0..self.count()).filter(|&r| self.holder[r].is_none() && !self.waiting[r].is_empty());
+        let Some(next) = available.min_by_key(|&r| self.turn(r)) else { return };
+        self.holder.iter_mut().filter(|h| **h == Some(renderer)).for_each(|h| *h = None);
+        self.holder[next] = Some(renderer);
+        self.renderers[renderer as usize].queue = std::mem::take(&mut self.waiting[next]);
     }
     /// The renderer is free again.
     pub fn end(&mut self, renderer: u16) {
-        self.busy[renderer as usize] = false;
+        self.renderers[renderer as usize].is_busy = false;
     }
-    /// Dynamic allocation, when all else is done: regions with messages that no renderer holds go to the
-    /// renderers in turn. Returns these.
-    pub fn release(&mut self) -> Vec<u16> {
-        let renderers = self.busy.len();
-        let free: Vec<usize> = (0..self.queues.len())
-            // A region that nothing was sent to needs no renderer.
-            .filter(|&r| self.holder[r].is_none() && !self.queues[r].is_empty())
-            .collect();
-        let turn = free.into_iter().enumerate().map(|(k, region)| {
-            let renderer = (k % renderers) as u16;
-            self.holder[region] = Some(renderer);
-            renderer
-        });
-        turn.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn screen(allocation: Allocation, renderers: u32, load: &[u32]) -> Screen {
+        let machine = Machine { renderers, allocation, ..Machine::default() };
+        Screen::new(128 * load.len() as u32, 100, &machine, &mut load.to_vec())
+    }
+
+    /// Messages of several regions go in the order of arrival, not of their numbers.
+    #[test]
+    fn a_renderer_takes_messages_as_they_arrive() {
+        let mut screen = screen(Allocation::Static, 1, &[0, 0, 0]);
+        for (region, message) in [(2, 7), (0, 3), (2, 1), (1, 0)] {
+            assert_eq!(screen.arrive(region, message), Some(0));
+        }
+        let mut taken = Vec::new();
+        while let Some(message) = screen.begin(0) {
+            assert_eq!(screen.begin(0), None, "busy");
+            taken.push(message);
+            screen.end(0);
+        }
+        assert_eq!(taken, [7, 3, 1, 0]);
+    }
+
+    /// The busiest region is held first; the others are taken by turn as soon as the renderer is free.
+    #[test]
+    fn a_free_renderer_takes_the_next_busiest_region() {
+        let mut screen = screen(Allocation::Dynamic, 1, &[5, 9, 2, 5]);
+        assert_eq!([0, 1, 2, 3].map(|r| screen.is_held(r)), [false, true, false, false]);
+        assert_eq!(screen.arrive(2, 0), Some(0), "free to take it");
+        assert_eq!((screen.begin(0), screen.held_by(0)), (Some(0), vec![2]), "one region at a time");
+        for (region, message) in [(3, 1), (1, 2), (0, 3), (2, 4), (3, 5)] {
+            assert_eq!(screen.arrive(region, message), (region == 2).then_some(0), "busy");
+        }
+        let mut taken = Vec::new();
+        screen.end(0);
+        while let Some(message) = screen.begin(0) {
+            taken.push((message, screen.held_by(0)[0]));
+            screen.end(0);
+        }
+        assert_eq!(taken, [(4, 2), (2, 1), (3, 0), (1, 3), (5, 3)]);
     }
 }

@@ -7,14 +7,15 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use super::dealing::{Dealer, Processor, Structure, group_of};
+use super::dealing::{Allotment, Processor, dealt, group_of};
 use super::evidence::Evidence;
-use super::machine::{Job, Machine, Unit, Worked, ticks};
+use super::machine::{Job, Machine, Unit, Volume, Worked, ticks};
 use super::screen::Screen;
 use super::{Params, line};
-use crate::culling::cubes::CubeNote;
+use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, Buffer, DepthNote, Faces, Query, QueryReporter, Rasterized, Step, footprint,
+    Answer, Answered, Buffer, DepthNote, FaceImage, Faces, Ground, Query, QueryReporter, Rasterized, Step,
+    footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
@@ -27,37 +28,38 @@ use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::{Options, PyramidCell};
 use crate::scene::Scene;
 
-/// Triangles of a box, which a processor transforms to query it.
-const BOX_PRIMS: usize = 12;
-
 /// What the machine keeps from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lists {
-    /// For each processor the structures that were visible, as marks on the tree.
-    visible: Vec<Vec<bool>>,
-    /// Primitives that each region received.
+    /// What each processor has; none before the first frame.
+    allotments: Vec<Allotment>,
+    /// Primitives that each region received in the last frame.
     load: Vec<u32>,
-    /// Frames since the last check.
-    frames: u32,
 }
 
 /// A message to a renderer.
 #[derive(Clone, Debug)]
 enum Message {
-    Draw { node: NodeId, prims: Vec<PrimId> },
-    Ask { question: usize },
+    /// Primitives of a structure for a region.
+    Draw { region: u32, node: NodeId, prims: Vec<PrimId> },
+    /// A box for a region.
+    Ask { region: u32, question: usize },
+    /// Asks a renderer, for a processor, for the farthest depths of its regions.
+    Farthest { renderer: u16, processor: u16 },
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum What {
     /// A processor is free.
     Free(u16),
-    /// Message `1` arrives for region `0`.
-    Arrives(u32, usize),
-    /// A renderer is done with a message for a region.
-    Done(u16, u32, usize),
+    /// A message arrives.
+    Arrives(usize),
+    /// A renderer is done with a message.
+    Done(u16, usize),
     /// An answer arrives.
     Answered(usize, bool),
+    /// Farthest depths arrive: the number of the reply.
+    Told(usize),
 }
 
 /// A box that was sent out.
@@ -65,6 +67,8 @@ struct Question<S: Faces> {
     processor: u16,
     /// The structures that it decides, as the processor numbers them.
     structures: Vec<usize>,
+    /// Whether they are on the visible list and checked against the finished image.
+    is_check: bool,
     node: NodeId,
     bounds: Aabb<S::Vector>,
     image: BoxImage,
@@ -73,6 +77,12 @@ struct Question<S: Faces> {
     /// Whether any of them reported that something is left on.
     is_seen: bool,
     answer: Answer,
+}
+
+/// Farthest depths of regions, for a processor.
+struct Reply {
+    processor: u16,
+    farthest: Vec<(u32, f32)>,
 }
 
 /// One frame of the machine.
@@ -90,10 +100,18 @@ pub(super) struct Simulation<'a, S: Faces, O> {
     watch: &'a mut O,
     /// Shared primitives that were drawn, by id.
     drawn: Vec<bool>,
+    /// Nodes whose structure is out of view, and those that are so with all below them.
+    outside: Vec<bool>,
+    wholly_outside: Vec<bool>,
     processors: Vec<Processor>,
     screen: Screen,
+    /// The farthest depth of each region, if nothing was drawn in it since it was found.
+    farthest: Vec<Option<f32>>,
     questions: Vec<Question<S>>,
     messages: Vec<Message>,
+    replies: Vec<Reply>,
+    /// Whether the image is finished and visible lists are checked.
+    is_checking: bool,
     /// What happens at which tick; the second number keeps the order in which events were made.
     events: BinaryHeap<Reverse<(u32, u64, What)>>,
     made: u64,
@@ -110,6 +128,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         watch: &'a mut O,
     ) -> Self {
         let Frame { index, scene, view, params, .. } = *frame;
+        let nodes = index.nodes().len();
         Self {
             index,
             scene,
@@ -123,10 +142,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             out,
             watch,
             drawn: vec![false; scene.prim_count()],
+            outside: vec![false; nodes],
+            wholly_outside: vec![false; nodes],
             processors: Vec::new(),
             screen: Screen::default(),
+            farthest: vec![],
             questions: vec![],
             messages: vec![],
+            replies: vec![],
+            is_checking: false,
             events: BinaryHeap::new(),
             made: 0,
             now: 0,
@@ -137,93 +161,115 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     pub fn run(mut self) {
         self.watch.stage("simulate");
         // 1. Section 4.1.
-        self.distribute();
+        self.deal();
+        self.leave_out();
+        self.sort();
         // 2. Section 5.1. Memory of the last frame decides only where the allocation is dynamic.
         self.watch.event(Event::Line(line::ALLOCATE));
         let View { width, height, .. } = *self.view;
         self.screen = Screen::new(width, height, self.machine, &mut self.lists.load);
-        self.lists.load.fill(0);
+        self.farthest = vec![None; self.screen.count()];
         // 3. Every processor begins on its own; "the visible and invisible stages of rendering will not be
         // synchronized among the processors" (Section 4.2).
         for p in 0..self.processors.len() {
             self.after(0, What::Free(p as u16));
         }
+        self.simulate();
+        self.report_unseen();
+        // 4. Sections 4.2 and 5.1. Without coherence every structure is queried anew in each frame.
+        if self.params.coherence {
+            self.watch.stage("check");
+            self.check();
+        }
+    }
+    /// Takes events until nothing is left to happen.
+    fn simulate(&mut self) {
         while let Some(Reverse((now, _, what))) = self.events.pop() {
             self.now = now;
             match what {
                 What::Free(p) => self.next_of_processor(p),
-                What::Arrives(region, message) => {
-                    if let Some(r) = self.screen.arrive(region, message) {
-                        self.next_of_renderer(r);
-                    }
-                }
-                What::Done(r, region, message) => self.done(r, region, message),
+                What::Arrives(message) => self.arrives(message),
+                What::Done(r, message) => self.done(r, message),
                 What::Answered(question, is_seen) => self.answered(question, is_seen),
-            }
-            // Section 5.1, dynamic allocation: "when a renderer finishes it is assigned the next available
-            // region".
-            if self.events.is_empty() {
-                self.screen.release().into_iter().for_each(|r| self.next_of_renderer(r));
+                What::Told(reply) => self.told(reply),
             }
         }
-        self.report_unseen();
-        // 4. Sections 4.2 and 5.1.
-        self.watch.stage("check");
-        self.check();
     }
     fn after(&mut self, ticks: u32, what: What) {
         self.made += 1;
         self.events.push(Reverse((self.now.saturating_add(ticks), self.made, what)));
     }
-    /// A unit works from now on, for so many ticks.
+    /// A processor works from now on, for so many ticks.
     fn works(&mut self, p: u16, job: Job, cost: u32, node: NodeId, count: usize) {
         let (from, to) = (self.now, self.now.saturating_add(cost));
         let (unit, count) = (Unit::Processor(p), count as u32);
         self.watch.note(move || Evidence::Worked(Worked { unit, job, from, to, node, region: 0, count }));
     }
+    /// A renderer has worked until now, for so many ticks.
+    fn has_worked(&mut self, r: u16, job: Job, cost: u32, node: NodeId, region: u32, count: usize) {
+        let (from, to) = (self.now.saturating_sub(cost), self.now);
+        let (unit, count) = (Unit::Renderer(r), count as u32);
+        self.watch.note(move || Evidence::Worked(Worked { unit, job, from, to, node, region, count }));
+    }
 
-    /// Deals the structures in view out and sorts each processor's lists (Sections 4.1 and 4.2).
-    fn distribute(&mut self) {
-        self.watch.event(Event::Line(line::DEAL));
-        let (count, nodes) = (self.machine.processors as usize, self.index.nodes().len());
-        // Marks stay where processors or nodes became more: these begin as invisible (Section 5.1).
-        self.lists.visible.resize(count, vec![]);
-        self.lists.visible.iter_mut().for_each(|v| v.resize(nodes, false));
+    /// Deals the structures out, once (Section 4.1). All begin as invisible (Section 5.1).
+    fn deal(&mut self) {
+        let count = self.machine.processors as usize;
+        if self.lists.allotments.is_empty() {
+            self.watch.event(Event::Line(line::DEAL));
+            self.lists.allotments = dealt(self.index, self.machine.distribution, count);
+        }
         if !self.params.coherence {
-            self.lists.visible.iter_mut().for_each(|v| v.fill(false));
+            let structures = self.lists.allotments.iter_mut().flat_map(|a| &mut a.structures);
+            structures.for_each(|s| s.is_listed = false);
         }
         self.processors.resize_with(count, Processor::default);
-        let mut dealer = Dealer::new(self.machine.distribution);
-        for at in 0..nodes {
+    }
+    /// Leaves out what is out of view: cubes with all below them, and structures of cubes that are not. They
+    /// keep their places on the lists (Section 5.1): what leaves the view by turning is mostly still visible
+    /// when the view turns back.
+    fn leave_out(&mut self) {
+        let all = Frustum::<S::Vector>::ALL;
+        for at in 0..self.index.nodes().len() {
             let node = NodeId(at as u32);
-            dealer.enter(self.index.nodes()[at].level);
-            let held = self.index.own(node).iter().chain(self.index.shared(node));
-            let prims: Vec<PrimId> = held.copied().collect();
-            if !prims.is_empty() && !self.is_outside(node) {
-                dealer.deal(node, prims, &mut self.processors);
+            if self.index.parent_of(node).is_some_and(|parent| self.wholly_outside[parent.at()]) {
+                (self.outside[at], self.wholly_outside[at]) = (true, true);
+                continue;
             }
-        }
-        for (processor, visible) in self.processors.iter_mut().zip(&self.lists.visible) {
-            processor.sort(dealer.distribution, visible, self.index, self.view, &self.projection);
+            let n = &self.index.nodes()[at];
+            let test = self.frustum.test(&n.bounds, all);
+            if matches!(test, FrustumTest::Outside(_)) {
+                (self.outside[at], self.wholly_outside[at]) = (true, true);
+                self.watch.event(Event::Entered(node));
+                self.watch.event(Event::Line(line::OUTSIDE));
+                let bounds = &n.bounds;
+                self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node), bounds, all, test)));
+                self.watch.event(Event::DecidedNode(node, Verdict::Outside));
+                self.watch.event(Event::Left(node));
+                continue;
+            }
+            let (held, own) = (&n.held, self.index.own(node));
+            let test = self.frustum.test(held, all);
+            // Also where it is empty: then nobody has such a structure.
+            if matches!(test, FrustumTest::Outside(_)) {
+                self.outside[at] = true;
+                self.watch.event(Event::Line(line::OUTSIDE));
+                for &prim in own {
+                    // Of each primitive, not of the node: what lies below it are other structures.
+                    let subject = Subject::Prim(prim);
+                    self.watch.note(move || Evidence::Tested(Tested::of(subject, held, all, test)));
+                    self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+                }
+            }
         }
     }
-    /// Whether a structure is out of view. It keeps its place on the lists (Section 5.1): what leaves the
-    /// view by turning is mostly still visible when the view turns back.
-    fn is_outside(&mut self, node: NodeId) -> bool {
-        let (all, held) = (Frustum::<S::Vector>::ALL, &self.index.nodes()[node.at()].held);
-        let test = self.frustum.test(held, all);
-        let is_outside = matches!(test, FrustumTest::Outside(_));
-        if is_outside {
-            self.watch.event(Event::Entered(node));
-            for &prim in self.index.own(node) {
-                // Of each primitive, not of the node: what lies below it is another structure.
-                let subject = Subject::Prim(prim);
-                self.watch.note(move || Evidence::Tested(Tested::of(subject, held, all, test)));
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
-            }
-            self.watch.event(Event::Left(node));
+    /// Sorts each processor's lists (Section 4.2).
+    fn sort(&mut self) {
+        let (index, view, distribution) = (self.index, self.view, self.machine.distribution);
+        for (processor, allotment) in self.processors.iter_mut().zip(&self.lists.allotments) {
+            let structures = &allotment.structures;
+            processor.sort(structures, distribution, &self.outside, index, view, &self.projection);
         }
-        is_outside
     }
 
     /// What a processor that is free does next.
@@ -235,6 +281,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         {
             let (unit, job, node) = (Unit::Processor(p), Job::Wait, NodeId(0));
             let waited = Worked { unit, job, from: since, to: now, node, region: 0, count: 0 };
+            self.watch.event(Event::Line(line::WAIT));
             self.watch.note(move || Evidence::Worked(waited));
         }
         let processor = &mut self.processors[p as usize];
@@ -242,6 +289,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         // before both: it waits for nothing, and it may hide what is queried next.
         if let Some(s) = processor.found.pop_front() {
             self.watch.event(Event::Line(line::DRAW_FOUND));
+            processor.added += 1;
             self.transform(p, s, Job::DrawFound);
         } else if let Some(s) = processor.to_draw.pop_front() {
             self.watch.event(Event::Line(line::DRAW_VISIBLE));
@@ -249,8 +297,17 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         } else if processor.waiting > 0 && !self.machine.overlap {
             // Without the overlap of Section 5.3 it waits for the reply before it queries again.
             processor.idle = Some(now);
+        } else if self.machine.farthest_first && !processor.has_asked && !processor.to_ask.is_empty() {
+            // Section 5.3: "a good time to do this might be after the visible list has been rendered, when
+            // the z-buffer should be almost-complete anyway".
+            self.watch.event(Event::Line(line::ASK_FARTHEST));
+            self.ask_farthest(p);
         } else if let Some(group) = processor.to_ask.pop_front() {
-            self.ask(p, group);
+            self.watch.event(Event::Line(line::TAKE));
+            self.ask(p, group, false);
+        } else if let Some(s) = processor.to_check.pop_front() {
+            self.watch.event(Event::Line(line::TAKE_LISTED));
+            self.ask(p, vec![s], true);
         } else if processor.waiting > 0 {
             processor.idle = Some(now);
         }
@@ -258,40 +315,40 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
 
     /// Transforms a structure and sends it to the renderers of its regions.
     fn transform(&mut self, p: u16, s: usize, job: Job) {
-        let Structure { node, prims } = self.processors[p as usize].structures[s].clone();
-        self.lists.visible[p as usize][node.at()] = true;
+        let structure = &mut self.lists.allotments[p as usize].structures[s];
+        structure.is_listed = true;
+        let (node, own) = (structure.node, structure.own);
+        let prims = structure.prims.clone();
         let cost = ticks(self.machine.transform, prims.len());
         // All that is decided until it is left rests on this.
         self.watch.event(Event::Entered(node));
-        self.watch.event(Event::Line(line::TRANSFORM));
         self.works(p, job, cost, node, prims.len());
         self.watch.event(Event::DecidedNode(node, Verdict::Partial));
         let mut bins: BTreeMap<u32, Vec<PrimId>> = BTreeMap::new();
-        for prim in prims {
-            self.bin(node, prim, &mut bins);
+        for (k, prim) in prims.into_iter().enumerate() {
+            // Section 3.1: a shared primitive is marked when it is drawn, so that it is drawn once.
+            if k < own || !std::mem::replace(&mut self.drawn[prim.at()], true) {
+                self.bin(prim, &mut bins);
+            }
         }
         // By ascending region, so that messages of the same tick have an order.
         for (region, prims) in bins {
             self.lists.load[region as usize] += prims.len() as u32;
-            self.send(region, Message::Draw { node, prims }, cost);
+            self.send(Message::Draw { region, node, prims }, cost);
         }
         self.watch.event(Event::Left(node));
         self.after(cost, What::Free(p));
     }
-    /// Puts a primitive of a structure into the bins of the regions that it may cover, unless it is drawn
-    /// already or turns its back.
-    fn bin(&mut self, node: NodeId, prim: PrimId, bins: &mut BTreeMap<u32, Vec<PrimId>>) {
-        // Section 3.1: a shared primitive is marked when it is drawn, so that it is drawn once.
-        let is_shared = self.index.shared(node).contains(&prim);
-        if is_shared && std::mem::replace(&mut self.drawn[prim.at()], true) {
-            return;
-        }
+    /// Puts a primitive into the bins of the regions that it may cover, unless it turns its back.
+    fn bin(&mut self, prim: PrimId, bins: &mut BTreeMap<u32, Vec<PrimId>>) {
         let (scene, view) = (self.scene, self.view);
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+            self.watch.event(Event::Line(line::FACES_AWAY));
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             return;
         }
+        self.watch.event(Event::Line(line::TRANSFORM));
         self.out.prims.push(prim);
         self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
         let all = PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height };
@@ -303,138 +360,162 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         Options { backface_culling: self.params.backface_culling, ..Options::default() }
     }
     /// Sends a message that is ready after so many ticks.
-    fn send(&mut self, region: u32, message: Message, ready: u32) {
+    fn send(&mut self, message: Message, ready: u32) {
         self.messages.push(message);
-        // The number is also the order of making, by which a renderer chooses between its regions.
         let number = self.messages.len() - 1;
-        self.after(ready.saturating_add(self.machine.message), What::Arrives(region, number));
+        self.after(ready.saturating_add(self.machine.message), What::Arrives(number));
+    }
+    /// Asks every renderer for the farthest depths of its regions (Section 5.3).
+    fn ask_farthest(&mut self, p: u16) {
+        // About as much as to send out one primitive; the paper gives no cost.
+        let cost = self.machine.transform;
+        self.works(p, Job::AskFarthest, cost, NodeId(0), 0);
+        let processor = &mut self.processors[p as usize];
+        processor.has_asked = true;
+        processor.waiting += u32::from(self.screen.renderers());
+        processor.farthest = vec![0.0; self.screen.count()];
+        for renderer in 0..self.screen.renderers() {
+            self.send(Message::Farthest { renderer, processor: p }, cost);
+        }
+        self.after(cost, What::Free(p));
     }
 
-    /// Queries structures that were invisible: one by its box, several first by the cube above them.
-    fn ask(&mut self, p: u16, structures: Vec<usize>) {
-        let first = self.processors[p as usize].structures[structures[0]].node;
+    /// Queries structures of one of a processor's lists: one by its box, several first by the cube above them.
+    fn ask(&mut self, p: u16, structures: Vec<usize>, is_check: bool) {
+        let first = self.lists.allotments[p as usize].structures[structures[0]].node;
         let is_group = structures.len() > 1;
         let node = if is_group { group_of(self.index, first) } else { first };
         let n = &self.index.nodes()[node.at()];
         let (bounds, whole) = if is_group { (n.bounds, n.whole) } else { (n.held, n.held_whole) };
         // "The triangles composing the bounding box are transformed and sent to the Renderers" (5.1).
-        let cost = ticks(self.machine.transform, BOX_PRIMS);
-        self.works(p, Job::Ask, cost, node, structures.len());
-        let (image, crosses_near) = self.image(&bounds);
-        // A shared primitive is drawn as a whole, and the part outside the cube may come nearer.
-        let nearest = nearest_depth(&self.projection, &whole, self.view.eye.near);
-        let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
+        let (cost, job) = (self.machine.volume_cost(), if is_check { Job::Recheck } else { Job::Ask });
+        self.works(p, job, cost, node, structures.len());
+        let (image, ground) = self.image(&bounds, &whole);
+        let answer = Answer { is_hidden: true, nearest: image.nearest, reads: 0, decisive: None };
         let regions = self.screen.regions(image.pixels);
-        let open = regions.len() as u32;
-        // A departure: with dynamic allocation a region that no renderer holds cannot be queried and counts
-        // as seen. The paper concludes that the allocation has to be static (Section 5.1).
-        let is_seen = crosses_near || regions.iter().any(|&r| !self.screen.is_held(r));
-        let question = Question { processor: p, structures, node, bounds, image, open, is_seen, answer };
+        let (open, is_seen) = (regions.len() as u32, false);
+        let question =
+            Question { processor: p, structures, is_check, node, bounds, image, open, is_seen, answer };
         self.questions.push(question);
         let number = self.questions.len() - 1;
-        if crosses_near {
+        if ground == Ground::CrossesNear {
             self.watch.event(Event::Line(line::NEAR));
-            self.decide(number, true);
+            self.questions[number].is_seen = true;
+            self.decide(number, ground);
         } else if regions.is_empty() {
-            // It falls between the pixels' centers.
-            self.decide(number, false);
-        } else if let Some(closest) = self.behind_farthest(p, &regions, nearest) {
+            // It lies beside the image, or falls between the pixels' centers.
+            self.watch.event(Event::Line(line::NO_PIXEL));
+            self.decide(number, ground);
+        } else if let Some(closest) = self.behind_farthest(p, &regions, image.nearest) {
             self.watch.event(Event::Line(line::FARTHEST));
-            let question = &mut self.questions[number];
-            question.is_seen = false;
-            question.answer = Answer { reads: open, decisive: Some(closest), ..answer };
-            self.decide(number, false);
-        } else if is_seen {
-            // A region is not held.
-            self.decide(number, false);
+            self.questions[number].answer.decisive = Some(closest);
+            self.decide(number, Ground::Regions);
+        } else if regions.iter().any(|&r| !self.screen.is_held(r)) {
+            // With dynamic allocation "only the regions currently assigned to renderers would be accessible"
+            // (Section 5.1).
+            self.watch.event(Event::Line(line::UNHELD));
+            self.questions[number].is_seen = true;
+            self.decide(number, Ground::Unread);
         } else {
             self.watch.event(Event::Line(line::SEND_BOX));
             self.processors[p as usize].waiting += 1;
             for region in regions {
-                self.send(region, Message::Ask { question: number }, cost);
+                self.send(Message::Ask { region, question: number }, cost);
             }
         }
         self.after(cost, What::Free(p));
     }
-    /// Where a box falls in the image, nowhere if it is out of view; and whether it crosses the near plane.
-    fn image(&self, bounds: &Aabb<S::Vector>) -> (BoxImage, bool) {
-        let nearest = 1.0 / self.view.eye.near;
-        let nowhere = BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest };
-        match footprint(self.view, &self.projection, bounds) {
-            Footprint::Seen(image) => (image, false),
-            Footprint::Outside => (nowhere, false),
-            Footprint::CrossesNear => (nowhere, true),
+    /// Where what stands for a structure falls in the image and how near it comes; nowhere if that decides.
+    fn image(&self, bounds: &Aabb<S::Vector>, whole: &Aabb<S::Vector>) -> (BoxImage, Ground) {
+        let near = self.view.eye.near;
+        let nowhere = BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 1.0 / near };
+        let footprint = match self.machine.query {
+            Volume::Faces => footprint(self.view, &self.projection, bounds),
+            // It is about the wholes already.
+            Volume::Sphere => project_sphere(self.view, whole),
+        };
+        match footprint {
+            Footprint::Seen(image) if self.machine.query == Volume::Faces => {
+                // A shared primitive is drawn as a whole, and the part outside the cube may come nearer.
+                let nearest = nearest_depth(&self.projection, whole, near);
+                (BoxImage { nearest, ..image }, Ground::Cells)
+            }
+            Footprint::Seen(image) => (image, Ground::Cells),
+            Footprint::Outside => (nowhere, Ground::BesideImage),
+            Footprint::CrossesNear => (nowhere, Ground::CrossesNear),
         }
     }
     /// The shortcut of Section 5.3: if a box lies behind the farthest depth of all its regions, that of the
-    /// closest one. The processor reads these once, "after the visible list has been rendered, when the
-    /// z-buffer should be almost-complete anyway".
-    fn behind_farthest(&mut self, p: u16, regions: &[u32], nearest: f32) -> Option<(PyramidCell, f32)> {
+    /// closest one.
+    fn behind_farthest(&self, p: u16, regions: &[u32], nearest: f32) -> Option<(PyramidCell, f32)> {
         if !self.machine.farthest_first {
             return None;
         }
-        if self.processors[p as usize].farthest.is_empty() {
-            self.watch.note(|| Evidence::Depth(DepthNote::RefreshedAll));
-            self.buffer.step(Step::RefreshAll);
-            let windows = (0..self.screen.count() as u32).map(|r| self.screen.window(r));
-            self.processors[p as usize].farthest = windows.map(|w| self.buffer.farthest_over(w)).collect();
-        }
-        // Depths only come nearer while a frame is drawn: what was read earlier is never too near.
-        let farthest = &self.processors[p as usize].farthest;
-        let closest =
-            regions.iter().min_by(|a, b| farthest[**a as usize].total_cmp(&farthest[**b as usize]))?;
-        let held = farthest[*closest as usize];
-        (nearest < held).then(|| (self.screen.cell(*closest), held))
+        // Depths only come nearer while a frame is drawn: what was told earlier is never too near. What was
+        // not told is 0, farther than all.
+        let told = &self.processors[p as usize].farthest;
+        let farthest = |r: u32| told.get(r as usize).copied().unwrap_or(0.0);
+        let closest = regions.iter().copied().min_by(|&a, &b| farthest(a).total_cmp(&farthest(b)))?;
+        (nearest < farthest(closest)).then(|| (self.screen.cell(closest), farthest(closest)))
     }
 
-    /// What a renderer that is free does next: the oldest message of the regions it holds.
-    fn next_of_renderer(&mut self, r: u16) {
-        let Some((message, region)) = self.screen.begin(r) else { return };
-        let cost = self.cost_of(message);
-        self.after(cost, What::Done(r, region, message));
+    /// A message arrives at the renderer that it is for, or waits for one that takes its region.
+    fn arrives(&mut self, message: usize) {
+        let renderer = match self.messages[message] {
+            Message::Draw { region, .. } | Message::Ask { region, .. } => self.screen.arrive(region, message),
+            Message::Farthest { renderer, .. } => {
+                self.screen.arrive_at(renderer, message);
+                Some(renderer)
+            }
+        };
+        if let Some(renderer) = renderer {
+            self.next_of_renderer(renderer);
+        }
     }
-    fn cost_of(&self, message: usize) -> u32 {
+    /// What a renderer that is free does next: the oldest message, or the next region that waits.
+    fn next_of_renderer(&mut self, r: u16) {
+        if let Some(message) = self.screen.begin(r) {
+            self.after(self.cost_of(r, message), What::Done(r, message));
+        }
+    }
+    fn cost_of(&self, r: u16, message: usize) -> u32 {
         match &self.messages[message] {
             Message::Draw { prims, .. } => ticks(self.machine.rasterize, prims.len()),
             Message::Ask { .. } => self.machine.answer,
+            Message::Farthest { .. } => ticks(self.machine.answer, self.screen.held_by(r).len().max(1)),
         }
     }
     /// A renderer has finished a message: now it takes effect.
-    fn done(&mut self, r: u16, region: u32, message: usize) {
-        let window = self.screen.window(region);
-        let (unit, to) = (Unit::Renderer(r), self.now);
-        let from = to.saturating_sub(self.cost_of(message));
+    fn done(&mut self, r: u16, message: usize) {
+        let cost = self.cost_of(r, message);
         match self.messages[message].clone() {
-            Message::Draw { node, prims } => {
+            Message::Draw { region, node, prims } => {
                 self.watch.event(Event::Line(line::RASTERIZE));
-                let (job, count) = (Job::Rasterize, prims.len() as u32);
-                self.watch
-                    .note(move || Evidence::Worked(Worked { unit, job, from, to, node, region, count }));
-                self.rasterize(&prims, window);
+                self.has_worked(r, Job::Rasterize, cost, node, region, prims.len());
+                self.rasterize(&prims, region);
             }
-            Message::Ask { question } => {
-                let Question { image, bounds, node, answer: Answer { nearest, .. }, .. } =
-                    self.questions[question];
-                let lines = [line::COMPARE, line::COMPARE];
-                let reporter = QueryReporter::new(node, lines, &mut *self.watch);
-                // A departure: the paper's renderer compares all pixels at once and has no use for a pyramid
-                // (Section 5). The answer is the same.
-                let query = Query::new(&mut *self.buffer, nearest, reporter);
-                let answer = query.faces_in(&bounds, &image, self.view, window);
+            Message::Ask { region, question } => {
+                let is_seen = self.compare(question, region);
                 self.watch.event(Event::Line(line::ANSWER));
-                let (job, count) = (Job::Answer, u32::from(!answer.is_hidden));
-                self.watch
-                    .note(move || Evidence::Worked(Worked { unit, job, from, to, node, region, count }));
-                self.questions[question].answer.join(&answer);
-                self.after(self.machine.message, What::Answered(question, !answer.is_hidden));
+                let node = self.questions[question].node;
+                self.has_worked(r, Job::Answer, cost, node, region, is_seen.into());
+                self.after(self.machine.message, What::Answered(question, is_seen));
+            }
+            Message::Farthest { processor, .. } => {
+                let held = self.screen.held_by(r);
+                let farthest: Vec<_> = held.into_iter().map(|k| (k, self.farthest_of(k))).collect();
+                self.watch.event(Event::Line(line::FIND_FARTHEST));
+                self.has_worked(r, Job::Farthest, cost, NodeId(0), 0, farthest.len());
+                self.replies.push(Reply { processor, farthest });
+                self.after(self.machine.message, What::Told(self.replies.len() - 1));
             }
         }
         self.screen.end(r);
         self.next_of_renderer(r);
     }
     /// Rasterizes primitives in a region, without a test of their own.
-    fn rasterize(&mut self, prims: &[PrimId], window: PixelRect) {
-        let options = Options { window: Some(window), ..self.options() };
+    fn rasterize(&mut self, prims: &[PrimId], region: u32) {
+        let options = Options { window: Some(self.screen.window(region)), ..self.options() };
         for &prim in prims {
             // Section 5: a renderer compares at every pixel at once, so nothing is tested before, and there
             // are no operands to record.
@@ -449,6 +530,31 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             self.watch.note(move || Evidence::Depth(DepthNote::Rasterized(rasterized)));
         }
         self.buffer.step(Step::Draw { scene: self.scene, prims, options, is_sieved: false });
+        self.farthest[region as usize] = None;
+    }
+    /// Compares a box with what is drawn in a region: whether any pixel of it is left on.
+    fn compare(&mut self, question: usize, region: u32) -> bool {
+        let Question { image, bounds, node, answer: Answer { nearest, .. }, .. } = self.questions[question];
+        let window = self.screen.window(region);
+        let reporter = QueryReporter::new(node, [line::COMPARE, line::COMPARE], &mut *self.watch);
+        // A departure: the paper's renderer compares all pixels at once and has no use for a pyramid (Section
+        // 5). The answer is the same.
+        let mut query = Query::new(&mut *self.buffer, nearest, reporter);
+        let answer = match self.machine.query {
+            Volume::Faces => query.faces_in(&bounds, &image, self.view, window),
+            Volume::Sphere => {
+                query.face(0, &FaceImage::rectangle(image.pixels.intersection(window)));
+                query.answer
+            }
+        };
+        self.questions[question].answer.join(&answer);
+        !answer.is_hidden
+    }
+    /// The farthest depth in a region: "the capability of a renderer to quickly determine a global maximum z
+    /// depth over all pixel-processors" (Section 5.3).
+    fn farthest_of(&mut self, region: u32) -> f32 {
+        let (window, buffer) = (self.screen.window(region), &*self.buffer);
+        *self.farthest[region as usize].get_or_insert_with(|| buffer.farthest_in(window))
     }
 
     /// An answer has come back.
@@ -460,35 +566,57 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         if question.open == 0 {
             let p = question.processor;
             self.processors[p as usize].waiting -= 1;
-            self.decide(number, false);
-            if self.processors[p as usize].idle.is_some() {
-                self.next_of_processor(p);
-            }
+            self.decide(number, Ground::Cells);
+            self.wake(p);
         }
     }
-    /// All answers are there: structures that may be seen are let through, the others are hidden.
-    fn decide(&mut self, number: usize, crosses_near: bool) {
+    /// Farthest depths have come back.
+    fn told(&mut self, reply: usize) {
+        let Reply { processor: p, farthest } = &self.replies[reply];
+        let (p, processor) = (*p, &mut self.processors[*p as usize]);
+        for &(region, depth) in farthest {
+            processor.farthest[region as usize] = depth;
+        }
+        processor.waiting -= 1;
+        if self.is_checking && processor.waiting == 0 {
+            self.check_list(p);
+        }
+        self.wake(p);
+    }
+    fn wake(&mut self, p: u16) {
+        if self.processors[p as usize].idle.is_some() {
+            self.next_of_processor(p);
+        }
+    }
+    /// All answers are there: structures that may be seen are let through or stay on the list, the others are
+    /// hidden or leave it.
+    fn decide(&mut self, number: usize, ground: Ground) {
         let q = &mut self.questions[number];
         q.answer.is_hidden = !q.is_seen;
-        let (p, node, is_seen) = (q.processor, q.node, q.is_seen);
+        let (p, node, is_check, is_seen) = (q.processor, q.node, q.is_check, q.is_seen);
         let group = std::mem::take(&mut q.structures);
         let (bounds, pixels, answer) = (q.bounds, q.image.pixels, q.answer);
         // All that is decided until it is left rests on this answer.
         self.watch.event(Event::Entered(node));
-        self.watch.event(Event::Line(line::DECIDE));
+        self.watch.event(Event::Line(if is_check { line::UNLIST } else { line::DECIDE }));
         self.watch.note(move || {
-            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, crosses_near }))
+            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, ground }))
         });
-        if is_seen {
-            self.processors[p as usize].let_through(group);
-        } else {
-            for s in group {
-                let Structure { node, prims } = &self.processors[p as usize].structures[s];
-                // A shared primitive may show in another structure.
-                let shared = self.index.shared(*node);
-                for &prim in prims.iter().filter(|prim| !shared.contains(prim)) {
-                    self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+        let structures = &mut self.lists.allotments[p as usize].structures;
+        match (is_check, is_seen) {
+            (false, true) => self.processors[p as usize].let_through(group),
+            (false, false) => {
+                for s in group {
+                    // A shared primitive may show in another structure.
+                    for &prim in &structures[s].prims[..structures[s].own] {
+                        self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+                    }
                 }
+            }
+            (true, true) => {}
+            (true, false) => {
+                group.into_iter().for_each(|s| structures[s].is_listed = false);
+                self.watch.note(|| Evidence::Cube(CubeNote::Unlisted { node, processor: Some(p) }));
             }
         }
         self.watch.event(Event::Left(node));
@@ -496,37 +624,57 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
 
     /// Reports the shared primitives that no structure drew.
     fn report_unseen(&mut self) {
-        for at in 0..self.index.nodes().len() as u32 {
-            for &prim in self.index.passed(NodeId(at)) {
+        // What is passed on by a cube that is out of view was decided with it.
+        for at in (0..self.index.nodes().len()).filter(|&at| !self.wholly_outside[at]) {
+            let node = NodeId(at as u32);
+            for &prim in self.index.passed(node) {
                 if !std::mem::replace(&mut self.drawn[prim.at()], true) {
-                    self.watch.note(|| Evidence::Cube(CubeNote::SharedUnseen(prim, NodeId(at))));
+                    self.watch.event(Event::Line(line::UNSEEN));
+                    self.watch.note(|| Evidence::Cube(CubeNote::SharedUnseen(prim, node)));
                     self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
                 }
             }
         }
     }
-    /// Every n frames takes off all visible lists what the finished image does not show (Sections 4.2 and
-    /// 5.1). No tick is charged for it: it follows the frame.
+    /// When the image is finished, takes off the visible lists what it does not show, where that is due. The
+    /// processors go on where they ended, so it costs ticks as all they do.
     fn check(&mut self) {
-        self.lists.frames += 1;
-        if self.lists.frames < self.params.check_interval {
-            return;
-        }
-        self.lists.frames = 0;
-        for at in 0..self.index.nodes().len() {
-            if self.lists.visible.iter().all(|visible| !visible[at]) {
-                continue;
+        self.is_checking = true;
+        // Where every frame checks, nothing is to be decided by the farthest depth.
+        let asks = self.params.check_interval > 1;
+        for p in 0..self.processors.len() as u16 {
+            let processor = &mut self.processors[p as usize];
+            // What was told while the image was drawn is out of date.
+            (processor.has_asked, processor.farthest) = (true, vec![]);
+            if asks {
+                self.watch.event(Event::Line(line::CHECK_FARTHEST));
+                self.ask_farthest(p);
+            } else {
+                self.check_list(p);
+                self.after(0, What::Free(p));
             }
-            let (node, n) = (NodeId(at as u32), &self.index.nodes()[at]);
+        }
+        self.simulate();
+    }
+    /// Decides whether a processor checks its visible list, by the rules of Section 4.2.
+    fn check_list(&mut self, p: u16) {
+        let (allotment, processor) =
+            (&mut self.lists.allotments[p as usize], &mut self.processors[p as usize]);
+        allotment.frames += 1;
+        let farthest = processor.farthest.iter().copied().reduce(f32::min).unwrap_or(0.0);
+        let listed = allotment.structures.iter().filter(|s| s.is_listed).count() as u32;
+        let frames = [allotment.frames, self.params.check_interval];
+        let check = Check::new(frames, [processor.added, listed], [farthest, allotment.farthest]);
+        let check = Check { processor: Some(p), ..check };
+        allotment.farthest = farthest;
+        if check.due.is_some() {
+            allotment.frames = 0;
+            let structures = allotment.structures.iter().enumerate();
             // What is out of view keeps its place.
-            let Footprint::Seen(image) = footprint(self.view, &self.projection, &n.held) else { continue };
-            let nearest = nearest_depth(&self.projection, &n.held_whole, self.view.eye.near);
-            let reporter = QueryReporter::new(node, [line::CHECK, line::CHECK], &mut *self.watch);
-            let query = Query::new(&mut *self.buffer, nearest, reporter);
-            if query.faces(&n.held, &image, self.view).is_hidden {
-                self.lists.visible.iter_mut().for_each(|v| v[at] = false);
-                self.watch.note(|| Evidence::Cube(CubeNote::Unlisted(node)));
-            }
+            let in_view = structures.filter(|(_, s)| s.is_listed && !self.outside[s.node.at()]);
+            processor.to_check = in_view.map(|(s, _)| s).collect();
         }
+        self.watch.event(Event::Line(line::CHECK));
+        self.watch.note(move || Evidence::Cube(CubeNote::Checked(check)));
     }
 }

@@ -4,10 +4,12 @@ use glam::Vec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::machine::{Allocation, Distribution, Unit};
+use super::machine::{Allocation, Distribution, Unit, Volume};
 use super::*;
-use crate::geometry::{Eye, Flat, PrimId, Solid, Space, Vector, View};
-use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
+use crate::culling::depth::Ground;
+use crate::geometry::{Eye, Flat, NodeId, PrimId, Solid, Space, Vector, View};
+use crate::index::Hierarchy;
+use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict, Words};
 use crate::raster::render;
 use crate::scene::Parts;
 
@@ -65,11 +67,21 @@ fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> 
 }
 
 /// What the events of a frame report of each primitive.
-fn reported<S: Faces>(scene: &Scene<S>, events: &[Event]) -> Vec<Option<Verdict>> {
+fn reported<S: Faces>(
+    scene: &Scene<S>,
+    index: &Octree<S::Vector>,
+    events: &[Event],
+) -> Vec<Option<Verdict>> {
     let mut reported = vec![None; scene.prim_count()];
     for event in events {
-        if let Event::DecidedPrim(p, v) = event {
-            reported[p.at()].get_or_insert(*v);
+        match event {
+            Event::DecidedPrim(p, v) => _ = reported[p.at()].get_or_insert(*v),
+            Event::DecidedNode(node, v) if *v != Verdict::Partial => {
+                for p in Hierarchy::<S>::prims(index, *node) {
+                    assert_eq!(reported[p.at()].replace(*v), None, "{p} is decided once");
+                }
+            }
+            _ => {}
         }
     }
     reported
@@ -79,11 +91,17 @@ fn reported<S: Faces>(scene: &Scene<S>, events: &[Event]) -> Vec<Option<Verdict>
 /// no unit does two things at a time.
 fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     use Allocation::{Dynamic, Static};
-    use Distribution::{Hybrid, Primitive, Structure};
+    use Distribution::{Hybrid, Primitive, Structure, Subtree};
     let mut rng = Pcg32::new(6, 9);
     let scene = soup::<S>(&mut rng, 200, make);
-    let cases =
-        [(Hybrid, Static), (Structure, Static), (Primitive, Static), (Hybrid, Dynamic), (Primitive, Dynamic)];
+    let cases = [
+        (Hybrid, Static),
+        (Structure, Static),
+        (Primitive, Static),
+        (Subtree, Static),
+        (Hybrid, Dynamic),
+        (Primitive, Dynamic),
+    ];
     for (case, (distribution, allocation)) in cases.into_iter().enumerate() {
         let machine = Machine {
             processors: 3,
@@ -91,6 +109,7 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
             distribution,
             allocation,
             overlap: case % 2 == 0,
+            query: if case % 3 == 0 { Volume::Faces } else { Volume::Sphere },
             ..Machine::default()
         };
         let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
@@ -106,7 +125,7 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
             assert_eq!(*tried.buffer.target(), plain, "case {case}: its own image");
             let again = same.cull(&view, &mut Unobserved);
             assert_eq!(list, again, "case {case}: a frame is the same again, unobserved");
-            let reported = reported(&scene, &recorder.events);
+            let reported = reported(&scene, &index, &recorder.events);
             assert!(reported.iter().all(Option::is_some), "case {case}: all is reported");
             let is_drawn = |p: &PrimId| reported[p.at()] == Some(Verdict::Visible);
             let mut drawn: Vec<PrimId> = scene.live().iter().copied().filter(is_drawn).collect();
@@ -257,4 +276,246 @@ fn every_decision_rests_on_evidence() {
     }
     let wanted = ["VisibleDrawn", "FoundDrawn", "ObscurationTested", "OrientationTested", "PrimClassified"];
     assert!(decisions > 200 && wanted.iter().all(|k| kinds.contains(&Some(*k))), "{decisions}: {kinds:?}");
+}
+
+/// Each processor's share of the primitives.
+fn shares<V: Vector>(index: &Octree<V>, distribution: Distribution, processors: usize) -> Vec<usize> {
+    let dealt = super::dealing::dealt(index, distribution, processors);
+    dealt.iter().map(|a| a.structures.iter().map(|s| s.prims.len()).sum()).collect()
+}
+
+/// Every primitive is dealt to one processor however it is dealt; subtrees evenly, to within the largest, and
+/// each to one processor.
+#[test]
+fn all_is_dealt_out_and_subtrees_evenly() {
+    let mut rng = Pcg32::new(11, 9);
+    let scene = soup::<Solid>(&mut rng, 900, |c| c);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let index = built::<Solid>(&scene, &Params { cubes, ..Params::default() });
+    let head = |node: NodeId| {
+        let above = std::iter::successors(Some(node), |n| index.parent_of(*n));
+        above.into_iter().find(|n| index.nodes()[n.at()].level <= 2).expect("the root")
+    };
+    for processors in [1, 2, 3, 4, 8] {
+        for distribution in Distribution::ALL {
+            let total = shares(&index, *distribution, processors).iter().sum::<usize>();
+            assert_eq!(total, index.references(), "{distribution:?} to {processors}");
+        }
+        let (mut size, mut owner) = (std::collections::BTreeMap::new(), std::collections::BTreeMap::new());
+        for (p, allotment) in
+            super::dealing::dealt(&index, Distribution::Subtree, processors).iter().enumerate()
+        {
+            for s in &allotment.structures {
+                *size.entry(head(s.node)).or_insert(0) += s.prims.len();
+                assert_eq!(*owner.entry(head(s.node)).or_insert(p), p, "a subtree stays together");
+            }
+        }
+        let shares = shares(&index, Distribution::Subtree, processors);
+        let (least, most) = (shares.iter().min().expect("some"), shares.iter().max().expect("some"));
+        assert!(most - least <= *size.values().max().expect("subtrees"), "{processors}: {shares:?}");
+        assert!(*least > 0);
+    }
+}
+
+/// What was visible on a processor is on the list of that processor in the next frame, wherever the view
+/// turned meanwhile.
+#[test]
+fn structures_stay_with_their_processor() {
+    let mut rng = Pcg32::new(12, 9);
+    let scene = soup::<Solid>(&mut rng, 300, |c| c);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let params = Params { cubes, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let mut owner = std::collections::BTreeMap::new();
+    for view in crate::scene::random_views(&scene, 8, 4) {
+        let mut recorder = Recorder::new(usize::MAX);
+        tried.cull(&View { width: 300, height: 200, ..view }, &mut recorder);
+        for note in &recorder.notes {
+            if let Evidence::Worked(Worked { unit, job: Job::DrawVisible | Job::DrawFound, node, .. }) = note {
+                assert_eq!(owner.entry(*node).or_insert(*unit), unit, "node {node}");
+            }
+        }
+    }
+    assert!(owner.len() > 40);
+}
+
+fn settings(pairs: &[(&str, &str)]) -> Settings {
+    Settings(pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect())
+}
+
+/// Parameters of the sequential form are taken over or refused with a line, never ignored.
+#[test]
+fn parameters_are_honored_or_refused() {
+    let entry: &dyn Entry<Solid> = &Of::<ParallelHierarchicalZ>::NEW;
+    for (key, value) in [("form", "two-pass"), ("primitive-test", "false"), ("query", "rectangles")] {
+        let refused = entry.knobs(&settings(&[(key, value)])).expect_err("refused").to_string();
+        assert!(refused.contains(key) && !refused.contains('\n'), "{refused}");
+    }
+    let mut rng = Pcg32::new(13, 9);
+    let scene = soup::<Solid>(&mut rng, 300, |c| c);
+    let view = View { width: 300, height: 200, ..crate::scene::random_views(&scene, 1, 4)[0] };
+    let counted = |query| {
+        let pairs = settings(&[("leaf-primitives", "4"), ("query", query)]);
+        let mut run = entry.ready(&scene, &pairs, &crate::scene::Quiet).expect("fits").expect("not cancelled");
+        run.count(&view).1.named()
+    };
+    let (faces, sphere) = (counted("faces"), counted("sphere"));
+    assert_ne!(faces["cells_read"], sphere["cells_read"]);
+    let each = |counts: &std::collections::BTreeMap<&str, u64>| counts["ticks_asking"] / counts["boxes_transformed"];
+    assert_eq!((each(&faces), each(&sphere)), (120, 10), "twelve triangles, one expression");
+}
+
+/// The work of a frame in order.
+fn work<S: Faces>(notes: &[Evidence<S>]) -> Vec<Worked> {
+    notes.iter().filter_map(|n| if let Evidence::Worked(w) = n { Some(*w) } else { None }).collect()
+}
+
+/// With dynamic allocation every region is drawn in, though there are few renderers, and not only when all
+/// processors are done.
+#[test]
+fn regions_are_taken_while_processors_work() {
+    let mut rng = Pcg32::new(14, 9);
+    let scene = soup::<Solid>(&mut rng, 400, |c| c);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let machine = Machine { renderers: 2, allocation: Allocation::Dynamic, ..Machine::default() };
+    let params = Params { cubes, machine, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let view = crate::scene::framing_view::<Solid>(&scene.bounds(), 512, 384);
+    let (mut tried, mut recorder) = (Tried::new(&index, &scene, &params), Recorder::new(usize::MAX));
+    tried.cull(&view, &mut recorder);
+    let work = work(&recorder.notes);
+    let is_processor = |w: &&Worked| matches!(w.unit, Unit::Processor(_)) && w.job != Job::Wait;
+    let image = work.iter().rposition(|w| w.job == Job::Rasterize).expect("something is drawn");
+    let last = work[..=image].iter().filter(is_processor).map(|w| w.to).max().expect("processors work");
+    let drawn = work.iter().filter(|w| w.job == Job::Rasterize);
+    let before: std::collections::BTreeSet<u32> = drawn.filter(|w| w.to < last).map(|w| w.region).collect();
+    assert!(before.len() > 8, "{before:?} of 12 before tick {last}");
+    let unread = |n: &&Evidence<Solid>| {
+        matches!(n, Evidence::Depth(DepthNote::Answered(a)) if a.ground == Ground::Unread && !a.answer.is_hidden)
+    };
+    assert!(recorder.notes.iter().filter(unread).count() > 0, "what is not held counts as seen");
+}
+
+/// Farthest depths are asked for by messages that take time, and reject nothing before they have come.
+#[test]
+fn farthest_depths_are_asked_for_and_take_time() {
+    let mut rng = Pcg32::new(15, 9);
+    let scene = soup::<Flat>(&mut rng, 800, |[a, b, _]| [a, b]);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let message = 50;
+    let machine = Machine { processors: 2, message, ..Machine::default() };
+    let params = Params { cubes, machine, check_interval: 1, ..Params::default() };
+    let index = built::<Flat>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let mut rejected = 0;
+    for view in crate::scene::random_views(&scene, 6, 4) {
+        for _ in 0..2 {
+            let mut recorder = Recorder::new(usize::MAX);
+            tried.cull(&View { width: 500, ..view }, &mut recorder);
+            let work = work(&recorder.notes);
+            let of = |job| work.iter().filter(move |w| w.job == job);
+            assert_eq!(of(Job::Farthest).count(), of(Job::AskFarthest).count() * 4, "each renderer");
+            for asked in of(Job::AskFarthest) {
+                assert_eq!(asked.to - asked.from, 10);
+                assert!(of(Job::Farthest).all(|found| found.from >= message));
+            }
+            let first = of(Job::AskFarthest).map(|w| w.to).min().unwrap_or(u32::MAX);
+            let mut now = 0;
+            for note in &recorder.notes {
+                match note {
+                    Evidence::Worked(w) if w.job == Job::Ask => now = w.from,
+                    Evidence::Depth(DepthNote::Answered(a)) if a.ground == Ground::Regions => {
+                        rejected += 1;
+                        assert!(now >= first.saturating_add(2 * message), "{now} after {first}");
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    assert!(rejected > 0, "the shortcut rejects something");
+}
+
+/// The lists of processors are checked early in the first frame, when all is new, and again after as many
+/// frames as are to pass; each check has its note, takes ticks, and follows the image.
+#[test]
+fn lists_are_checked_early_and_it_takes_time() {
+    let mut rng = Pcg32::new(16, 9);
+    let scene = soup::<Solid>(&mut rng, 300, |c| c);
+    let cubes = Cubes { leaf_primitives: 4, ..Cubes::default() };
+    let params = Params { cubes, check_interval: 4, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let view = crate::scene::framing_view::<Solid>(&scene.bounds(), 300, 200);
+    let (mut tried, mut dues) = (Tried::new(&index, &scene, &params), Vec::new());
+    for frame in 0..6 {
+        let mut recorder = Recorder::new(usize::MAX);
+        tried.cull(&view, &mut recorder);
+        let checks = recorder.notes.iter().filter_map(|n| match n {
+            Evidence::Cube(CubeNote::Checked(check)) => Some(check.due),
+            _ => None,
+        });
+        let checks: Vec<_> = checks.collect();
+        assert_eq!(checks.len(), 4, "one a processor");
+        assert!(checks.iter().all(|due| *due == checks[0]));
+        dues.push(checks[0]);
+        let work = work(&recorder.notes);
+        let finished = work.iter().filter(|w| w.job == Job::Rasterize).map(|w| w.to).max().expect("drawn");
+        let rechecked: Vec<_> = work.iter().filter(|w| w.job == Job::Recheck).collect();
+        assert_eq!(rechecked.is_empty(), checks[0].is_none(), "frame {frame}");
+        assert!(rechecked.iter().all(|w| w.from >= finished && w.to == w.from + 120));
+        let asked = work.iter().filter(|w| w.job == Job::AskFarthest && w.from >= finished).count();
+        assert_eq!(asked, 4, "every processor asks for the shift of the farthest depth");
+    }
+    use crate::culling::cubes::Due::{Added, Interval};
+    assert_eq!(dues, [Some(Added), None, None, None, Some(Interval), None]);
+}
+
+/// One note says what became of a structure, however many primitives it has.
+#[test]
+fn a_structure_has_one_answer() {
+    let mut rng = Pcg32::new(17, 9);
+    let scene = soup::<Solid>(&mut rng, 400, |c| c);
+    let cubes = Cubes { leaf_primitives: 40, ..Cubes::default() };
+    let params = Params { cubes, ..Params::default() };
+    let index = built::<Solid>(&scene, &params);
+    let mut tried = Tried::new(&index, &scene, &params);
+    let mut prims = 0;
+    for view in crate::scene::random_views(&scene, 4, 4) {
+        let mut recorder = Recorder::new(usize::MAX);
+        tried.cull(&View { width: 300, height: 200, ..view }, &mut recorder);
+        let count = |wanted: fn(&Evidence<Solid>) -> bool| recorder.notes.iter().filter(|n| wanted(n)).count();
+        let asked =
+            count(|n| matches!(n, Evidence::Worked(w) if matches!(w.job, Job::Ask | Job::Recheck)));
+        let answers = count(|n| matches!(n, Evidence::Depth(DepthNote::Answered(_))));
+        assert_eq!(answers, asked);
+        let hidden = |e: &&Event| matches!(e, Event::DecidedPrim(_, Verdict::Hidden));
+        prims += recorder.events.iter().filter(hidden).count();
+    }
+    assert!(prims > 100, "{prims} hidden");
+}
+
+/// Of a structure whose box covers no pixel, one beside the image and one in a region that nobody holds the
+/// sentence says so.
+#[test]
+fn an_answer_says_what_it_rests_on() {
+    let scene = crate::scene::samples::soup::<Solid>(1, 4);
+    let view = crate::scene::framing_view::<Solid>(&scene.bounds(), 64, 64);
+    let context = crate::method::Context { scene: &scene, view: &view };
+    let answer = |ground, is_hidden| {
+        let answer = crate::culling::depth::Answer { is_hidden, nearest: 0.1, reads: 0, decisive: None };
+        let (node, bounds, pixels) = (NodeId(3), scene.bounds(), crate::geometry::PixelRect::default());
+        let note = crate::culling::depth::Answered { node, bounds, pixels, answer, ground };
+        crate::method::Note::<Solid>::sentence(&DepthNote::Answered(note), &context)
+    };
+    assert_eq!(
+        answer(Ground::Cells, true),
+        "The image of node 3 covers no pixel's center: nothing of it can show."
+    );
+    assert_eq!(
+        answer(Ground::BesideImage, true),
+        "The box of node 3 lies beside the image: nothing of it can show."
+    );
+    let unread = answer(Ground::Unread, false);
+    assert!(unread.starts_with("Node 3 counts as visible") && unread.contains("held by no renderer"));
 }

@@ -60,6 +60,7 @@ fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
             Job::DrawVisible | Job::Rasterize => Role::Visible,
             Job::DrawFound => Role::Current,
             Job::Ask => Role::Evidence,
+            Job::Recheck | Job::AskFarthest | Job::Farthest => Role::Undecided,
             Job::Wait => Role::Outside,
             Job::Answer if w.count == 0 => Role::Hidden,
             Job::Answer => Role::Evidence,
@@ -69,7 +70,7 @@ fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
         // The shortest job is still to be seen.
         let (from, till) = (place(w.from, end), place(w.to, end).max(place(w.from, end) + 0.3));
         let (a, b) = (vec2(from, y), vec2(till, y + ROW_PT - 4.0));
-        to.push(Layer::Areas, role, Subject::Node(w.node), Mark::Area(rectangle(a, b)));
+        to.push(Layer::Areas, role, w.subject(), Mark::Area(rectangle(a, b)));
     }
     let share = format!("{} %", (100.0 * busy as f32 / end.max(1) as f32).round());
     to.text(Layer::Labels, Role::Faint, vec2(WIDTH_PT, y + 9.0), 8.0, Anchor::End, share);
@@ -82,6 +83,7 @@ fn legend(top: f32, to: &mut Drawing) -> f32 {
         (Role::Current, "drawing what was found"),
         (Role::Evidence, "asking; answer: seen"),
         (Role::Hidden, "answer: all enables off"),
+        (Role::Undecided, "farthest depths, checks of lists"),
         (Role::Outside, "waiting"),
     ];
     let mut at = vec2(0.0, top);

@@ -53,7 +53,58 @@ fn any_size_has_a_pyramid() {
             "{width}×{height}: no level too many"
         );
         pyramid.assert_well_formed(&depth);
+        assert_eq!(pyramid.farthest_of_all(&depth), depth.iter().copied().fold(f32::INFINITY, f32::min));
     }
+}
+
+/// The farthest depth of an image that was drawn into since, in tiles that were never brought up to date.
+#[test]
+fn the_farthest_depth_is_that_of_the_image_as_it_is() {
+    let mut dice = Dice::new(9);
+    for (width, height) in [(1, 1), (40, 1), (50, 37), (16, 33)] {
+        let mut depth = vec![0.1; width as usize * height as usize];
+        let mut pyramid = Pyramid::default();
+        pyramid.clear(width, height, 0.1);
+        for _ in 0..60 {
+            let (x0, y0) = (dice.below(width), dice.below(height));
+            let (x1, y1) = (x0 + 1 + dice.below(width - x0), y0 + 1 + dice.below(height - y0));
+            let near = dice.between(0.1, 1.0);
+            for at in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * width + x) as usize)) {
+                depth[at] = near.max(depth[at]);
+            }
+            pyramid.touch(PixelRect { x0, x1, y0, y1 });
+            if dice.below(3) == 0 {
+                pyramid.refresh_under(&depth, PixelRect { x0, x1, y0, y1 }, 2);
+            }
+            let farthest = depth.iter().copied().fold(f32::INFINITY, f32::min);
+            assert_eq!(pyramid.farthest_of_all(&depth), farthest, "{width}×{height}");
+        }
+    }
+}
+
+/// Triangles of one pixel behind one that is drawn just before them: what is left out does not depend on how
+/// many threads draw.
+#[test]
+fn what_a_pyramid_leaves_out_does_not_depend_on_threads() {
+    let view = straight_view(64, 0.1, 100.0);
+    let wall = [(-8.0, -8.0), (-8.0, 136.0), (136.0, -8.0)].map(|(x, y)| at_px(64, x, y, 2.0));
+    let pixel = |k: u32| {
+        let (x, y) = (f64::from(k % 64), f64::from(k / 64));
+        [(0.1, 0.1), (0.1, 1.4), (1.4, 0.1)].map(|(dx, dy)| at_px(64, x + dx, y + dy, 3.0))
+    };
+    let triangles: Vec<_> = std::iter::once(wall).chain((0..64 * 64).map(pixel)).collect();
+    let scene = soup(&triangles);
+    let left_out = |threads: usize| {
+        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
+        pyramid.clear(64, 64, 1.0 / view.eye.far);
+        let sieve = Sieve { pyramid: &mut pyramid, hidden: &mut hidden };
+        let options = Options { threads, ..Options::default() };
+        Solid::sift(&mut target, sieve, &scene, &view, scene.live(), &options);
+        hidden
+    };
+    let small = Solid::extent(&scene, &view, PrimId(700), &Options::default()).expect("covers a pixel");
+    assert_eq!(small.pixels.area(), 1);
+    assert_eq!(left_out(1), left_out(3));
 }
 
 #[test]

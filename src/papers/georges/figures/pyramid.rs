@@ -62,14 +62,16 @@ pub fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
         let (picture, _) = pyramid_picture(&scene, &view, Some((pixels, NEAREST)), DepthScale::Linear);
         parts.push(picture);
     }
-    let caption = "A face whose nearest point is at depth 6 is asked for. Above it covers the left column of \
-                   the upper left quarter: the finest cell that covers it holds 9, so nothing is decided; \
-                   the two samples that the face itself covers are 4 and 4, both nearer than 6, so the face \
-                   is hidden. Below it covers the upper row: sample 4 hides it, sample 9 does not, so it is \
-                   visible.";
+    let caption = "A face whose nearest point is at depth 6 is asked for. Above, the paper's example: it \
+                   covers the left column of the upper left quarter; the finest cell that covers it holds 9, \
+                   so nothing is decided; the two samples that the face itself covers are 4 and 4, both \
+                   nearer than 6, so the face is hidden. (The paper's text places that cell of value 9 in \
+                   the upper right of level 1, where its own Figure 1 has 8: a slip.) Below, a second \
+                   example, which is not the paper's: the face covers the upper row; sample 4 hides it, \
+                   sample 9 does not, so it is visible.";
     Ok(page(
         Paper::TwoColumns,
-        "Georges 1995, Figure 2: a face against the pyramid",
+        "Georges 1995, Figure 2, and a second example: a face against the pyramid",
         cells(),
         caption,
         &below(parts),

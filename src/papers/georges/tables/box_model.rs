@@ -33,8 +33,8 @@ pub const SWEEP: Sweep = Sweep {
 
 /// Where the viewer is: at either end of the path.
 const SITUATIONS: [&str; 2] = ["all in sight", "behind the box"];
-/// "About 2-3 frames/second", then "near the monitor refresh rate", which was 60 or 72 Hz.
-const PAPER_FPS: [f64; 2] = [2.5, 60.0];
+/// As the paper says it: it prints no other number.
+const PAPER_FPS: [&str; 2] = ["about 2–3", "near the monitor's rate"];
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Rows {
     let path = path(scene, setup);
@@ -57,7 +57,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
 }
 
 fn paper() -> Vec<Vec<Cell>> {
-    let row = |situation: &str, fps: f64| {
+    let row = |situation: &str, fps: &str| {
         quoted(
             SWEEP.columns,
             [

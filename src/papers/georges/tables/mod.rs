@@ -20,8 +20,8 @@ pub const TABLES: &[Experiment] = &[
                   without",
         notes: &[
             FRAME_TIMES,
-            "The paper's system has one processor; its rate behind the box is that of the monitor, about 60 \
-             a second.",
+            "The paper's system has one processor. It says of the rate behind the box only that it is near \
+             that of the monitor, which it does not state.",
         ],
         varies: &[],
         sweep: &box_model::SWEEP,
