@@ -5,7 +5,9 @@ use crate::drawing::Subject;
 use crate::geometry::{NodeId, PrimId, Space};
 use crate::index::{Octree, Redistribution, Shape};
 use crate::method::evidence::{integer, number, short};
-use crate::method::{Context, Field, Knob, Knobs, Note, Tallied, Tally, Value, Words, words};
+use crate::method::{
+    Claim, Compared, Context, Field, Knob, Knobs, Note, Tallied, Tally, Value, Words, words,
+};
 use crate::scene::{Progress, Scene};
 
 /// How the octree is built.
@@ -81,6 +83,16 @@ impl Cubes {
             &mut self.small_percent,
         );
     }
+    /// Whether cubes of such a tree can share a primitive.
+    pub(crate) fn may_share(&self) -> bool {
+        let passes_on = match self.redistribution {
+            // A primitive that is as long as nothing is not drawn, so no cube has it.
+            Redistribution::Hybrid => self.small_percent > 0,
+            Redistribution::Split => true,
+            Redistribution::Parent | Redistribution::Grown => false,
+        };
+        passes_on && self.tree_levels > 1
+    }
     /// The octree of a scene; `None` when cancelled.
     pub(crate) fn build<S: Space>(
         &self,
@@ -114,6 +126,8 @@ fn leaf_prims<S: Space>() -> u32 {
 pub(crate) enum CubeNote {
     /// A cube left the visible list: with all below it, or alone from the list of a processor.
     Unlisted { node: NodeId, processor: Option<u16> },
+    /// A primitive that several cubes share is drawn with the first of them.
+    SharedDrawn(PrimId, NodeId),
     /// A primitive that several cubes share was in none that can be seen; the cube that passed it on.
     SharedUnseen(PrimId, NodeId),
     /// What is due at the end of a frame.
@@ -178,7 +192,8 @@ impl Check {
         Self { processor: None, frames, interval, added, listed, farthest, due }
     }
     fn fields(&self) -> Vec<Field> {
-        let mut fields: Vec<Field> = self.processor.map(|p| integer("processor", p.into())).into_iter().collect();
+        let mut fields: Vec<Field> =
+            self.processor.map(|p| integer("processor", p.into())).into_iter().collect();
         let due = self.due.map_or("no", Words::word);
         // Recorded as a whole: the memory of the last frame is written over when this one ends.
         fields.push(Field { name: "due", value: Value::Word(due.into()) });
@@ -193,13 +208,37 @@ impl Check {
         }
         fields
     }
+    /// What made it due, or the frames that have passed.
+    fn compared(&self) -> Compared {
+        match (self.due, self.farthest) {
+            (Some(Due::Added), _) => {
+                let quarter = f64::from(self.listed) / f64::from(MANY_ADDED);
+                Compared::of(("new on the list", self.added.into()), ("a quarter of it", quarter))
+            }
+            (Some(Due::Shifted), Some([now, before])) => {
+                let shift = (now / before).max(before / now);
+                Compared::of(("shift of the farthest depth", shift.into()), ("limit", RAPID_SHIFT.into()))
+            }
+            _ => {
+                let (frames, interval) = (f64::from(self.frames), f64::from(self.interval));
+                Compared::of(("frames since the last check", frames), ("interval", interval))
+            }
+        }
+    }
     fn sentence(&self) -> String {
         let whose = self.processor.map_or(String::new(), |p| format!(" of processor {p}"));
         let (added, listed) = (self.added, plural(self.listed, "cube"));
-        let of = format!("{added} of {listed} on the visible list{whose} {}", if added == 1 { "is" } else { "are" });
+        let of = format!(
+            "{added} of {listed} on the visible list{whose} {}",
+            if added == 1 { "is" } else { "are" }
+        );
         let since = plural(self.frames, "frame");
         let depths = self.farthest.map_or(String::new(), |[now, before]| {
-            format!("the farthest depth is {}, after {} in the last frame", short(1.0 / now), short(1.0 / before))
+            format!(
+                "the farthest depth is {}, after {} in the last frame",
+                short(1.0 / now),
+                short(1.0 / before)
+            )
         });
         let why = match self.due {
             Some(Due::Interval) if self.interval == 1 => "it is checked after every frame".to_owned(),
@@ -230,6 +269,7 @@ impl Tallied for CubeNote {
     fn tally(&self, tally: &mut Tally) {
         match self {
             Self::Unlisted { .. } => tally.add("cubes_unlisted", 1),
+            Self::SharedDrawn(..) => tally.add("shared_primitives_drawn", 1),
             Self::SharedUnseen(..) => tally.add("shared_primitives_unseen", 1),
             // Every frame records whether a check is due; those that are made count.
             Self::Checked(check) => tally.add("checks", check.due.is_some().into()),
@@ -241,6 +281,7 @@ impl<S: Space> Note<S> for CubeNote {
     fn kind(&self) -> &'static str {
         match self {
             Self::Unlisted { .. } => "CubeUnlisted",
+            Self::SharedDrawn(..) => "SharedDrawn",
             Self::SharedUnseen(..) => "SharedUnseen",
             Self::Checked(_) => "ListChecked",
         }
@@ -249,9 +290,22 @@ impl<S: Space> Note<S> for CubeNote {
         match self {
             Self::Unlisted { node, .. } => Subject::Node(*node),
             // The decision that follows is about the primitive; the cube is a field.
-            Self::SharedUnseen(prim, _) => Subject::Prim(*prim),
+            Self::SharedDrawn(prim, _) | Self::SharedUnseen(prim, _) => Subject::Prim(*prim),
             // About the list as a whole.
             Self::Checked(_) => Subject::None,
+        }
+    }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::SharedUnseen(..) => Some(Claim::Hidden),
+            // That a cube leaves a list rests on the answer before it.
+            _ => None,
+        }
+    }
+    fn compared(&self, _: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Checked(check) => Some(check.compared()),
+            _ => None,
         }
     }
     fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
@@ -260,7 +314,9 @@ impl<S: Space> Note<S> for CubeNote {
                 let whose = processor.map(|p| integer("processor", p.into()));
                 std::iter::once(integer("node", node.0)).chain(whose).collect()
             }
-            Self::SharedUnseen(prim, node) => vec![integer("prim", prim.0), integer("node", node.0)],
+            Self::SharedDrawn(prim, node) | Self::SharedUnseen(prim, node) => {
+                vec![integer("prim", prim.0), integer("node", node.0)]
+            }
             Self::Checked(check) => check.fields(),
         }
     }
@@ -274,6 +330,10 @@ impl<S: Space> Note<S> for CubeNote {
             Self::Unlisted { node, processor: Some(p) } => format!(
                 "What node {node} holds itself cannot be seen in the finished image; it leaves the visible \
                  list of processor {p}."
+            ),
+            Self::SharedDrawn(prim, node) => format!(
+                "The {} {prim} lies in several cubes and is drawn once, with the first of them: node {node}.",
+                S::PRIM
             ),
             Self::SharedUnseen(prim, node) => format!(
                 "The {} {prim} lies in several cubes below node {node}; none of them can be seen.",
@@ -293,16 +353,27 @@ mod tests {
         let check = |frames, added, farthest| Check::new([frames, 30], [added, 20], farthest);
         let cases = [
             (check(30, 0, [0.1, 0.1]), Some(Due::Interval), "30 frames since its last check, as many as are"),
-            (check(3, 6, [0.1, 0.1]), Some(Due::Added), "6 of 20 cubes on the visible list are new; more than"),
+            (
+                check(3, 6, [0.1, 0.1]),
+                Some(Due::Added),
+                "6 of 20 cubes on the visible list are new; more than",
+            ),
             (check(3, 5, [0.1, 0.2]), Some(Due::Shifted), "the farthest depth is 10.00, after 5.00"),
             (check(1, 1, [0.1, 0.12]), None, "1 of 20 cubes on the visible list is new, 1 frame after"),
             (check(1, 0, [0.1, 0.0]), None, "none is due yet, the next one after 30 frames"),
-            (Check::new([1, 1], [0, 1], [0.0; 2]), Some(Due::Interval), "0 of 1 cube on the visible list are"),
+            (
+                Check::new([1, 1], [0, 1], [0.0; 2]),
+                Some(Due::Interval),
+                "0 of 1 cube on the visible list are",
+            ),
         ];
         for (check, due, words) in cases {
             assert_eq!(check.due, due, "{check:?}");
             assert!(check.sentence().contains(words), "{}", check.sentence());
         }
-        assert!(check(1, 0, [0.1, 0.0]).fields().iter().all(|f| f.name != "farthest_units"), "nothing before");
+        assert!(
+            check(1, 0, [0.1, 0.0]).fields().iter().all(|f| f.name != "farthest_units"),
+            "nothing before"
+        );
     }
 }

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use cullscope::drawing::Subject;
-use cullscope::geometry::{Aabb, NodeId, ObjectId, Solid, Space, Vector, ViewPath};
+use cullscope::geometry::{Aabb, NodeId, ObjectId, Solid, Space, Vector, View, ViewPath};
 use cullscope::method::{Card, Claim, Event, Film, Verdict};
 use cullscope::scene::{Parts, Scene, framing_view};
 use glam::{Vec3, vec3};
@@ -180,6 +180,11 @@ fn what_is_said_is_true<S: World>(scenes: &[Arc<Scene<S>>]) {
                 let mut away = framing_view(&scene.bounds(), 96, 96);
                 away.eye.target = away.eye.position * 2.0 - away.eye.target;
                 views.push(away);
+                // More regions of the screen than a simulated machine has renderers.
+                if nth == 0 {
+                    let wide = framing_view(&scene.bounds(), 700, 300);
+                    views.push(View { height: wide.height.min(300), ..wide });
+                }
                 for view in views {
                     let film = run.record(&view, usize::MAX).film;
                     has.extend((0..card.code.len() as u8).filter(|&line| film.has_line(line)));

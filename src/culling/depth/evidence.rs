@@ -5,11 +5,11 @@ use std::marker::PhantomData;
 
 use super::buffer::Step;
 use super::faces::Faces;
-use super::query::{Answer, Listener, Read};
+use super::query::{Answer, At, Listener, Read};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{axes, integer, label, number, outline, short};
-use crate::method::{Context, Event, Field, Note, Observer, Tallied, Tally, Value};
+use crate::method::{Claim, Compared, Context, Event, Field, Note, Observer, Tallied, Tally, Value};
 use crate::raster::{Extent, Options, PyramidCell};
 use crate::scene::Scene;
 
@@ -90,24 +90,35 @@ pub struct Rasterized {
     pub window: Option<PixelRect>,
 }
 
+/// The line of a method's pseudocode that says where a query stands, if any does.
+pub type QueryLines = fn(At) -> Option<u8>;
+
 /// Reports what a query reads, as evidence about the node whose box is queried, at lines of a method's
 /// pseudocode. `N` is the method's own note.
 pub struct QueryReporter<'a, S, N, O> {
     node: NodeId,
-    lines: [u8; 2],
+    lines: QueryLines,
     watch: &'a mut O,
     kinds: PhantomData<(S, N)>,
 }
 
 impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> QueryReporter<'a, S, N, O> {
-    /// `lines`: the line that compares the rectangle of the whole box with a cell, and the one that compares
-    /// a face.
-    pub fn new(node: NodeId, lines: [u8; 2], watch: &'a mut O) -> Self {
+    /// What is reported about a node goes to `watch`.
+    pub fn new(node: NodeId, lines: QueryLines, watch: &'a mut O) -> Self {
         Self { node, lines, watch, kinds: PhantomData }
     }
 }
 
 impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter<'_, S, N, O> {
+    #[inline]
+    fn reaches(&mut self, at: At) {
+        // Whoever does not listen is not to pay for the call.
+        if O::LISTENS
+            && let Some(line) = (self.lines)(at)
+        {
+            self.watch.event(Event::Line(line));
+        }
+    }
     #[inline]
     fn refreshes(&mut self, cell: PyramidCell) {
         self.watch.note(|| DepthNote::Refreshed(cell).into());
@@ -115,8 +126,6 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter
     #[inline]
     fn reads(&mut self, read: Read) {
         let node = self.node;
-        // A read for no face is one of the rectangle of the whole box, the first line.
-        self.watch.event(Event::Line(self.lines[usize::from(read.face.is_some())]));
         self.watch.note(move || DepthNote::Read(node, read).into());
     }
 }
@@ -204,6 +213,27 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => Subject::None,
         }
     }
+    fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Answered(n) if n.answer.is_hidden => Some(Claim::Hidden),
+            Self::Rasterized(n) if n.is_hidden => Some(Claim::Hidden),
+            // A cell hides a part of a face at most.
+            _ => None,
+        }
+    }
+    fn compared(&self, _: &Context<'_, S>) -> Option<Compared> {
+        // View depths: what is farther than the farthest thing drawn is hidden.
+        let depths = |nearest: f32, held: f32| {
+            let (nearest, held) = (units(nearest).into(), units(held).into());
+            Compared::of(("nearest depth", nearest), ("farthest drawn", held))
+        };
+        match self {
+            Self::Read(_, n) => Some(depths(n.nearest, n.held)),
+            Self::Answered(n) => n.answer.decisive.map(|(_, held)| depths(n.answer.nearest, held)),
+            Self::Rasterized(n) => n.operands.map(|(extent, held)| depths(extent.nearest, held)),
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => None,
+        }
+    }
     fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
         match self {
             Self::Read(node, n) => {
@@ -239,9 +269,10 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 )
             }
             Self::RefreshedUnder(_, most) => {
+                let tiles = if *most == 1 { "1 tile is".into() } else { format!("{most} tiles are") };
                 format!(
-                    "The pyramid is brought up to date where the next cube falls, if no more than {most} \
-                     tiles are stale there."
+                    "The pyramid is brought up to date where the next cube falls, if no more than {tiles} \
+                     stale there."
                 )
             }
             Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
@@ -302,7 +333,7 @@ impl<S: Faces> Answered<S> {
         let cells = if reads == 1 { "One cell was read".into() } else { format!("{reads} cells were read") };
         match (self.ground, self.answer.decisive, self.answer.is_hidden) {
             (Ground::CrossesNear, ..) => {
-                format!("Node {node} reaches the near plane, so it counts as visible.")
+                format!("Node {node} crosses the near plane, so it counts as visible.")
             }
             (Ground::BesideImage, ..) => {
                 format!("The box of node {node} lies beside the image: nothing of it can show.")

@@ -14,8 +14,8 @@ mod query;
 mod tests;
 
 pub use buffer::{Buffer, Step};
-pub use evidence::{Answered, DepthNote, Ground, QueryReporter, Rasterized};
+pub use evidence::{Answered, DepthNote, Ground, QueryLines, QueryReporter, Rasterized};
 pub use faces::{FaceImage, Faces, footprint, project_sphere};
 #[cfg(test)]
 pub use query::Outcome;
-pub use query::{Answer, Held, Listener, Nobody, Query, hides};
+pub use query::{Answer, At, Held, Listener, Nobody, Query, hides};

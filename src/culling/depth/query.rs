@@ -106,9 +106,49 @@ impl Read {
     }
 }
 
+/// Where a query stands: each is about to happen, or has just been decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// A cell over the rectangle of the whole box is compared.
+    Whole,
+    /// All of these hide it: nothing of the box can be seen.
+    WholeHides,
+    /// The next face of the box.
+    Face,
+    /// The finest cell that covers it is found.
+    Finest,
+    /// Whether the face is behind that cell is asked, or has been answered.
+    AskFace,
+    /// A face may be seen, and so may the box.
+    Seen,
+    /// No face can be seen.
+    Hidden,
+    /// A face and a cell of the descent.
+    Descent,
+    /// They are compared.
+    Compare,
+    /// The cell hides the face.
+    Hides,
+    /// It does not; whether it shows the face is asked.
+    Covers,
+    /// It shows it.
+    Shows,
+    /// The next cell below it.
+    Below,
+    /// Whether the face is behind that one is asked, or has been answered.
+    AskBelow,
+    /// One of the cells below shows the face.
+    BelowShows,
+    /// None does.
+    BelowHides,
+}
+
 /// Receives what a query reads, in order. It returns nothing, so a query with a listener and one without are
 /// the same.
 pub trait Listener {
+    /// The query has come so far.
+    #[inline(always)]
+    fn reaches(&mut self, _: At) {}
     /// The tile of a cell was out of date and is being brought up to date.
     fn refreshes(&mut self, cell: PyramidCell);
     /// A cell was compared with a face.
@@ -216,21 +256,25 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         // It may decide: the box's pixels are those within `MARGIN_PX` of its image, and so hold every pixel
         // where something in the box can show.
         if self.behind_whole(image.pixels.intersection(window)) {
+            self.listener.reaches(At::WholeHides);
             return self.answer;
         }
         // Section 3.2: "if all faces are invisible, the cube's contents can be disregarded". Only faces
         // toward the eye can be seen; the others lie behind them.
         let (faces, count) = S::front(bounds, view.eye.position);
         for (number, face) in faces[..count].iter().enumerate() {
+            self.listener.reaches(At::Face);
             // Each face's pixels have the same margin: what is drawn near to the box's image is near to that
             // of one of these faces, so nothing is lost between them.
             let mut face = S::image(*face, image, view.width, view.height);
             face.pixels = face.pixels.intersection(window);
             // One face that may be seen is enough.
             if !self.face(number as u8, &face) {
-                break;
+                self.listener.reaches(At::Seen);
+                return self.answer;
             }
         }
+        self.listener.reaches(At::Hidden);
         self.answer
     }
 
@@ -240,8 +284,11 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         if !face.pixels.is_empty() {
             // Section 3.2: "the single finest resolution pixel in the pyramid that still completely covers
             // the bounding box area".
+            self.listener.reaches(At::Finest);
             let cell = self.buffer.buffer().pyramid().finest_over(face.pixels);
+            self.listener.reaches(At::AskFace);
             self.answer.is_hidden &= self.behind(number, face, cell);
+            self.listener.reaches(At::AskFace);
         }
         self.answer.is_hidden
     }
@@ -267,6 +314,7 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
     /// Whether the part of the rectangle inside a cell lies behind the cell's depth, descending at most
     /// `finer` levels.
     fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
+        self.listener.reaches(At::Whole);
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
         // Conservative in rounding: `nearest` is rounded to f32 as fragments are, which keeps the order, so
@@ -319,6 +367,8 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
 
     /// Whether the face lies behind all that is drawn in a cell.
     fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+        self.listener.reaches(At::Descent);
+        self.listener.reaches(At::Compare);
         let held = self.look_at(cell);
         let nearest = self.answer.nearest;
         // Section 3.2: obscured if "the closest face z is further than the sample z". Depths are 1/w, so
@@ -331,12 +381,17 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
             Outcome::Descends
         };
         self.listener.reads(Read { face: Some(number), cell, held, nearest, outcome });
+        if outcome != Outcome::Behind {
+            self.listener.reaches(At::Covers);
+        }
         match outcome {
             Outcome::Behind => {
+                self.listener.reaches(At::Hides);
                 self.least(cell, held);
                 true
             }
             Outcome::Shows => {
+                self.listener.reaches(At::Shows);
                 self.answer.decisive = Some((cell, held));
                 false
             }
@@ -352,10 +407,19 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         for k in 0..4 {
             let child =
                 PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
-            if face.touches(self.pixels(child)) && !self.behind(number, face, child) {
+            if !face.touches(self.pixels(child)) {
+                continue;
+            }
+            self.listener.reaches(At::Below);
+            self.listener.reaches(At::AskBelow);
+            let is_behind = self.behind(number, face, child);
+            self.listener.reaches(At::AskBelow);
+            if !is_behind {
+                self.listener.reaches(At::BelowShows);
                 return false;
             }
         }
+        self.listener.reaches(At::BelowHides);
         true
     }
     #[inline]

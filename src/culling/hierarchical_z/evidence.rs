@@ -5,7 +5,7 @@ use crate::culling::depth::{DepthNote, Faces};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, View};
 use crate::method::evidence::{Facing, Tested, integer, outline};
-use crate::method::{Claim, Context, Field, Note, Tallied, Tally};
+use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -42,7 +42,9 @@ impl<S: Faces> Evidence<S> {
             Self::Tested(n) => n.draw(view, to),
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Depth(n) => n.draw(scene, view, to),
-            Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
+            Self::Cube(CubeNote::SharedDrawn(prim, _) | CubeNote::SharedUnseen(prim, _)) => {
+                outline(scene, *prim, to);
+            }
             // Marks on the tree and counts have no place in the world.
             Self::Listed(..) | Self::Cube(CubeNote::Unlisted { .. } | CubeNote::Checked(_)) => {}
         }
@@ -86,8 +88,19 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
-            // What is hidden needs no claim here: a checker proves it of the verdict, from the whole scene.
-            _ => None,
+            Self::Depth(n) => n.claim(context),
+            Self::Cube(n) => n.claim(context),
+            // A mark proves nothing.
+            Self::Listed(..) => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            Self::Depth(n) => n.compared(context),
+            Self::Cube(n) => Note::<S>::compared(n, context),
+            Self::Listed(..) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {

@@ -11,11 +11,10 @@
 //!    visible list;
 //! 3. what the list holds and the finished image does not show leaves it (Section 3.3).
 //!
-//! Departures: the query is for the bounds of what a cube holds, not for the cube; the pyramid is brought up
-//! to date where it is read, not where it is drawn (see [`crate::raster::Pyramid`]); the list is kept as
-//! marks on the tree, so cubes are drawn front to back; a cube on the list whose ancestor left it leaves with
-//! it. Cost: O(visible cubes) queries and the drawing of what they hold; memory O(cubes) from frame to frame.
+//! Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the drawing
+//! of what they hold; memory O(cubes) from frame to frame.
 
+mod code;
 mod evidence;
 pub mod parts;
 mod picture;
@@ -25,6 +24,7 @@ mod walk;
 
 use std::sync::Arc;
 
+use self::code::{CODE, DEPARTURES, STANDS, has_line};
 pub(crate) use self::evidence::Evidence;
 use self::walk::{Scratch, Walk};
 use super::cubes::Cubes;
@@ -33,8 +33,8 @@ use super::depth::{Buffer, Faces};
 use crate::drawing::Drawing;
 use crate::index::Octree;
 use crate::method::{
-    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    backface_knob, keeps_nothing, words,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
+    keeps_nothing, words,
 };
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
@@ -93,66 +93,6 @@ words! {
     }
 }
 
-const CODE: &[CodeLine] = &[
-    // Section 3.3.
-    CodeLine::new("Frame:1", "Frame(visible list L)"),
-    CodeLine::new("Frame:2", "  clear the z-buffer and the z-pyramid"),
-    CodeLine::new("Frame:3", "  for each cube C of L in view, front to back"),
-    CodeLine::new("Frame:4", "    Draw(C)"),
-    CodeLine::new("Frame:5", "  Visit(root)"),
-    CodeLine::new("Frame:6", "  if a check of L is due"),
-    CodeLine::new("Frame:7", "    for each C of L in view: if Obscured(C), remove C"),
-    // Section 3.1 for the tree; the list is that of Section 3.3.
-    CodeLine::new("Visit:1", "Visit(cube C)"),
-    CodeLine::new("Visit:2", "  if C is outside the view: return"),
-    CodeLine::new("Visit:3", "  if C is not in L"),
-    CodeLine::new("Visit:4", "    if Obscured(C): return"),
-    CodeLine::new("Visit:5", "    add C to L; Draw(C)"),
-    CodeLine::new("Visit:6", "  for each child D of C, front to back: Visit(D)"),
-    // Section 3.1 for what is drawn once; Greene, Kass and Miller 1993, Section 3.2, for the test of a
-    // primitive.
-    CodeLine::new("Draw:1", "Draw(cube C)"),
-    CodeLine::new("Draw:2", "  for each primitive p of C that is not drawn yet"),
-    CodeLine::new("Draw:3", "    if p is behind its pyramid cells: skip it"),
-    CodeLine::new("Draw:4", "    rasterize p; the pyramid follows"),
-    // Section 3.2, but for the look at the few cells over the whole box.
-    CodeLine::new("Obscured:1", "Obscured(cube C)"),
-    CodeLine::new("Obscured:2", "  if C crosses the near plane: return false"),
-    CodeLine::new("Obscured:3", "  if C is behind the few cells over its screen rectangle: return true"),
-    CodeLine::new("Obscured:4", "  for each face F of C toward the eye"),
-    CodeLine::new("Obscured:5", "    q := finest cell that covers F on the screen"),
-    CodeLine::new("Obscured:6", "    if not Behind(F, q): return false"),
-    CodeLine::new("Obscured:7", "  return true"),
-    // Section 3.2: the descent "to higher resolutions".
-    CodeLine::new("Behind:1", "Behind(face F, cell q)"),
-    CodeLine::new("Behind:2", "  if the nearest depth of F is behind q: return true"),
-    CodeLine::new("Behind:3", "  if q is a pixel or F covers q: return false"),
-    CodeLine::new("Behind:4", "  for each cell r of the four below q that F touches"),
-    CodeLine::new("Behind:5", "    if not Behind(F, r): return false"),
-    CodeLine::new("Behind:6", "  return true"),
-];
-
-/// Lines of [`CODE`] that the run reaches.
-mod line {
-    use super::CODE;
-    use crate::method::line;
-    pub const CLEAR: u8 = line(CODE, "Frame:2");
-    pub const DRAW_LISTED: u8 = line(CODE, "Frame:4");
-    pub const VISIT_ROOT: u8 = line(CODE, "Frame:5");
-    pub const CHECK: u8 = line(CODE, "Frame:6");
-    pub const UNLIST: u8 = line(CODE, "Frame:7");
-    pub const OUTSIDE: u8 = line(CODE, "Visit:2");
-    pub const IN_LIST: u8 = line(CODE, "Visit:3");
-    pub const OBSCURED: u8 = line(CODE, "Visit:4");
-    pub const ADD: u8 = line(CODE, "Visit:5");
-    pub const CHILD: u8 = line(CODE, "Visit:6");
-    pub const SKIP: u8 = line(CODE, "Draw:3");
-    pub const RASTERIZE: u8 = line(CODE, "Draw:4");
-    pub const NEAR: u8 = line(CODE, "Obscured:2");
-    pub const WHOLE: u8 = line(CODE, "Obscured:3");
-    pub const BEHIND: u8 = line(CODE, "Behind:2");
-}
-
 /// What is kept from frame to frame.
 #[derive(Clone, Default)]
 pub(crate) struct Memory {
@@ -181,8 +121,8 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         doi: "10.1145/166117.166147",
         conservative: true,
         code: CODE,
-        stands: &[],
-        departures: &[],
+        stands: STANDS,
+        departures: DEPARTURES,
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
@@ -260,6 +200,9 @@ impl<S: Faces> Method<S> for HierarchicalZ {
             let (is_checked, now) = walk.check(*farthest, *frames + 1);
             (*frames, *farthest) = (if is_checked { 0 } else { *frames + 1 }, now);
         }
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        has_line(params, line)
     }
 }
 

@@ -100,7 +100,7 @@ pub fn pyramid_picture<S: Faces>(
     if let Some((pixels, depth)) = face {
         // The face is of no node and of no line of the pseudocode; the picture shows neither.
         is_hidden =
-            Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), [0, 0], &mut recorder))
+            Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), |_| None, &mut recorder))
                 .face(0, &FaceImage::rectangle(pixels));
     }
     (levels(&buffer, view, &last_reads(recorder.notes.iter().rev().map(Some)), scale), is_hidden)

@@ -55,7 +55,7 @@ fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
     buffer.draw(&scene, scene.live(), &Options::default());
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
-    let reporter = QueryReporter::new(NodeId(0), [0, 0], &mut recorder);
+    let reporter = QueryReporter::new(NodeId(0), |_| None, &mut recorder);
     let mut query = Query::new(&mut buffer, 1.0 / 6.0, reporter);
     let is_hidden = query.face(0, &FaceImage::rectangle(pixels));
     let reads = recorder.notes.iter().filter_map(|n| match n {
@@ -172,7 +172,7 @@ fn answered(pixels: PixelRect, depth: f32) -> (Vec<Evidence<Solid>>, String) {
     buffer.draw(&scene, scene.live(), &Options::default());
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
-    let reporter = QueryReporter::new(NodeId(7), [0, 0], &mut recorder);
+    let reporter = QueryReporter::new(NodeId(7), |_| None, &mut recorder);
     let mut query = Query::new(&mut buffer, 1.0 / depth, reporter);
     query.face(0, &FaceImage::rectangle(pixels));
     let (answer, ground, bounds) = (query.answer, Ground::Cells, scene.bounds());
@@ -293,7 +293,9 @@ fn what_was_hidden_is_not_on_the_list() {
 #[test]
 fn a_list_is_checked_early_for_the_two_reasons_of_the_paper() {
     // A room with a window: the farthest depth is that of the back wall until the eye passes the front one.
-    let quad = |z: f32, half: f32| [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| glam::vec3(x, y, z));
+    let quad = |z: f32, half: f32| {
+        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| glam::vec3(x, y, z))
+    };
     let points: Vec<_> = quad(-40.0, 90.0).into_iter().chain(quad(-5.0, 90.0)).collect();
     let prims = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
     let scene = Arc::new(Scene::<Solid>::new(Parts::simple("two walls", points, prims)).expect("valid"));

@@ -2,12 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::code::line;
 use super::evidence::Evidence;
-use super::{Form, Params, Volume, line};
+use super::{Form, Params, Volume};
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, Buffer, DepthNote, FaceImage, Faces, Ground, Held, Listener, Nobody, Query,
-    QueryReporter, Rasterized, Step, footprint, project_sphere,
+    Answer, Answered, At, Buffer, DepthNote, FaceImage, Faces, Ground, Held, Listener, Nobody, Query,
+    QueryLines, QueryReporter, Rasterized, Step, footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
@@ -111,14 +112,21 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Steps 1 and 2: draws the visible list, then visits the tree.
     pub(super) fn run(&mut self) {
-        self.watch.event(Event::Line(line::CLEAR));
+        self.line(line::FRAME);
+        self.line(line::CLEAR);
         // 1. Section 3.3: what was visible in the last frame mostly still is.
         self.watch.stage("draw-listed");
-        self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
+        if self.params.coherence {
+            self.line(line::EACH_LISTED);
+            self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
+        }
         if self.is_two_pass() {
-            let listed = std::mem::take(&mut self.waiting);
-            self.draw_together(listed);
+            if self.params.coherence {
+                self.line(line::DRAW_KEPT);
+                self.draw_together();
+            }
             // Nothing is drawn during the visit, so all queries read the same pyramid: once is enough.
+            self.line(line::REFRESH_ALL);
             self.refresh(DepthNote::RefreshedAll);
             // A listener is to hear every read in the order of the traversal.
             if self.options.threads > 1 && !O::LISTENS {
@@ -127,16 +135,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         // 2. Section 3.2: everything else is drawn unless the pyramid hides its box.
         self.watch.stage("visit");
-        self.watch.event(Event::Line(line::VISIT_ROOT));
+        self.line(line::VISIT_ROOT);
         self.visit(NodeId(0), Frustum::<S::Vector>::ALL);
         if self.is_two_pass() {
-            let found = std::mem::take(&mut self.waiting);
-            self.draw_together(found);
+            self.line(line::DRAW_FOUND);
+            self.draw_together();
         }
         // A primitive that several cubes share is known to be hidden only when all of them were visited.
-        for node in std::mem::take(&mut self.passing) {
-            self.report_unseen(node);
+        if self.params.cubes.may_share() {
+            self.line(line::EACH_SHARED);
+            for node in std::mem::take(&mut self.passing) {
+                self.report_unseen(node);
+            }
         }
+    }
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
     }
 
     /// Step 3: takes off the list what the finished image hides, if a check is due (Section 4.2).
@@ -149,7 +163,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let farthest = if interval == 1 { 0.0 } else { self.buffer.farthest_of_all() };
         let listed = self.listed.iter().filter(|l| **l).count() as u32;
         let check = Check::new([frames, interval], [self.added, listed], [farthest, before]);
-        self.watch.event(Event::Line(line::CHECK));
+        self.line(line::CHECK);
         self.watch.note(move || Evidence::Cube(CubeNote::Checked(check)));
         if check.due.is_some() {
             self.unlist(NodeId(0), Frustum::<S::Vector>::ALL);
@@ -167,9 +181,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn is_two_pass(&self) -> bool {
         self.params.form == Form::TwoPass
     }
-    /// Draws a cube, now or with others.
-    fn draw_or_wait(&mut self, id: NodeId) {
-        if self.is_two_pass() { self.waiting.push(id) } else { self.draw(id) }
+    /// Draws a cube at one line, now, or keeps it at another, to be drawn with others.
+    fn draw_or_keep(&mut self, id: NodeId, [draw, keep]: [u8; 2]) {
+        if self.is_two_pass() {
+            self.line(keep);
+            self.waiting.push(id);
+        } else {
+            self.line(draw);
+            self.draw(id);
+        }
     }
 
     /// Two-pass form on several threads: queries all cubes that the visit will query, level by level. The
@@ -222,10 +242,10 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
-        self.watch.event(Event::Line(line::DRAW_LISTED));
+        self.line(line::EACH_LISTED);
         self.watch.note(|| Evidence::Listed(id, true));
         self.cubes[id.at()] = true;
-        self.draw_or_wait(id);
+        self.draw_or_keep(id, [line::DRAW_LISTED, line::KEEP_LISTED]);
         for child in front_to_back(self.index, node, self.view) {
             self.draw_listed(child, cutting);
         }
@@ -235,48 +255,58 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let index = self.index;
         let node = &index.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
-        self.watch.event(Event::Line(line::OUTSIDE));
+        self.line(line::VISIT);
+        self.line(line::VIEW);
         // Planes that the parent lies wholly inside of are not tested again.
         let test = self.frustum.test(&node.bounds, planes);
         self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
         let cutting = match test {
-            FrustumTest::Outside(_) => return self.leave(id, Verdict::Outside),
+            FrustumTest::Outside(_) => return self.leave(id, line::OUTSIDE, Verdict::Outside),
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
-        self.watch.event(Event::Line(line::IN_LIST));
+        if self.params.coherence {
+            self.line(line::UNLISTED);
+        }
         if self.cubes[id.at()] {
             self.watch.note(|| Evidence::Listed(id, false));
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
         } else {
-            self.watch.event(Event::Line(line::OBSCURED));
+            self.line(line::OBSCURED);
             let ahead = self.asked.get(id.at()).copied().flatten();
-            if ahead.unwrap_or_else(|| self.is_obscured(id)) {
-                return self.leave(id, Verdict::Hidden);
+            let is_obscured = ahead.unwrap_or_else(|| self.is_obscured(id));
+            self.line(line::OBSCURED);
+            if is_obscured {
+                return self.leave(id, line::HIDDEN, Verdict::Hidden);
             }
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
             // Section 3.3: what the query does not reject is visible from now on.
-            self.watch.event(Event::Line(line::ADD));
-            self.listed[id.at()] = true;
-            self.added += 1;
-            self.draw_or_wait(id);
+            if self.params.coherence {
+                self.line(line::ADD);
+                self.listed[id.at()] = true;
+                self.added += 1;
+            }
+            self.draw_or_keep(id, [line::DRAW, line::KEEP]);
         }
         if !index.passed(id).is_empty() {
             self.passing.push(id);
         }
+        self.line(line::CHILDREN);
         for child in front_to_back(index, node, self.view) {
-            self.watch.event(Event::Line(line::CHILD));
+            self.line(line::CHILD);
             self.visit(child, cutting);
         }
         self.watch.event(Event::Left(id));
     }
-    fn leave(&mut self, id: NodeId, verdict: Verdict) {
+    fn leave(&mut self, id: NodeId, line: u8, verdict: Verdict) {
+        self.line(line);
         self.watch.event(Event::DecidedNode(id, verdict));
         self.watch.event(Event::Left(id));
     }
 
     /// Draws what a cube holds and is not drawn yet.
     fn draw(&mut self, id: NodeId) {
+        self.line(line::DRAW_CUBE);
         self.prims.clear();
         self.gather(id);
         if self.prims.is_empty() {
@@ -288,19 +318,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         {
             // A departure: the paper's pyramid is always up to date (Section 3.2). Here no more tiles are
             // refreshed than there are primitives that could be left out because of it.
+            self.line(line::REFRESH);
             let (pixels, most) = (image.pixels, self.prims.len() as u32);
             self.refresh(DepthNote::RefreshedUnder(pixels, most));
         }
         self.rasterize();
     }
-    /// Draws what several cubes hold, all at once.
-    fn draw_together(&mut self, nodes: Vec<NodeId>) {
+    /// Draws what the cubes hold that were kept, all at once.
+    fn draw_together(&mut self) {
+        self.line(line::DRAW_CUBE);
         self.prims.clear();
-        nodes.into_iter().for_each(|node| self.gather(node));
+        std::mem::take(&mut self.waiting).into_iter().for_each(|node| self.gather(node));
         self.rasterize();
     }
     /// Adds what a cube holds, is not drawn yet and faces the eye to the primitives at hand.
     fn gather(&mut self, id: NodeId) {
+        self.line(line::GATHER);
         let (index, scene, view) = (self.index, self.scene, self.view);
         let first = self.prims.len();
         self.prims.extend_from_slice(index.own(id));
@@ -319,6 +352,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         for at in first..self.prims.len() {
             let prim = self.prims[at];
             if prim_faces_away(scene, view.eye.position, prim) {
+                self.line(line::FACES_AWAY);
                 self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
@@ -339,10 +373,17 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let hidden = self.buffer.step(step).to_vec();
         // What was left out comes in the order of the primitives.
         let mut next_hidden = hidden.iter().peekable();
-        for &prim in self.prims.iter() {
+        self.line(line::EACH);
+        for at in 0..self.prims.len() {
+            let prim = self.prims[at];
             let is_hidden = next_hidden.next_if(|&&h| h == prim).is_some();
+            if is_sieved {
+                self.line(line::TEST);
+            }
+            if !is_hidden {
+                self.line(line::RASTERIZE);
+            }
             let buffer = &*self.buffer;
-            self.watch.event(Event::Line(if is_hidden { line::SKIP } else { line::RASTERIZE }));
             self.watch.note(move || {
                 // What was compared can still be read after drawing, which refreshes nothing.
                 let operands = is_sieved.then(|| buffer.operands(scene, prim, options)).flatten();
@@ -351,9 +392,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                     Rasterized { prim, operands, is_hidden, is_sieved, backface_culling, window };
                 Evidence::Depth(DepthNote::Rasterized(rasterized))
             });
-            self.watch
-                .event(Event::DecidedPrim(prim, if is_hidden { Verdict::Hidden } else { Verdict::Visible }));
-            if !is_hidden {
+            if is_hidden {
+                self.line(line::SKIP);
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+            } else {
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
                 self.out.prims.push(prim);
             }
         }
@@ -363,18 +406,25 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn is_obscured(&mut self, node: NodeId) -> bool {
         let OctreeNode { bounds, .. } = self.index.nodes()[node.at()];
         let question = question(&self.index.nodes()[node.at()], self.view, &self.projection, self.params);
+        self.line(line::QUERY);
+        self.line(line::NEAR);
+        let decided = |is_hidden: bool, nearest: f32| Answer { is_hidden, nearest, reads: 0, decisive: None };
         let (pixels, answer, ground) = match question {
+            Question::Decided(Ground::CrossesNear) => {
+                self.line(line::CROSSES);
+                (PixelRect::default(), decided(false, 1.0 / self.view.eye.near), Ground::CrossesNear)
+            }
             Question::Decided(ground) => {
-                let crosses_near = ground == Ground::CrossesNear;
-                if crosses_near {
-                    self.watch.event(Event::Line(line::NEAR));
-                }
-                let nearest = 1.0 / self.view.eye.near;
-                let answer = Answer { is_hidden: !crosses_near, nearest, reads: 0, decisive: None };
-                (PixelRect::default(), answer, ground)
+                self.line(line::NO_PIXEL);
+                (PixelRect::default(), decided(true, 1.0 / self.view.eye.near), ground)
+            }
+            Question::Open(image, nearest) if image.pixels.is_empty() => {
+                self.line(line::NO_PIXEL);
+                (image.pixels, decided(true, nearest), Ground::Cells)
             }
             Question::Open(image, nearest) => {
-                let reporter = QueryReporter::new(node, [line::WHOLE, line::BEHIND], &mut *self.watch);
+                let lines = self.query_lines();
+                let reporter = QueryReporter::new(node, lines, &mut *self.watch);
                 let query = Query::new(&mut *self.buffer, nearest, reporter);
                 (image.pixels, ask(query, self.params, &bounds, &image, self.view), Ground::Cells)
             }
@@ -385,10 +435,21 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         answer.is_hidden
     }
 
+    /// The lines of a query, with those before it.
+    fn query_lines(&mut self) -> QueryLines {
+        match self.params.query {
+            Volume::Faces => return lines_by_faces,
+            Volume::Rectangles => self.line(line::RECTANGLE),
+            Volume::Sphere => self.line(line::SPHERE),
+        }
+        lines_by_one
+    }
+
     /// Reports the primitives that a cube passed on and none of its children drew.
     fn report_unseen(&mut self, id: NodeId) {
         for &prim in self.index.passed(id) {
             if !self.drawn[prim.at()] {
+                self.line(line::UNSEEN);
                 self.watch.note(|| Evidence::Cube(CubeNote::SharedUnseen(prim, id)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
             }
@@ -406,8 +467,12 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
-        self.watch.event(Event::Line(line::UNLIST));
-        if self.is_obscured(id) {
+        self.line(line::EACH_CHECKED);
+        self.line(line::CHECK_OBSCURED);
+        let is_obscured = self.is_obscured(id);
+        self.line(line::CHECK_OBSCURED);
+        if is_obscured {
+            self.line(line::UNLIST);
             self.unmark(id);
             self.watch.note(|| Evidence::Cube(CubeNote::Unlisted { node: id, processor: None }));
             return;
@@ -474,6 +539,42 @@ fn ask<S: Faces, B: Held<S>, L: Listener>(
     }
     query.face(0, &FaceImage::rectangle(image.pixels));
     query.answer
+}
+
+/// Lines of a query by faces.
+fn lines_by_faces(at: At) -> Option<u8> {
+    Some(match at {
+        At::Whole => line::WHOLE,
+        At::WholeHides => line::WHOLE_HIDES,
+        At::Face => line::FACE,
+        At::Finest => line::FINEST,
+        At::AskFace => line::BEHIND_FACE,
+        At::Seen => line::SEEN,
+        At::Hidden => line::ALL_HIDDEN,
+        _ => return line_of_descent(at),
+    })
+}
+/// Lines of a query by one rectangle.
+fn lines_by_one(at: At) -> Option<u8> {
+    match at {
+        At::Finest => Some(line::FINEST_ONE),
+        At::AskFace => Some(line::BEHIND_ONE),
+        _ => line_of_descent(at),
+    }
+}
+fn line_of_descent(at: At) -> Option<u8> {
+    Some(match at {
+        At::Descent => line::DESCENT,
+        At::Compare => line::COMPARE,
+        At::Hides => line::HIDES,
+        At::Covers => line::COVERS,
+        At::Shows => line::SHOWS,
+        At::Below => line::BELOW,
+        At::AskBelow => line::ASK_BELOW,
+        At::BelowShows => line::BELOW_SHOWS,
+        At::BelowHides => line::BELOW_HIDES,
+        _ => return None,
+    })
 }
 
 /// The children of a cube, those on the eye's side first.

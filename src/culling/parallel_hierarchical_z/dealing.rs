@@ -150,11 +150,12 @@ impl Processor {
         let (mut shown, mut hidden): (Vec<usize>, Vec<usize>) =
             in_view.partition(|&s| structures[s].is_listed);
         // What covers most fills the z-buffer fastest. The area is that of the box's screen rectangle.
-        let area = |s: &usize| match footprint(view, projection, &index.nodes()[structures[*s].node.at()].held) {
-            Footprint::Seen(image) => image.pixels.area(),
-            Footprint::Outside => 0,
-            Footprint::CrossesNear => u64::MAX,
-        };
+        let area =
+            |s: &usize| match footprint(view, projection, &index.nodes()[structures[*s].node.at()].held) {
+                Footprint::Seen(image) => image.pixels.area(),
+                Footprint::Outside => 0,
+                Footprint::CrossesNear => u64::MAX,
+            };
         shown.sort_by_cached_key(|s| (Reverse(area(s)), *s));
         // What costs most waits longest, while other processors fill the z-buffer.
         hidden.sort_by_key(|&s| (structures[s].prims.len(), s));

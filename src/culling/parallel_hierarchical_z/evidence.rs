@@ -7,7 +7,7 @@ use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::View;
 use crate::index::Octree;
 use crate::method::evidence::{Facing, Tested, outline};
-use crate::method::{Claim, Context, Field, Note, Tallied, Tally};
+use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -50,7 +50,9 @@ impl<S: Faces> Evidence<S> {
             Self::Tested(n) => n.draw(view, to),
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Depth(n) => n.draw(scene, view, to),
-            Self::Cube(CubeNote::SharedUnseen(prim, _)) => outline(scene, *prim, to),
+            Self::Cube(CubeNote::SharedDrawn(prim, _) | CubeNote::SharedUnseen(prim, _)) => {
+                outline(scene, *prim, to);
+            }
             // The cells that were read for it are notes of their own.
             Self::Cube(CubeNote::Unlisted { .. } | CubeNote::Checked(_)) => {}
             Self::Worked(n) => {
@@ -101,8 +103,20 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
-            // What is hidden needs no claim here: a checker proves it of the verdict, from the whole scene.
-            _ => None,
+            Self::Depth(n) => n.claim(context),
+            Self::Cube(n) => n.claim(context),
+            // That a unit worked proves nothing.
+            Self::Worked(_) => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            Self::Depth(n) => n.compared(context),
+            Self::Cube(n) => Note::<S>::compared(n, context),
+            // Work takes time, and compares nothing.
+            Self::Worked(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {

@@ -312,9 +312,9 @@ impl Worked {
         let (who, node, count, region) = (self.unit.name(), self.node, self.count, self.region);
         let prims = if count == 1 { "1 primitive".to_owned() } else { format!("{count} primitives") };
         let what = match self.job {
-            Job::DrawVisible => format!(
-                "transforms and sends out node {node}, which is on its visible list: {prims}"
-            ),
+            Job::DrawVisible => {
+                format!("transforms and sends out node {node}, which is on its visible list: {prims}")
+            }
             Job::DrawFound => {
                 format!("transforms and sends out node {node}, which may be seen: {prims}")
             }

@@ -14,15 +14,10 @@
 //! 4. every n frames, or early, each processor checks its visible structures against the finished image
 //!    (Sections 4.2 and 5.1).
 //!
-//! Departures: the cost of an operation is a parameter, not that of a Pixel-Planes 5; a processor of the
-//! hybrid distribution first queries the cube above several of its invisible structures (the paper leaves
-//! open how it recombines its allotment into a tree); what is out of view is left out before the machine
-//! begins, whole cubes at a time; marks of shared primitives are known to all processors at once, as on a
-//! machine with shared memory; with dynamic allocation a renderer that is free gives its region up for the
-//! next one (on the machine a region is finished when all its primitives are known), and a region that no
-//! renderer holds counts as seen, since it cannot be queried; a sphere is compared by its screen rectangle.
-//! Cost: O(jobs · log jobs) beside what is drawn and queried.
+//! Where this differs from the paper, and why: [`DEPARTURES`]. Cost: O(jobs · log jobs) beside what is drawn
+//! and queried.
 
+mod code;
 mod dealing;
 mod evidence;
 mod machine;
@@ -34,6 +29,7 @@ mod timeline;
 
 use std::sync::Arc;
 
+use self::code::{CODE, DEPARTURES, STANDS, has_line};
 pub(crate) use self::evidence::Evidence;
 use self::machine::{Job, Machine, Worked};
 use self::simulation::{Lists, Simulation};
@@ -42,8 +38,8 @@ use super::depth::{Buffer, DepthNote, Faces, picture};
 use crate::drawing::Drawing;
 use crate::index::Octree;
 use crate::method::{
-    Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    backface_knob, keeps_nothing,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
+    keeps_nothing,
 };
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
@@ -75,80 +71,6 @@ impl Default for Params {
     }
 }
 
-const CODE: &[CodeLine] = &[
-    // Section 4.1 for the structures, Section 5.1 for the regions.
-    CodeLine::new("Frame:1", "Frame(structures, processors, renderers)"),
-    CodeLine::new("Frame:2", "  in the first frame: deal the structures out to the processors"),
-    CodeLine::new("Frame:3", "  leave out the structures outside the view"),
-    CodeLine::new("Frame:4", "  give the regions of the screen to the renderers"),
-    CodeLine::new("Frame:5", "  all at once: Process(its lists), Render(its regions)"),
-    CodeLine::new("Frame:6", "  a shared primitive that no structure drew is hidden"),
-    // Sections 4.2 and 5.1: not in every frame, since a test may take communication.
-    CodeLine::new("Check:1", "Check(visible list V), when the image is finished"),
-    CodeLine::new("Check:2", "  ask the renderers for the farthest depths"),
-    CodeLine::new("Check:3", "  if n frames passed, many structures are new on V or the farthest depth shifted"),
-    CodeLine::new("Check:4", "    for each C of V in view: send its box to its regions"),
-    CodeLine::new("Check:5", "      when all have answered: move C to the invisible list, unless one saw it"),
-    // Section 5.1, in the orders of Section 4.2. Section 5.3 adds the farthest depths, and that a processor
-    // goes on while it waits.
-    CodeLine::new("Process:1", "Process(visible list V, invisible list I)"),
-    CodeLine::new("Process:2", "  for each C of V, by decreasing area on the screen"),
-    CodeLine::new("Process:3", "    Draw(C)"),
-    CodeLine::new("Process:4", "  ask the renderers for the farthest depths"),
-    CodeLine::new("Process:5", "  for each C of I, by increasing number of primitives"),
-    CodeLine::new("Process:6", "    if its box crosses the near plane: C is visible"),
-    CodeLine::new("Process:7", "    else if its box covers no pixel: skip C"),
-    CodeLine::new("Process:8", "    else if behind the farthest depth of its regions: skip C"),
-    CodeLine::new("Process:9", "    else if no renderer holds one of its regions: C is visible"),
-    CodeLine::new("Process:10", "    else send its box to its regions"),
-    CodeLine::new("Process:11", "  when all regions of C have answered: skip C, unless one saw it"),
-    CodeLine::new("Process:12", "    then move C to V; Draw(C)"),
-    CodeLine::new("Process:13", "  wait while only answers are to come"),
-    // Section 5: processors transform, renderers rasterize.
-    CodeLine::new("Draw:1", "Draw(structure C)"),
-    CodeLine::new("Draw:2", "  for each primitive p of C that is not drawn yet"),
-    CodeLine::new("Draw:3", "    if p faces away: skip it"),
-    CodeLine::new("Draw:4", "    transform p; send it to its regions"),
-    // Sections 5 and 5.1: whether a pixel is left on is the all-enables-off bit after a box was rasterized
-    // without being written.
-    CodeLine::new("Render:1", "Render(regions), for each message in order of arrival"),
-    CodeLine::new("Render:2", "  primitives: rasterize them"),
-    CodeLine::new("Render:3", "  a box: compare its faces with the depths drawn so far"),
-    CodeLine::new("Render:4", "    answer whether any pixel is left on"),
-    CodeLine::new("Render:5", "  asked for the farthest depths: answer with those of its regions"),
-];
-
-/// Lines of [`CODE`] that the run reaches.
-mod line {
-    use super::CODE;
-    use crate::method::line;
-    pub const DEAL: u8 = line(CODE, "Frame:2");
-    pub const OUTSIDE: u8 = line(CODE, "Frame:3");
-    pub const ALLOCATE: u8 = line(CODE, "Frame:4");
-    pub const UNSEEN: u8 = line(CODE, "Frame:6");
-    pub const CHECK_FARTHEST: u8 = line(CODE, "Check:2");
-    pub const CHECK: u8 = line(CODE, "Check:3");
-    pub const TAKE_LISTED: u8 = line(CODE, "Check:4");
-    pub const UNLIST: u8 = line(CODE, "Check:5");
-    pub const DRAW_VISIBLE: u8 = line(CODE, "Process:3");
-    pub const ASK_FARTHEST: u8 = line(CODE, "Process:4");
-    pub const TAKE: u8 = line(CODE, "Process:5");
-    pub const NEAR: u8 = line(CODE, "Process:6");
-    pub const NO_PIXEL: u8 = line(CODE, "Process:7");
-    pub const FARTHEST: u8 = line(CODE, "Process:8");
-    pub const UNHELD: u8 = line(CODE, "Process:9");
-    pub const SEND_BOX: u8 = line(CODE, "Process:10");
-    pub const DECIDE: u8 = line(CODE, "Process:11");
-    pub const DRAW_FOUND: u8 = line(CODE, "Process:12");
-    pub const WAIT: u8 = line(CODE, "Process:13");
-    pub const FACES_AWAY: u8 = line(CODE, "Draw:3");
-    pub const TRANSFORM: u8 = line(CODE, "Draw:4");
-    pub const RASTERIZE: u8 = line(CODE, "Render:2");
-    pub const COMPARE: u8 = line(CODE, "Render:3");
-    pub const ANSWER: u8 = line(CODE, "Render:4");
-    pub const FIND_FARTHEST: u8 = line(CODE, "Render:5");
-}
-
 /// What is kept from frame to frame.
 #[derive(Clone, Default)]
 pub(crate) struct Memory {
@@ -171,8 +93,8 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         doi: "",
         conservative: true,
         code: CODE,
-        stands: &[],
-        departures: &[],
+        stands: STANDS,
+        departures: DEPARTURES,
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
@@ -214,6 +136,9 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         watch.event(Event::FrameBegan);
         // Drawing is simulated as well: what a box is compared with depends on what has arrived by then.
         Simulation::new(frame, buffer, &mut memory.lists, out, watch).run();
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        has_line(params, line)
     }
 }
 

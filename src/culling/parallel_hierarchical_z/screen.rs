@@ -126,26 +126,29 @@ impl Screen {
     }
     /// The oldest message for a renderer that is free, if there is one. The renderer is then busy.
     pub fn begin(&mut self, renderer: u16) -> Option<usize> {
-        let r = renderer as usize;
-        if self.renderers[r].is_busy {
+        let r = &mut self.renderers[renderer as usize];
+        if r.is_busy {
             return None;
         }
-        if self.renderers[r].queue.is_empty() && self.allocation == Allocation::Dynamic {
-            self.take_next(renderer);
-        }
-        let message = self.renderers[r].queue.pop_front()?;
-        self.renderers[r].is_busy = true;
+        let message = r.queue.pop_front()?;
+        r.is_busy = true;
         Some(message)
     }
     /// Section 5.1, dynamic: "when a renderer finishes it is assigned the next available region", one at a
-    /// time.
-    fn take_next(&mut self, renderer: u16) {
+    /// time. Whether this one, if it has nothing to do, takes another region.
+    pub fn take_next(&mut self, renderer: u16) -> bool {
+        let r = &self.renderers[renderer as usize];
+        if self.allocation == Allocation::Static || r.is_busy || !r.queue.is_empty() {
+            return false;
+        }
         // A region that nothing was sent to needs no renderer.
-        let available = (0..self.count()).filter(|&r| self.holder[r].is_none() && !self.waiting[r].is_empty());
-        let Some(next) = available.min_by_key(|&r| self.turn(r)) else { return };
+        let available =
+            (0..self.count()).filter(|&r| self.holder[r].is_none() && !self.waiting[r].is_empty());
+        let Some(next) = available.min_by_key(|&r| self.turn(r)) else { return false };
         self.holder.iter_mut().filter(|h| **h == Some(renderer)).for_each(|h| *h = None);
         self.holder[next] = Some(renderer);
         self.renderers[renderer as usize].queue = std::mem::take(&mut self.waiting[next]);
+        true
     }
     /// The renderer is free again.
     pub fn end(&mut self, renderer: u16) {
@@ -184,13 +187,16 @@ mod tests {
         let mut screen = screen(Allocation::Dynamic, 1, &[5, 9, 2, 5]);
         assert_eq!([0, 1, 2, 3].map(|r| screen.is_held(r)), [false, true, false, false]);
         assert_eq!(screen.arrive(2, 0), Some(0), "free to take it");
+        assert!(screen.take_next(0));
         assert_eq!((screen.begin(0), screen.held_by(0)), (Some(0), vec![2]), "one region at a time");
         for (region, message) in [(3, 1), (1, 2), (0, 3), (2, 4), (3, 5)] {
             assert_eq!(screen.arrive(region, message), (region == 2).then_some(0), "busy");
         }
         let mut taken = Vec::new();
         screen.end(0);
-        while let Some(message) = screen.begin(0) {
+        loop {
+            screen.take_next(0);
+            let Some(message) = screen.begin(0) else { break };
             taken.push((message, screen.held_by(0)[0]));
             screen.end(0);
         }

@@ -7,15 +7,16 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
+use super::Params;
+use super::code::line;
 use super::dealing::{Allotment, Processor, dealt, group_of};
 use super::evidence::Evidence;
 use super::machine::{Job, Machine, Unit, Volume, Worked, ticks};
 use super::screen::Screen;
-use super::{Params, line};
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, Buffer, DepthNote, FaceImage, Faces, Ground, Query, QueryReporter, Rasterized, Step,
-    footprint, project_sphere,
+    Answer, Answered, At, Buffer, DepthNote, FaceImage, Faces, Ground, Query, QueryReporter, Rasterized,
+    Step, footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
@@ -160,18 +161,21 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Runs the frame.
     pub fn run(mut self) {
         self.watch.stage("simulate");
+        self.line(line::FRAME);
         // 1. Section 4.1.
         self.deal();
         self.leave_out();
         self.sort();
         // 2. Section 5.1. Memory of the last frame decides only where the allocation is dynamic.
-        self.watch.event(Event::Line(line::ALLOCATE));
+        self.line(line::ALLOCATE);
         let View { width, height, .. } = *self.view;
         self.screen = Screen::new(width, height, self.machine, &mut self.lists.load);
         self.farthest = vec![None; self.screen.count()];
         // 3. Every processor begins on its own; "the visible and invisible stages of rendering will not be
         // synchronized among the processors" (Section 4.2).
+        self.line(line::START);
         for p in 0..self.processors.len() {
+            self.line(line::PROCESS);
             self.after(0, What::Free(p as u16));
         }
         self.simulate();
@@ -179,8 +183,12 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         // 4. Sections 4.2 and 5.1. Without coherence every structure is queried anew in each frame.
         if self.params.coherence {
             self.watch.stage("check");
+            self.line(line::CHECK_ALL);
             self.check();
         }
+    }
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
     }
     /// Takes events until nothing is left to happen.
     fn simulate(&mut self) {
@@ -216,7 +224,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn deal(&mut self) {
         let count = self.machine.processors as usize;
         if self.lists.allotments.is_empty() {
-            self.watch.event(Event::Line(line::DEAL));
+            self.line(line::DEAL);
             self.lists.allotments = dealt(self.index, self.machine.distribution, count);
         }
         if !self.params.coherence {
@@ -230,6 +238,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// when the view turns back.
     fn leave_out(&mut self) {
         let all = Frustum::<S::Vector>::ALL;
+        self.line(line::OUTSIDE);
         for at in 0..self.index.nodes().len() {
             let node = NodeId(at as u32);
             if self.index.parent_of(node).is_some_and(|parent| self.wholly_outside[parent.at()]) {
@@ -241,7 +250,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             if matches!(test, FrustumTest::Outside(_)) {
                 (self.outside[at], self.wholly_outside[at]) = (true, true);
                 self.watch.event(Event::Entered(node));
-                self.watch.event(Event::Line(line::OUTSIDE));
+                self.line(line::OUTSIDE);
                 let bounds = &n.bounds;
                 self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(node), bounds, all, test)));
                 self.watch.event(Event::DecidedNode(node, Verdict::Outside));
@@ -253,7 +262,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             // Also where it is empty: then nobody has such a structure.
             if matches!(test, FrustumTest::Outside(_)) {
                 self.outside[at] = true;
-                self.watch.event(Event::Line(line::OUTSIDE));
+                self.line(line::OUTSIDE);
                 for &prim in own {
                     // Of each primitive, not of the node: what lies below it are other structures.
                     let subject = Subject::Prim(prim);
@@ -281,18 +290,19 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         {
             let (unit, job, node) = (Unit::Processor(p), Job::Wait, NodeId(0));
             let waited = Worked { unit, job, from: since, to: now, node, region: 0, count: 0 };
-            self.watch.event(Event::Line(line::WAIT));
+            self.line(line::WAIT);
             self.watch.note(move || Evidence::Worked(waited));
         }
         let processor = &mut self.processors[p as usize];
         // Section 5.1: first its visible list, then the invisible one. What an answer let through comes
         // before both: it waits for nothing, and it may hide what is queried next.
         if let Some(s) = processor.found.pop_front() {
-            self.watch.event(Event::Line(line::DRAW_FOUND));
             processor.added += 1;
+            self.line(line::DRAW_FOUND);
             self.transform(p, s, Job::DrawFound);
         } else if let Some(s) = processor.to_draw.pop_front() {
-            self.watch.event(Event::Line(line::DRAW_VISIBLE));
+            self.line(line::EACH_VISIBLE);
+            self.line(line::DRAW_VISIBLE);
             self.transform(p, s, Job::DrawVisible);
         } else if processor.waiting > 0 && !self.machine.overlap {
             // Without the overlap of Section 5.3 it waits for the reply before it queries again.
@@ -300,13 +310,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         } else if self.machine.farthest_first && !processor.has_asked && !processor.to_ask.is_empty() {
             // Section 5.3: "a good time to do this might be after the visible list has been rendered, when
             // the z-buffer should be almost-complete anyway".
-            self.watch.event(Event::Line(line::ASK_FARTHEST));
+            self.line(line::ASK_FARTHEST);
             self.ask_farthest(p);
         } else if let Some(group) = processor.to_ask.pop_front() {
-            self.watch.event(Event::Line(line::TAKE));
+            self.line(line::TAKE);
+            if group.len() > 1 {
+                self.line(line::GROUP);
+            }
+            self.line(line::ASK);
             self.ask(p, group, false);
         } else if let Some(s) = processor.to_check.pop_front() {
-            self.watch.event(Event::Line(line::TAKE_LISTED));
+            self.line(line::EACH_CHECKED);
+            self.line(line::RECHECK);
             self.ask(p, vec![s], true);
         } else if processor.waiting > 0 {
             processor.idle = Some(now);
@@ -322,13 +337,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let cost = ticks(self.machine.transform, prims.len());
         // All that is decided until it is left rests on this.
         self.watch.event(Event::Entered(node));
+        self.line(line::DRAW);
         self.works(p, job, cost, node, prims.len());
         self.watch.event(Event::DecidedNode(node, Verdict::Partial));
         let mut bins: BTreeMap<u32, Vec<PrimId>> = BTreeMap::new();
         for (k, prim) in prims.into_iter().enumerate() {
+            self.line(line::EACH);
+            let is_shared = k >= own;
             // Section 3.1: a shared primitive is marked when it is drawn, so that it is drawn once.
-            if k < own || !std::mem::replace(&mut self.drawn[prim.at()], true) {
-                self.bin(prim, &mut bins);
+            if is_shared && std::mem::replace(&mut self.drawn[prim.at()], true) {
+                self.line(line::DRAWN);
+            } else {
+                self.bin(node, prim, is_shared, &mut bins);
             }
         }
         // By ascending region, so that messages of the same tick have an order.
@@ -339,16 +359,21 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.watch.event(Event::Left(node));
         self.after(cost, What::Free(p));
     }
-    /// Puts a primitive into the bins of the regions that it may cover, unless it turns its back.
-    fn bin(&mut self, prim: PrimId, bins: &mut BTreeMap<u32, Vec<PrimId>>) {
+    /// Puts a primitive of a structure into the bins of the regions that it may cover, unless it turns its
+    /// back.
+    fn bin(&mut self, node: NodeId, prim: PrimId, is_shared: bool, bins: &mut BTreeMap<u32, Vec<PrimId>>) {
         let (scene, view) = (self.scene, self.view);
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
-            self.watch.event(Event::Line(line::FACES_AWAY));
+            self.line(line::FACES_AWAY);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             return;
         }
-        self.watch.event(Event::Line(line::TRANSFORM));
+        self.line(line::TRANSFORM);
+        if is_shared {
+            // It is not the structure's alone: that the structure is drawn is no evidence about it.
+            self.watch.note(|| Evidence::Cube(CubeNote::SharedDrawn(prim, node)));
+        }
         self.out.prims.push(prim);
         self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
         let all = PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height };
@@ -389,6 +414,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let (bounds, whole) = if is_group { (n.bounds, n.whole) } else { (n.held, n.held_whole) };
         // "The triangles composing the bounding box are transformed and sent to the Renderers" (5.1).
         let (cost, job) = (self.machine.volume_cost(), if is_check { Job::Recheck } else { Job::Ask });
+        self.line(line::QUERY);
+        self.line(if self.machine.query == Volume::Faces { line::BOX } else { line::SPHERE });
         self.works(p, job, cost, node, structures.len());
         let (image, ground) = self.image(&bounds, &whole);
         let answer = Answer { is_hidden: true, nearest: image.nearest, reads: 0, decisive: None };
@@ -399,25 +426,24 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.questions.push(question);
         let number = self.questions.len() - 1;
         if ground == Ground::CrossesNear {
-            self.watch.event(Event::Line(line::NEAR));
             self.questions[number].is_seen = true;
-            self.decide(number, ground);
+            self.decide(number, ground, line::NEAR);
         } else if regions.is_empty() {
             // It lies beside the image, or falls between the pixels' centers.
-            self.watch.event(Event::Line(line::NO_PIXEL));
-            self.decide(number, ground);
+            self.decide(number, ground, line::NO_PIXEL);
         } else if let Some(closest) = self.behind_farthest(p, &regions, image.nearest) {
-            self.watch.event(Event::Line(line::FARTHEST));
             self.questions[number].answer.decisive = Some(closest);
-            self.decide(number, Ground::Regions);
+            self.decide(number, Ground::Regions, line::FARTHEST);
         } else if regions.iter().any(|&r| !self.screen.is_held(r)) {
             // With dynamic allocation "only the regions currently assigned to renderers would be accessible"
             // (Section 5.1).
-            self.watch.event(Event::Line(line::UNHELD));
             self.questions[number].is_seen = true;
-            self.decide(number, Ground::Unread);
+            self.decide(number, Ground::Unread, line::UNHELD);
         } else {
-            self.watch.event(Event::Line(line::SEND_BOX));
+            self.line(line::SEND);
+            if self.machine.overlap {
+                self.line(line::MEANWHILE);
+            }
             self.processors[p as usize].waiting += 1;
             for region in regions {
                 self.send(Message::Ask { region, question: number }, cost);
@@ -428,7 +454,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Where what stands for a structure falls in the image and how near it comes; nowhere if that decides.
     fn image(&self, bounds: &Aabb<S::Vector>, whole: &Aabb<S::Vector>) -> (BoxImage, Ground) {
         let near = self.view.eye.near;
-        let nowhere = BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 1.0 / near };
+        let nowhere =
+            BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 1.0 / near };
         let footprint = match self.machine.query {
             Volume::Faces => footprint(self.view, &self.projection, bounds),
             // It is about the wholes already.
@@ -474,6 +501,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     /// What a renderer that is free does next: the oldest message, or the next region that waits.
     fn next_of_renderer(&mut self, r: u16) {
+        if self.screen.take_next(r) {
+            self.line(line::TAKE_REGION);
+        }
         if let Some(message) = self.screen.begin(r) {
             self.after(self.cost_of(r, message), What::Done(r, message));
         }
@@ -488,15 +518,16 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// A renderer has finished a message: now it takes effect.
     fn done(&mut self, r: u16, message: usize) {
         let cost = self.cost_of(r, message);
+        self.line(line::RENDER);
         match self.messages[message].clone() {
             Message::Draw { region, node, prims } => {
-                self.watch.event(Event::Line(line::RASTERIZE));
+                self.line(line::RASTERIZE);
                 self.has_worked(r, Job::Rasterize, cost, node, region, prims.len());
                 self.rasterize(&prims, region);
             }
             Message::Ask { region, question } => {
                 let is_seen = self.compare(question, region);
-                self.watch.event(Event::Line(line::ANSWER));
+                self.line(line::ANSWER);
                 let node = self.questions[question].node;
                 self.has_worked(r, Job::Answer, cost, node, region, is_seen.into());
                 self.after(self.machine.message, What::Answered(question, is_seen));
@@ -504,7 +535,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             Message::Farthest { processor, .. } => {
                 let held = self.screen.held_by(r);
                 let farthest: Vec<_> = held.into_iter().map(|k| (k, self.farthest_of(k))).collect();
-                self.watch.event(Event::Line(line::FIND_FARTHEST));
+                self.line(line::FIND_FARTHEST);
                 self.has_worked(r, Job::Farthest, cost, NodeId(0), 0, farthest.len());
                 self.replies.push(Reply { processor, farthest });
                 self.after(self.machine.message, What::Told(self.replies.len() - 1));
@@ -536,7 +567,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn compare(&mut self, question: usize, region: u32) -> bool {
         let Question { image, bounds, node, answer: Answer { nearest, .. }, .. } = self.questions[question];
         let window = self.screen.window(region);
-        let reporter = QueryReporter::new(node, [line::COMPARE, line::COMPARE], &mut *self.watch);
+        let lines = match self.machine.query {
+            Volume::Faces => |at| matches!(at, At::Whole | At::Compare).then_some(line::COMPARE_BOX),
+            Volume::Sphere => |at| matches!(at, At::Compare).then_some(line::COMPARE_SPHERE),
+        };
+        let reporter = QueryReporter::new(node, lines, &mut *self.watch);
         // A departure: the paper's renderer compares all pixels at once and has no use for a pyramid (Section
         // 5). The answer is the same.
         let mut query = Query::new(&mut *self.buffer, nearest, reporter);
@@ -566,7 +601,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         if question.open == 0 {
             let p = question.processor;
             self.processors[p as usize].waiting -= 1;
-            self.decide(number, Ground::Cells);
+            self.decide(number, Ground::Cells, line::DECIDE);
             self.wake(p);
         }
     }
@@ -590,7 +625,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     /// All answers are there: structures that may be seen are let through or stay on the list, the others are
     /// hidden or leave it.
-    fn decide(&mut self, number: usize, ground: Ground) {
+    fn decide(&mut self, number: usize, ground: Ground, line: u8) {
         let q = &mut self.questions[number];
         q.answer.is_hidden = !q.is_seen;
         let (p, node, is_check, is_seen) = (q.processor, q.node, q.is_check, q.is_seen);
@@ -598,14 +633,19 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let (bounds, pixels, answer) = (q.bounds, q.image.pixels, q.answer);
         // All that is decided until it is left rests on this answer.
         self.watch.event(Event::Entered(node));
-        self.watch.event(Event::Line(if is_check { line::UNLIST } else { line::DECIDE }));
+        self.line(line);
         self.watch.note(move || {
             Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, ground }))
         });
-        let structures = &mut self.lists.allotments[p as usize].structures;
+        // Back where it was asked.
         match (is_check, is_seen) {
-            (false, true) => self.processors[p as usize].let_through(group),
+            (false, true) => {
+                self.line(if group.len() > 1 { line::EACH_OF_GROUP } else { line::FOUND });
+                self.processors[p as usize].let_through(group);
+            }
             (false, false) => {
+                self.line(line::HIDDEN);
+                let structures = &self.lists.allotments[p as usize].structures;
                 for s in group {
                     // A shared primitive may show in another structure.
                     for &prim in &structures[s].prims[..structures[s].own] {
@@ -615,6 +655,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             }
             (true, true) => {}
             (true, false) => {
+                self.line(line::UNLIST);
+                let structures = &mut self.lists.allotments[p as usize].structures;
                 group.into_iter().for_each(|s| structures[s].is_listed = false);
                 self.watch.note(|| Evidence::Cube(CubeNote::Unlisted { node, processor: Some(p) }));
             }
@@ -624,12 +666,19 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
 
     /// Reports the shared primitives that no structure drew.
     fn report_unseen(&mut self) {
+        if !self.params.cubes.may_share() {
+            return;
+        }
+        self.line(line::EACH_SHARED);
         // What is passed on by a cube that is out of view was decided with it.
-        for at in (0..self.index.nodes().len()).filter(|&at| !self.wholly_outside[at]) {
+        for at in 0..self.index.nodes().len() {
+            if self.wholly_outside[at] {
+                continue;
+            }
             let node = NodeId(at as u32);
             for &prim in self.index.passed(node) {
                 if !std::mem::replace(&mut self.drawn[prim.at()], true) {
-                    self.watch.event(Event::Line(line::UNSEEN));
+                    self.line(line::UNSEEN);
                     self.watch.note(|| Evidence::Cube(CubeNote::SharedUnseen(prim, node)));
                     self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
                 }
@@ -643,11 +692,12 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         // Where every frame checks, nothing is to be decided by the farthest depth.
         let asks = self.params.check_interval > 1;
         for p in 0..self.processors.len() as u16 {
+            self.line(line::CHECK);
             let processor = &mut self.processors[p as usize];
             // What was told while the image was drawn is out of date.
             (processor.has_asked, processor.farthest) = (true, vec![]);
             if asks {
-                self.watch.event(Event::Line(line::CHECK_FARTHEST));
+                self.line(line::CHECK_FARTHEST);
                 self.ask_farthest(p);
             } else {
                 self.check_list(p);
@@ -674,7 +724,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             let in_view = structures.filter(|(_, s)| s.is_listed && !self.outside[s.node.at()]);
             processor.to_check = in_view.map(|(s, _)| s).collect();
         }
-        self.watch.event(Event::Line(line::CHECK));
+        self.line(line::DUE);
         self.watch.note(move || Evidence::Cube(CubeNote::Checked(check)));
     }
 }

@@ -67,11 +67,7 @@ fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> 
 }
 
 /// What the events of a frame report of each primitive.
-fn reported<S: Faces>(
-    scene: &Scene<S>,
-    index: &Octree<S::Vector>,
-    events: &[Event],
-) -> Vec<Option<Verdict>> {
+fn reported<S: Faces>(scene: &Scene<S>, index: &Octree<S::Vector>, events: &[Event]) -> Vec<Option<Verdict>> {
     let mut reported = vec![None; scene.prim_count()];
     for event in events {
         match event {
@@ -332,7 +328,8 @@ fn structures_stay_with_their_processor() {
         let mut recorder = Recorder::new(usize::MAX);
         tried.cull(&View { width: 300, height: 200, ..view }, &mut recorder);
         for note in &recorder.notes {
-            if let Evidence::Worked(Worked { unit, job: Job::DrawVisible | Job::DrawFound, node, .. }) = note {
+            if let Evidence::Worked(Worked { unit, job: Job::DrawVisible | Job::DrawFound, node, .. }) = note
+            {
                 assert_eq!(owner.entry(*node).or_insert(*unit), unit, "node {node}");
             }
         }
@@ -357,12 +354,14 @@ fn parameters_are_honored_or_refused() {
     let view = View { width: 300, height: 200, ..crate::scene::random_views(&scene, 1, 4)[0] };
     let counted = |query| {
         let pairs = settings(&[("leaf-primitives", "4"), ("query", query)]);
-        let mut run = entry.ready(&scene, &pairs, &crate::scene::Quiet).expect("fits").expect("not cancelled");
+        let mut run =
+            entry.ready(&scene, &pairs, &crate::scene::Quiet).expect("fits").expect("not cancelled");
         run.count(&view).1.named()
     };
     let (faces, sphere) = (counted("faces"), counted("sphere"));
     assert_ne!(faces["cells_read"], sphere["cells_read"]);
-    let each = |counts: &std::collections::BTreeMap<&str, u64>| counts["ticks_asking"] / counts["boxes_transformed"];
+    let each =
+        |counts: &std::collections::BTreeMap<&str, u64>| counts["ticks_asking"] / counts["boxes_transformed"];
     assert_eq!((each(&faces), each(&sphere)), (120, 10), "twelve triangles, one expression");
 }
 
@@ -391,9 +390,7 @@ fn regions_are_taken_while_processors_work() {
     let drawn = work.iter().filter(|w| w.job == Job::Rasterize);
     let before: std::collections::BTreeSet<u32> = drawn.filter(|w| w.to < last).map(|w| w.region).collect();
     assert!(before.len() > 8, "{before:?} of 12 before tick {last}");
-    let unread = |n: &&Evidence<Solid>| {
-        matches!(n, Evidence::Depth(DepthNote::Answered(a)) if a.ground == Ground::Unread && !a.answer.is_hidden)
-    };
+    let unread = |n: &&Evidence<Solid>| matches!(n, Evidence::Depth(DepthNote::Answered(a)) if a.ground == Ground::Unread && !a.answer.is_hidden);
     assert!(recorder.notes.iter().filter(unread).count() > 0, "what is not held counts as seen");
 }
 
@@ -484,9 +481,9 @@ fn a_structure_has_one_answer() {
     for view in crate::scene::random_views(&scene, 4, 4) {
         let mut recorder = Recorder::new(usize::MAX);
         tried.cull(&View { width: 300, height: 200, ..view }, &mut recorder);
-        let count = |wanted: fn(&Evidence<Solid>) -> bool| recorder.notes.iter().filter(|n| wanted(n)).count();
-        let asked =
-            count(|n| matches!(n, Evidence::Worked(w) if matches!(w.job, Job::Ask | Job::Recheck)));
+        let count =
+            |wanted: fn(&Evidence<Solid>) -> bool| recorder.notes.iter().filter(|n| wanted(n)).count();
+        let asked = count(|n| matches!(n, Evidence::Worked(w) if matches!(w.job, Job::Ask | Job::Recheck)));
         let answers = count(|n| matches!(n, Evidence::Depth(DepthNote::Answered(_))));
         assert_eq!(answers, asked);
         let hidden = |e: &&Event| matches!(e, Event::DecidedPrim(_, Verdict::Hidden));

@@ -159,7 +159,10 @@ mod tests {
         let [subtree, structure, primitive, hybrid] =
             ["subtree", "structure", "primitive", "hybrid"].map(|way| told(&timeline(&scene, way)));
         assert!(subtree[0] + 10 < structure[0], "idlest by subtree {subtree:?}, by structure {structure:?}");
-        assert!(primitive[2] > hybrid[2], "every processor asks for every structure: {primitive:?}, {hybrid:?}");
+        assert!(
+            primitive[2] > hybrid[2],
+            "every processor asks for every structure: {primitive:?}, {hybrid:?}"
+        );
         assert!([subtree, structure, primitive, hybrid].iter().all(|t| t[1] > 0 && t[2] > 0));
     }
 }
