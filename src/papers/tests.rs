@@ -136,12 +136,14 @@ fn georges_box_hides_the_objects_behind_it() {
     assert!(behind[0] * 10.0 < sight[0], "{behind:?} behind the box, {sight:?} in sight");
     assert!(sight[0] <= sight[1] && sight[1] == behind[1]);
     assert!(near(sight[2], sight[3] / sight[4]));
-    assert_eq!([2, 3].map(|row| report.at(row, "culled_fps")), [2.5, 60.0]);
+    // The paper's rates in its own words: it prints no number for either.
+    let fps = report.table.columns.iter().position(|c| c.key == "culled_fps").expect("a column");
+    assert_eq!([2, 3].map(|row| report.table.shown(row, fps)), ["about 2–3", "near the monitor's rate"]);
 }
 
 #[test]
 fn georges_flight_draws_less_than_is_in_the_frustum() {
-    let report = city("georges-flight", 3);
+    let report = city("georges-flight", 2);
     let [frustum, culled] = report.row(0, ["frustum_drawn", "culled_drawn"]);
     assert!(culled < 0.8 * frustum && culled > 0.0, "{culled} of {frustum}");
     let [frustum, culled, gain] = report.row(0, ["frustum_ms", "culled_ms", "gain_percent"]);

@@ -274,9 +274,9 @@ impl Pyramid {
         let level = u32::BITS - differ.leading_zeros();
         PyramidCell { level: level as u8, x: (r.x0 >> level) as u16, y: (r.y0 >> level) as u16 }
     }
-    /// The farthest depth that it holds for a rectangle of pixels, from at most four cells above level 0. What
-    /// is drawn until the next refresh does not change it, so it does not matter in which order or on how many
-    /// threads.
+    /// The farthest depth that it holds for a rectangle of pixels, from at most four cells above level 0.
+    /// What is drawn until the next refresh does not change it, so it does not matter in which order or on
+    /// how many threads.
     #[inline]
     pub fn farthest_over(&self, depth: &[f32], r: PixelRect) -> f32 {
         let (mut first, mut last) = self.cover(r);

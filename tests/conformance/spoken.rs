@@ -176,14 +176,24 @@ fn what_is_said_is_true<S: World>(scenes: &[Arc<Scene<S>>]) {
                 let mut run = ready(*entry, scene, &settings);
                 let what = format!("{set} on {}", scene.name());
                 let mut views = views(scene, 1);
+                // Once more the same, when all that it shows is known.
+                views.insert(1, views[0]);
                 // Away from all of it, so that the root is outside.
                 let mut away = framing_view(&scene.bounds(), 96, 96);
                 away.eye.target = away.eye.position * 2.0 - away.eye.target;
                 views.push(away);
-                // More regions of the screen than a simulated machine has renderers.
+                // So far away that it lies between the pixels' centers, before and after it was seen.
+                let mut far = framing_view(&scene.bounds(), 96, 96);
+                let toward = far.eye.target - far.eye.position;
+                far.eye.position = far.eye.target - toward * 2000.0;
+                far.eye.far *= 4000.0;
+                views.insert(0, far);
+                views.push(far);
+                // More regions of the screen than a simulated machine has renderers, before anything is known
+                // to be visible.
                 if nth == 0 {
                     let wide = framing_view(&scene.bounds(), 700, 300);
-                    views.push(View { height: wide.height.min(300), ..wide });
+                    views.insert(1, View { height: wide.height.min(300), ..wide });
                 }
                 for view in views {
                     let film = run.record(&view, usize::MAX).film;

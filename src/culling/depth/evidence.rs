@@ -343,8 +343,8 @@ impl<S: Faces> Answered<S> {
                  and cannot be queried."
             ),
             (Ground::Regions, Some((_, held)), _) => format!(
-                "Node {node} is hidden: its nearest point, at depth {near}, lies behind the farthest depth of \
-                 every region that it covers; of these the farthest is {}, nearer by {}.",
+                "Node {node} is hidden: its nearest point, at depth {near}, lies behind the farthest depth \
+                 of every region that it covers; of these the farthest is {}, nearer by {}.",
                 short(units(held)),
                 by(held)
             ),

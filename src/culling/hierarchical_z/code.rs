@@ -248,6 +248,7 @@ pub(super) const DEPARTURES: &[Departure] = &[
 /// Whether a line belongs to these parameters.
 pub(super) fn has_line(params: &Params, at: u8) -> bool {
     let (two_pass, sieved) = (params.form == Form::TwoPass, params.primitive_test);
+    let (by_faces, is_one_cube) = (params.query == Volume::Faces, params.cubes.tree_levels == 1);
     match at {
         line::EACH_LISTED | line::UNLISTED | line::ADD => params.coherence,
         line::CHECK | line::EACH_CHECKED | line::CHECK_OBSCURED | line::UNLIST => params.coherence,
@@ -256,17 +257,18 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::REFRESH_ALL | line::DRAW_FOUND | line::KEEP => two_pass,
         line::DRAW => !two_pass,
         line::EACH_SHARED | line::UNSEEN => params.cubes.may_share(),
-        line::CHILD => params.cubes.tree_levels > 1,
+        line::CHILD => !is_one_cube,
         line::FACES_AWAY => params.backface_culling,
         line::REFRESH => sieved && !two_pass,
-        line::TEST | line::SKIP => sieved,
-        line::WHOLE | line::WHOLE_HIDES | line::FACE | line::FINEST | line::BEHIND_FACE => {
-            params.query == Volume::Faces
-        }
-        line::SEEN | line::ALL_HIDDEN => params.query == Volume::Faces,
+        line::TEST => sieved,
+        // Of one cube nothing is drawn before it is asked for, so nothing hides it or any of it.
+        line::SKIP => sieved && !is_one_cube,
+        line::HIDES | line::BELOW_HIDES => !is_one_cube,
+        line::WHOLE_HIDES | line::ALL_HIDDEN => by_faces && !is_one_cube,
+        line::WHOLE | line::FACE | line::FINEST | line::BEHIND_FACE | line::SEEN => by_faces,
         line::RECTANGLE => params.query == Volume::Rectangles,
         line::SPHERE => params.query == Volume::Sphere,
-        line::FINEST_ONE | line::BEHIND_ONE => params.query != Volume::Faces,
+        line::FINEST_ONE | line::BEHIND_ONE => !by_faces,
         _ => true,
     }
 }

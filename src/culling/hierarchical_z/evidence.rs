@@ -116,8 +116,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             // A cube may have been out of view since, or not have been checked.
             Self::Listed(n, true) => format!(
-                "Node {n} is on the visible list, since it could be seen when it was last tested: it is drawn \
-                 at once, without a test."
+                "Node {n} is on the visible list, since it could be seen when it was last tested: it is \
+                 drawn at once, without a test."
             ),
             Self::Listed(n, false) => format!(
                 "Node {n} is on the visible list: it was drawn at the start of the frame, without a test."

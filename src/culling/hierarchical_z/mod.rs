@@ -11,8 +11,8 @@
 //!    visible list;
 //! 3. what the list holds and the finished image does not show leaves it (Section 3.3).
 //!
-//! Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the drawing
-//! of what they hold; memory O(cubes) from frame to frame.
+//! Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the
+//! drawing of what they hold; memory O(cubes) from frame to frame.
 
 mod code;
 mod evidence;

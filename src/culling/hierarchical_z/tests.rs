@@ -251,7 +251,7 @@ fn a_cube_that_is_drawn_is_listed_once() {
     }
 }
 
-/// What was hidden in the last frame is not drawn from the list, though the list is checked only now and then.
+/// What was hidden in the last frame is not drawn from the list, though that is checked only now and then.
 #[test]
 fn what_was_hidden_is_not_on_the_list() {
     let mut rng = Pcg32::new(9, 9);

@@ -224,16 +224,17 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
     let machine = &params.machine;
     // Where every frame checks, nothing is to be decided by the farthest depth.
     let asks_for_checks = params.coherence && params.check_interval > 1;
+    let asks = params.coherence && machine.farthest_first;
+    let is_one_cube = params.cubes.tree_levels == 1;
     match at {
         line::EACH_SHARED | line::UNSEEN | line::DRAWN => params.cubes.may_share(),
         line::CHECK_ALL | line::EACH_VISIBLE | line::DRAW_VISIBLE => params.coherence,
         line::CHECK | line::DUE | line::EACH_CHECKED | line::RECHECK | line::UNLIST => params.coherence,
         line::CHECK_FARTHEST => asks_for_checks,
-        line::ASK_FARTHEST | line::FARTHEST => machine.farthest_first,
-        line::FIND_FARTHEST => machine.farthest_first || asks_for_checks,
-        line::GROUP | line::EACH_OF_GROUP => {
-            machine.distribution == Distribution::Hybrid && params.cubes.tree_levels > 1
-        }
+        // It is asked by a processor that has drawn from one list and has something on the other.
+        line::ASK_FARTHEST | line::FARTHEST => asks && !is_one_cube,
+        line::FIND_FARTHEST => asks && !is_one_cube || asks_for_checks,
+        line::GROUP | line::EACH_OF_GROUP => machine.distribution == Distribution::Hybrid && !is_one_cube,
         line::UNHELD | line::TAKE_REGION => machine.allocation == Allocation::Dynamic,
         line::MEANWHILE => machine.overlap,
         line::BOX | line::COMPARE_BOX => machine.query == Volume::Faces,

@@ -51,14 +51,16 @@ pub(super) struct Processor {
     pub waiting: u32,
     /// Since when it has been idle.
     pub idle: Option<u32>,
+    /// Whether it has drawn something from its visible list.
+    pub has_drawn: bool,
     /// Whether it has asked for the farthest depths.
     pub has_asked: bool,
     /// The farthest depth of each region as it was told; 0, farther than all, before.
     pub farthest: Vec<f32>,
 }
 
-/// Deals the structures of a tree out to so many processors (Section 4.1). It depends on no view: "redistributing
-/// the structures to rebalance the lists every frame is too expensive" (Section 4.2).
+/// Deals the structures of a tree out to so many processors (Section 4.1). It depends on no view:
+/// "redistributing the structures to rebalance the lists every frame is too expensive" (Section 4.2).
 pub(super) fn dealt<V: Vector>(
     index: &Octree<V>,
     distribution: Distribution,

@@ -112,8 +112,8 @@ impl Machine {
             "distribution",
             "",
             "what a processor of the simulated machine gets: structures in turn, of which it queries several \
-             at once (hybrid), structures in turn (structure), a part of every structure (primitive), or, not \
-             in the paper, whole parts of the scene (subtree)",
+             at once (hybrid), structures in turn (structure), a part of every structure (primitive), or, \
+             not in the paper, whole parts of the scene (subtree)",
             "Georges 1995, Section 4.1",
         );
         knobs.words(distribution, &mut self.distribution);

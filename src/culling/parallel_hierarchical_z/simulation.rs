@@ -301,13 +301,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             self.line(line::DRAW_FOUND);
             self.transform(p, s, Job::DrawFound);
         } else if let Some(s) = processor.to_draw.pop_front() {
+            processor.has_drawn = true;
             self.line(line::EACH_VISIBLE);
             self.line(line::DRAW_VISIBLE);
             self.transform(p, s, Job::DrawVisible);
         } else if processor.waiting > 0 && !self.machine.overlap {
             // Without the overlap of Section 5.3 it waits for the reply before it queries again.
             processor.idle = Some(now);
-        } else if self.machine.farthest_first && !processor.has_asked && !processor.to_ask.is_empty() {
+        } else if self.machine.farthest_first
+            && processor.has_drawn
+            && !processor.has_asked
+            && !processor.to_ask.is_empty()
+        {
             // Section 5.3: "a good time to do this might be after the visible list has been rendered, when
             // the z-buffer should be almost-complete anyway".
             self.line(line::ASK_FARTHEST);
@@ -405,7 +410,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.after(cost, What::Free(p));
     }
 
-    /// Queries structures of one of a processor's lists: one by its box, several first by the cube above them.
+    /// Queries structures of one of a processor's lists: one by its box, several first by the cube above
+    /// them.
     fn ask(&mut self, p: u16, structures: Vec<usize>, is_check: bool) {
         let first = self.lists.allotments[p as usize].structures[structures[0]].node;
         let is_group = structures.len() > 1;

@@ -114,24 +114,31 @@ fn machines<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
         let (mut tried, mut hidden, mut work) = (Tried::new(&index, &scene, &params), 0, 0);
         for view in crate::scene::random_views(&scene, 6, 4) {
             let view = View { width: 300, height: view.height.min(200), ..view };
-            let (mut recorder, mut same) = (Recorder::new(usize::MAX), tried.clone());
-            let list = tried.cull(&view, &mut recorder);
-            let plain = render(&scene, &view, scene.live());
-            assert_eq!(render(&scene, &view, &list.prims), plain, "case {case}");
-            assert_eq!(*tried.buffer.target(), plain, "case {case}: its own image");
-            let again = same.cull(&view, &mut Unobserved);
-            assert_eq!(list, again, "case {case}: a frame is the same again, unobserved");
-            let reported = reported(&scene, &index, &recorder.events);
-            assert!(reported.iter().all(Option::is_some), "case {case}: all is reported");
-            let is_drawn = |p: &PrimId| reported[p.at()] == Some(Verdict::Visible);
-            let mut drawn: Vec<PrimId> = scene.live().iter().copied().filter(is_drawn).collect();
-            drawn.sort_unstable();
-            assert_eq!(drawn, list.ascending(), "case {case}: reported and answered");
-            hidden += reported.iter().filter(|r| **r == Some(Verdict::Hidden)).count();
-            work += work_of_renderers(&recorder.notes, case);
+            let (hid, worked) = frame(&mut tried, &view, case);
+            (hidden, work) = (hidden + hid, work + worked);
         }
         assert!(hidden > 20 && work > 50, "case {case}: {hidden} hidden, {work} jobs");
     }
+}
+
+/// One frame; how many primitives were hidden, and how many jobs renderers did.
+fn frame<S: Faces>(tried: &mut Tried<'_, S>, view: &View<S>, case: usize) -> (usize, usize) {
+    let (scene, index) = (tried.scene, tried.index);
+    let (mut recorder, mut same) = (Recorder::new(usize::MAX), tried.clone());
+    let list = tried.cull(view, &mut recorder);
+    let plain = render(scene, view, scene.live());
+    assert_eq!(render(scene, view, &list.prims), plain, "case {case}");
+    assert_eq!(*tried.buffer.target(), plain, "case {case}: its own image");
+    let again = same.cull(view, &mut Unobserved);
+    assert_eq!(list, again, "case {case}: a frame is the same again, unobserved");
+    let reported = reported(scene, index, &recorder.events);
+    assert!(reported.iter().all(Option::is_some), "case {case}: all is reported");
+    let is_drawn = |p: &PrimId| reported[p.at()] == Some(Verdict::Visible);
+    let mut drawn: Vec<PrimId> = scene.live().iter().copied().filter(is_drawn).collect();
+    drawn.sort_unstable();
+    assert_eq!(drawn, list.ascending(), "case {case}: reported and answered");
+    let hidden = reported.iter().filter(|r| **r == Some(Verdict::Hidden)).count();
+    (hidden, work_of_renderers(&recorder.notes, case))
 }
 
 fn work_of_renderers<S: Faces>(notes: &[Evidence<S>], case: usize) -> usize {
@@ -390,7 +397,10 @@ fn regions_are_taken_while_processors_work() {
     let drawn = work.iter().filter(|w| w.job == Job::Rasterize);
     let before: std::collections::BTreeSet<u32> = drawn.filter(|w| w.to < last).map(|w| w.region).collect();
     assert!(before.len() > 8, "{before:?} of 12 before tick {last}");
-    let unread = |n: &&Evidence<Solid>| matches!(n, Evidence::Depth(DepthNote::Answered(a)) if a.ground == Ground::Unread && !a.answer.is_hidden);
+    let unread = |n: &&Evidence<Solid>| match n {
+        Evidence::Depth(DepthNote::Answered(a)) => a.ground == Ground::Unread && !a.answer.is_hidden,
+        _ => false,
+    };
     assert!(recorder.notes.iter().filter(unread).count() > 0, "what is not held counts as seen");
 }
 
