@@ -94,7 +94,8 @@ fn views<S: Drawable>(scene: &Scene<S>, every: usize, random: usize, side_px: u3
 }
 
 /// Settings beside the defaults with which a method promises to miss nothing.
-const SETTINGS: [(&str, &[(&str, &str)]); 5] = [
+const SETTINGS: [(&str, &[(&str, &str)]); 6] = [
+    ("large-occluders", &[("cells", "true"), ("tree-height", "12")]),
     ("hierarchical-z", &[("coherence", "false"), ("query", "rectangles"), ("redistribution", "split")]),
     ("hierarchical-z", &[("form", "two-pass"), ("check-interval", "30"), ("query", "sphere")]),
     ("parallel-hierarchical-z", &[("leaf-primitives", "256")]),

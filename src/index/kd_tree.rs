@@ -6,9 +6,14 @@
 //! 2. alternately along each axis, at a plane that balances the polygons;
 //! 3. then all nodes are bounded, from below.
 //!
-//! Departure: a polygon that crosses the splitting plane goes to the side of its center and the node's box
-//! grows to hold it, so that there is exactly one reference a polygon, and boxes are the bounds of what they
-//! hold. Cost: O(n · height) time, one reference a primitive, 1 node per about `n / 2^(height−1)` primitives.
+//! The paper does not say where a polygon goes that crosses the splitting plane. Two trees:
+//!
+//! - [`KdTree::build`]: to the side of its center, and the node's box grows to hold it. There is exactly one
+//!   reference a polygon. Cost: O(n · height) time, 1 node per about `n / 2^(height−1)` primitives.
+//! - [`KdTree::build_cells`]: to both sides, and boxes end at the planes: they bound what their nodes hold
+//!   within their cells. The polygon stands once in the order, at the node whose plane it crosses first, and
+//!   the leaves refer to it. Cost: O(n · height · log n) time; at most [`MOST_REFERENCES`] as many references
+//!   from level to level.
 
 use std::ops::Range;
 
@@ -31,7 +36,34 @@ pub struct KdNode<V> {
     first_child: u32,
     parent: u32,
     first: u32,
+    /// Of those at and below it the first ones, which are no child's: all of a leaf's, and elsewhere those
+    /// that cross the plane.
+    own: u32,
     count: u32,
+    /// Primitives of nodes above that reach into this leaf.
+    first_shared: u32,
+    shared: u32,
+    /// How many primitives meet it.
+    held: u32,
+}
+
+impl<V: Vector> KdNode<V> {
+    fn new(level: u8, parent: u32) -> Self {
+        Self {
+            bounds: Aabb::empty(),
+            split: 0.0,
+            axis: 0,
+            level,
+            first_child: 0,
+            parent,
+            first: 0,
+            own: 0,
+            count: 0,
+            first_shared: 0,
+            shared: 0,
+            held: 0,
+        }
+    }
 }
 
 impl<V> KdNode<V> {
@@ -39,6 +71,11 @@ impl<V> KdNode<V> {
     #[inline]
     pub fn is_leaf(&self) -> bool {
         self.first_child == 0
+    }
+    /// Whether all that meets it lies wholly at and below it.
+    #[inline]
+    pub fn is_whole(&self) -> bool {
+        self.held == self.count
     }
     /// Its two children; `None` for a leaf.
     #[inline]
@@ -52,13 +89,20 @@ impl<V> KdNode<V> {
 pub struct KdTree<V> {
     nodes: Vec<KdNode<V>>,
     order: Vec<PrimId>,
+    shared: Vec<PrimId>,
 }
+
+/// By how much a division may multiply references. Where a plane cuts most of what there is, halves hold
+/// nearly as much as the whole, and dividing on parts little.
+const MOST_REFERENCES: f32 = 1.5;
 
 /// A primitive on its way into the tree.
 #[derive(Clone, Copy)]
 struct Entry<V> {
     bounds: Aabb<V>,
     prim: PrimId,
+    /// Whether it crossed a plane above.
+    is_shared: bool,
 }
 
 impl<V: Vector> Entry<V> {
@@ -78,19 +122,8 @@ impl<V: Vector> KdTree<V> {
         height: u32,
         cancelled: impl Fn() -> bool,
     ) -> Option<Self> {
-        let mut entries: Vec<Entry<V>> = prims.map(|(prim, bounds)| Entry { bounds, prim }).collect();
-        let n = entries.len() as u32;
-        let root = KdNode {
-            bounds: Aabb::empty(),
-            split: 0.0,
-            axis: 0,
-            level: 0,
-            first_child: 0,
-            parent: 0,
-            first: 0,
-            count: n,
-        };
-        let mut nodes = vec![root];
+        let mut entries = entries(prims);
+        let mut nodes = vec![KdNode { count: entries.len() as u32, ..KdNode::new(0, 0) }];
         let mut at = 0;
         // 1. Breadth first: the nodes from `at` on are still to be split, and parents come before their
         // children.
@@ -121,12 +154,70 @@ impl<V: Vector> KdTree<V> {
             let node = nodes[at];
             nodes[at].bounds = match node.children() {
                 Some([a, b]) => nodes[a.at()].bounds.union(nodes[b.at()].bounds),
-                None => entries[node.first as usize..(node.first + node.count) as usize]
-                    .iter()
-                    .fold(Aabb::empty(), |b, e| b.union(e.bounds)),
+                None => bounds_of(&entries[node.first as usize..(node.first + node.count) as usize]),
             };
+            nodes[at].own = if node.is_leaf() { node.count } else { 0 };
+            nodes[at].held = node.count;
         }
-        Some(Self { nodes, order: entries.iter().map(|e| e.prim).collect() })
+        Some(Self { nodes, order: entries.iter().map(|e| e.prim).collect(), shared: Vec::new() })
+    }
+
+    /// Builds a tree of at most `height ≥ 1` levels whose boxes end at the splitting planes. A node is not
+    /// split further where that would part nothing. The result does not depend on the order of the input.
+    /// Stops early and returns `None` when `cancelled` returns true (called once a node).
+    pub fn build_cells(
+        prims: impl Iterator<Item = (PrimId, Aabb<V>)>,
+        height: u32,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<Self> {
+        let mut entries = entries(prims);
+        entries.sort_unstable_by_key(|e| e.prim);
+        let order = Vec::with_capacity(entries.len());
+        let mut tree = Self { nodes: vec![KdNode::new(0, 0)], order, shared: Vec::new() };
+        tree.grow(0, entries, height, cancelled)?;
+        Some(tree)
+    }
+
+    /// Fills node `at` and all below it.
+    fn grow(
+        &mut self,
+        at: usize,
+        entries: Vec<Entry<V>>,
+        height: u32,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<()> {
+        if cancelled() {
+            return None;
+        }
+        let level = self.nodes[at].level;
+        self.nodes[at].first = self.order.len() as u32;
+        self.nodes[at].first_shared = self.shared.len() as u32;
+        self.nodes[at].held = entries.len() as u32;
+        // 1 and 2.
+        let plane = if u32::from(level) + 1 < height { plane(&entries, level as usize % V::AXES) } else { None };
+        if let Some((axis, split)) = plane {
+            let (passed, halves) = divided(entries, axis, split);
+            self.order.extend(passed.iter().map(|e| e.prim));
+            let first_child = self.nodes.len() as u32;
+            let node = &mut self.nodes[at];
+            (node.own, node.first_child, node.axis, node.split) =
+                (passed.len() as u32, first_child, axis as u8, split);
+            drop(passed);
+            self.nodes.extend([KdNode::new(level + 1, at as u32); 2]);
+            for (child, half) in (first_child as usize..).zip(halves) {
+                self.grow(child, half, height, cancelled)?;
+                // 3.
+                self.nodes[at].bounds = self.nodes[at].bounds.union(self.nodes[child].bounds);
+            }
+        } else {
+            self.nodes[at].bounds = bounds_of(&entries);
+            let (shared, own): (Vec<Entry<V>>, Vec<_>) = entries.iter().partition(|e| e.is_shared);
+            (self.nodes[at].own, self.nodes[at].shared) = (own.len() as u32, shared.len() as u32);
+            self.order.extend(own.iter().map(|e| e.prim));
+            self.shared.extend(shared.iter().map(|e| e.prim));
+        }
+        self.nodes[at].count = self.order.len() as u32 - self.nodes[at].first;
+        Some(())
     }
 
     /// All nodes; the root first, parents before children.
@@ -141,10 +232,114 @@ impl<V: Vector> KdTree<V> {
 
     /// Where the primitives at and below a node stand in the order of all.
     #[inline]
-    pub fn range(&self, node: NodeId) -> Range<usize> {
+    fn range(&self, node: NodeId) -> Range<usize> {
         let n = &self.nodes[node.at()];
         n.first as usize..(n.first + n.count) as usize
     }
+    /// Where those of a node that none of its children lists stand in the order of all: a leaf's, and
+    /// elsewhere those that cross the node's plane, to which leaves on both sides refer.
+    #[inline]
+    pub fn own(&self, node: NodeId) -> Range<usize> {
+        let n = &self.nodes[node.at()];
+        n.first as usize..(n.first + n.own) as usize
+    }
+    /// Where the primitives of nodes above that reach into a leaf stand in the list of those.
+    #[inline]
+    pub fn shared(&self, node: NodeId) -> Range<usize> {
+        let n = &self.nodes[node.at()];
+        n.first_shared as usize..(n.first_shared + n.shared) as usize
+    }
+    /// All primitives, and the references to those that cross planes.
+    pub fn lists(&self) -> [&[PrimId]; 2] {
+        [&self.order, &self.shared]
+    }
+    /// Whether some primitive has several references.
+    pub fn is_parted(&self) -> bool {
+        !self.shared.is_empty()
+    }
+    /// Sorts what each node lists.
+    pub fn sort_lists<K: Ord>(&mut self, key: impl Fn(PrimId) -> K) {
+        for at in 0..self.nodes.len() {
+            let node = NodeId(at as u32);
+            let (own, shared) = (self.own(node), self.shared(node));
+            self.order[own].sort_unstable_by_key(|p| key(*p));
+            self.shared[shared].sort_unstable_by_key(|p| key(*p));
+        }
+    }
+}
+
+fn entries<V: Vector>(prims: impl Iterator<Item = (PrimId, Aabb<V>)>) -> Vec<Entry<V>> {
+    prims.map(|(prim, bounds)| Entry { bounds, prim, is_shared: false }).collect()
+}
+
+fn bounds_of<V: Vector>(entries: &[Entry<V>]) -> Aabb<V> {
+    entries.iter().fold(Aabb::empty(), |b, e| b.union(e.bounds))
+}
+
+/// The plane that parts entries best: along `axis`, or the next one along which any does; `None` if none
+/// does. Best is what leaves the larger side the least, those that cross counted twice: what crosses is
+/// tested on both sides, so a plane a little off the balance is better than one through a crowd.
+fn plane<V: Vector>(entries: &[Entry<V>], axis: usize) -> Option<(usize, f32)> {
+    let n = entries.len();
+    let sorted = |of: &dyn Fn(&Entry<V>) -> f32| {
+        let mut all: Vec<f32> = entries.iter().map(of).collect();
+        all.sort_unstable_by(f32::total_cmp);
+        all
+    };
+    let along = |axis: usize| {
+        let mins = sorted(&|e| e.bounds.min.get(axis));
+        let maxs = sorted(&|e| e.bounds.max.get(axis));
+        let is_flat = |e: &&Entry<V>| e.bounds.min.get(axis) == e.bounds.max.get(axis);
+        let mut flat: Vec<f32> = entries.iter().filter(is_flat).map(|e| e.bounds.min.get(axis)).collect();
+        flat.sort_unstable_by(f32::total_cmp);
+        // Every end of a box is tried: between two of them nothing changes sides.
+        let mut ends = [&mins[..], &maxs[..]].concat();
+        ends.sort_unstable_by(f32::total_cmp);
+        ends.dedup();
+        let parted = |split: f32| {
+            let below = |list: &[f32]| list.partition_point(|v| *v < split);
+            let ended = |list: &[f32]| list.partition_point(|v| *v <= split);
+            let low = ended(&maxs);
+            // Those in the plane itself are low: they do not reach beyond it.
+            let high = n - below(&mins) - (ended(&flat) - below(&flat));
+            [low, n - low - high, high]
+        };
+        let of = |&split: &f32| {
+            let [low, crossing, high] = parted(split);
+            let larger = low.max(high) + crossing;
+            let parts = larger < n && (n + crossing) as f32 <= n as f32 * MOST_REFERENCES;
+            parts.then_some((larger + crossing, split))
+        };
+        ends.iter().filter_map(of).min_by_key(|(cost, _)| *cost).map(|(_, split)| (axis, split))
+    };
+    (0..V::AXES).find_map(|k| along((axis + k) % V::AXES))
+}
+
+/// Entries on either side of a plane, and those that cross it for the first time.
+fn divided<V: Vector>(
+    entries: Vec<Entry<V>>,
+    axis: usize,
+    split: f32,
+) -> (Vec<Entry<V>>, [Vec<Entry<V>>; 2]) {
+    let (mut passed, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
+    for entry in entries {
+        let Entry { bounds, .. } = entry;
+        if bounds.max.get(axis) <= split {
+            low.push(entry);
+        } else if bounds.min.get(axis) >= split {
+            high.push(entry);
+        } else {
+            let cut = |v: V| V::from_fn(|a| if a == axis { split } else { v.get(a) });
+            let part = |bounds| Entry { bounds, is_shared: true, ..entry };
+            low.push(part(Aabb { min: bounds.min, max: cut(bounds.max) }));
+            high.push(part(Aabb { min: cut(bounds.min), max: bounds.max }));
+            // Only at the first plane that it crosses: all its references lie below that.
+            if !entry.is_shared {
+                passed.push(entry);
+            }
+        }
+    }
+    (passed, [low, high])
 }
 
 /// Reorders entries into two halves by their centers: along `axis`, or the next axis along which
@@ -186,8 +381,12 @@ impl<S: Space> Hierarchy<S> for KdTree<S::Vector> {
     fn prims(&self, node: NodeId) -> &[PrimId] {
         self.prims_below(node)
     }
+    fn held(&self, node: NodeId) -> usize {
+        self.nodes[node.at()].held as usize
+    }
     fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<KdNode<S::Vector>>() + self.order.len() * size_of::<PrimId>()
+        self.nodes.len() * size_of::<KdNode<S::Vector>>()
+            + (self.order.len() + self.shared.len()) * size_of::<PrimId>()
     }
 }
 
@@ -248,6 +447,70 @@ mod tests {
         check::<Vec3>(Hierarchy::<Solid>::fault);
         // No scene has four dimensions.
         check::<Vec4>(|_, _| None);
+    }
+
+    /// What a tree of cells promises beyond the contract: each leaf refers to all that reaches into its cell,
+    /// and bounds it there; what crosses a plane is listed where it first does.
+    fn assert_parted<V: Vector>(tree: &KdTree<V>, boxes: &[(PrimId, Aabb<V>)], height: u32) {
+        let bounds_of = |p: PrimId| boxes[boxes.binary_search_by_key(&p, |b| b.0).expect("sorted by id")].1;
+        let [order, shared] = tree.lists();
+        let mut cells = vec![Aabb { min: V::splat(-1e9), max: V::splat(1e9) }; tree.nodes.len()];
+        let mut leaves_of = vec![Vec::new(); boxes.len()];
+        for (i, node) in tree.nodes.iter().enumerate() {
+            let (id, cell) = (NodeId(i as u32), cells[i]);
+            assert!(u32::from(node.level) < height, "node {i} is above the height limit");
+            let own = &order[tree.own(id)];
+            if let Some([a, b]) = node.children() {
+                let cut = |v: V| V::from_fn(|a| if a == node.axis as usize { node.split } else { v.get(a) });
+                (cells[a.at()].max, cells[b.at()].min) = (cut(cell.max), cut(cell.min));
+                (cells[a.at()].min, cells[b.at()].max) = (cell.min, cell.max);
+                let axis = node.axis as usize;
+                let crosses = |p: &PrimId| {
+                    bounds_of(*p).min.get(axis) < node.split && node.split < bounds_of(*p).max.get(axis)
+                };
+                assert!(own.iter().all(crosses), "what node {i} lists itself crosses its plane");
+                continue;
+            }
+            let held: Vec<PrimId> = own.iter().chain(&shared[tree.shared(id)]).copied().collect();
+            assert_eq!(held.len(), node.held as usize, "node {i}");
+            for &(prim, b) in boxes {
+                let overlaps = (0..V::AXES).all(|a| b.min.get(a) < cell.max.get(a) && cell.min.get(a) < b.max.get(a));
+                assert!(!overlaps || held.contains(&prim), "leaf {i} refers to {prim}");
+            }
+            for prim in held {
+                let part = Aabb { min: bounds_of(prim).min.max(cell.min), max: bounds_of(prim).max.min(cell.max) };
+                assert!(!part.is_empty() && node.bounds.encloses(&part), "leaf {i} bounds its part of {prim}");
+                leaves_of[prim.at()].push(i);
+            }
+        }
+        for &(prim, b) in boxes {
+            let held = |corner: V| leaves_of[prim.at()].iter().any(|&leaf| cells[leaf].contains(corner));
+            assert!(b.corners().all(held), "each corner of {prim} lies in a leaf that refers to it");
+        }
+    }
+
+    fn check_cells<V: Vector>(fault: Fault<V>) {
+        let mut dice = Dice::new(11);
+        let mut parted = 0;
+        for case in 0..300 {
+            let n = 1 + dice.below(300) as usize;
+            let height = 1 + dice.below(12);
+            let mut boxes = random_boxes::<V>(&mut dice, n, &[0.1, 2.0, 9.0], case % 2 == 0);
+            let tree = KdTree::build_cells(boxes.iter().copied(), height, &|| false).expect("not cancelled");
+            assert_eq!(fault(&tree, &boxes), None, "case {case}");
+            assert_parted(&tree, &boxes, height);
+            parted += usize::from(tree.is_parted());
+            boxes.reverse();
+            let same = KdTree::build_cells(boxes.into_iter(), height, &|| false).expect("not cancelled");
+            assert_eq!((tree.nodes, tree.order, tree.shared), (same.nodes, same.order, same.shared));
+        }
+        assert!(parted > 150, "{parted} of 300 trees part primitives");
+    }
+
+    #[test]
+    fn cells_hold_all_that_reaches_into_them() {
+        check_cells::<Vec2>(Hierarchy::<Flat>::fault);
+        check_cells::<Vec3>(Hierarchy::<Solid>::fault);
     }
 
     #[test]

@@ -43,20 +43,20 @@ fn table_1_is_what_the_draw_lists_say() {
     let mut views = path.walked(length / 12.0, 12).views;
     views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
     let mut percent = Vec::new();
-    for key in ["frustum", "large-occluders"] {
+    let nodes = [("detail-objects", "false")];
+    for (key, pairs) in [("frustum", &[][..]), ("large-occluders", &nodes[..]), ("large-occluders", &[][..])] {
         let entry = Solid::method(key).expect("a method");
-        let mut run = entry.ready(solid, &Settings::default(), &Quiet).expect("fine").expect("not cancelled");
+        let mut run = entry.ready(solid, &Settings::of(pairs), &Quiet).expect("fine").expect("not cancelled");
         let shares = views.iter().map(|v| run.cull(v).prims.len() as f64 / solid.live().len() as f64);
         percent.push(100.0 * shares.sum::<f64>() / 12.0);
     }
-    let ours = ["frustum_percent", "occlusion_percent"].map(|k| report.table.number(0, k).expect("a number"));
-    assert!(
-        (ours[0] - percent[0]).abs() < 1e-9 && (ours[1] - percent[1]).abs() < 1e-9,
-        "{ours:?} for {percent:?}"
-    );
-    assert!(ours[0] > ours[1] && ours[1] > 0.0 && ours[0] < 100.0, "{ours:?}");
-    let ratio = report.table.number(0, "reduction_ratio").expect("a number");
-    assert!((ratio - percent[0] / percent[1]).abs() < 1e-9);
+    let of = |key: &str| report.table.number(0, key).expect("a number");
+    let ours = ["frustum_percent", "tree_percent", "occlusion_percent"].map(of);
+    assert!(ours.iter().zip(&percent).all(|(a, b)| (a - b).abs() < 1e-9), "{ours:?} for {percent:?}");
+    let like = of("frustum_objects_percent");
+    assert!(ours[0] > like && like > ours[2] && ours[1] > ours[2] && ours[2] > 0.0, "{ours:?}, {like}");
+    assert!((of("tree_ratio") - ours[0] / ours[1]).abs() < 1e-9);
+    assert!((of("reduction_ratio") - like / ours[2]).abs() < 1e-9);
     // The paper's rows, as printed there.
     let paper = [1, 2].map(|r| {
         ["polygons", "frustum_percent", "occlusion_percent"]

@@ -9,8 +9,8 @@ use super::relation::{Classified, Decisive, EdgeTest, EyeSide, Margin, Occlusion
 use super::space::{Point, Shape, corner};
 use crate::drawing::words::capitalized;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
-use crate::geometry::{Aabb, PrimId, Vector, View};
-use crate::method::evidence::{Facing, Tested, integer, label, number, short};
+use crate::geometry::{Aabb, NodeId, PrimId, Vector, View};
+use crate::method::evidence::{Facing, Tested, integer, label, number, outline as prim_outline, short};
 use crate::method::{Claim, Compared, Context, Field, Frame, Note, Tallied, Tally, Value};
 
 /// What the method records.
@@ -28,6 +28,17 @@ pub enum Evidence<S: Shape> {
     Joined(Joined),
     /// A primitive's orientation.
     Facing(Facing),
+    /// A primitive with parts in several nodes.
+    Parted(Parted),
+}
+
+/// A primitive with parts in several nodes was decided by them.
+#[derive(Clone, Copy, Debug)]
+pub struct Parted {
+    pub prim: PrimId,
+    /// The node with a part that may be seen; if there is none, that whose plane it crosses.
+    pub node: NodeId,
+    pub is_seen: bool,
 }
 
 /// An occluder was picked, by its area-angle from the eye, from the list of the eye's leaf and direction.
@@ -38,7 +49,8 @@ pub struct Chosen {
     // Kept, not looked up: a reader of the note has scene and view, and neither the lists nor the last frame.
     rank: u32,
     area_angle: f32,
-    leaf: u32,
+    /// `None` for an Eye outside of the scene's box.
+    leaf: Option<NodeId>,
     direction: u32,
     /// Not in the set of the frame before.
     new: bool,
@@ -51,7 +63,8 @@ impl Chosen {
         id: u32,
         rank: usize,
         area_angle: f32,
-        [leaf, direction]: [u32; 2],
+        leaf: Option<NodeId>,
+        direction: u32,
         new: bool,
     ) -> Self {
         Self { occluder: id, name: occluders.name(id), rank: rank as u32, area_angle, leaf, direction, new }
@@ -430,6 +443,7 @@ impl<S: Shape> Tallied for Evidence<S> {
             Self::Edge(_) => tally.add("edges_tested", 1),
             Self::Joined(_) => tally.add("joint_occlusions", 1),
             Self::Facing(_) => Facing::tally(tally),
+            Self::Parted(n) => tally.add("parted_primitives_unseen", (!n.is_seen).into()),
         }
     }
 }
@@ -443,6 +457,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Related(_) => "OcclusionTested",
             Self::Joined(_) => "JointlyOccluded",
             Self::Facing(_) => "OrientationTested",
+            Self::Parted(n) if n.is_seen => "PartSeen",
+            Self::Parted(_) => "PartsUnseen",
         }
     }
     fn subject(&self) -> Subject {
@@ -453,6 +469,8 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Related(n) => owner_subject(n.owner),
             Self::Joined(n) => owner_subject(n.owner),
             Self::Facing(n) => n.subject(),
+            // The decision that follows is about the primitive; the node is a field.
+            Self::Parted(n) => Subject::Prim(n.prim),
         }
     }
     fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
@@ -462,6 +480,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
             // Partial occlusion proves nothing by itself; a joint set is noted only where it hides the box.
             Self::Related(n) => (n.occlusion == Occlusion::Full).then_some(Claim::Hidden),
             Self::Joined(_) => Some(Claim::Hidden),
+            Self::Parted(n) => (!n.is_seen).then_some(Claim::Hidden),
             // A choice decides what is tested, not what is hidden, and an edge is but one of several.
             Self::Chosen(_) | Self::Edge(_) => None,
         }
@@ -472,7 +491,7 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Facing(n) => n.compared(context),
             Self::Edge(n) => n.compared(),
             Self::Related(n) => n.compared(),
-            Self::Chosen(_) | Self::Joined(_) => None,
+            Self::Chosen(_) | Self::Joined(_) | Self::Parted(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -484,10 +503,12 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("occluder", n.occluder),
                 integer("rank", n.rank),
                 number("area_angle", n.area_angle.into()),
-                integer("leaf", n.leaf),
+                // Missing where the Eye is in no leaf.
+                n.leaf.map_or(Field { name: "leaf", value: Value::Word("none".into()) }, |leaf| integer("leaf", leaf.0)),
                 integer("direction", n.direction),
                 switch("new", n.new),
             ],
+            Self::Parted(n) => vec![integer("prim", n.prim.0), integer("node", n.node.0)],
             Self::Tested(n) => n.fields(context),
             Self::Edge(n) => {
                 let mut fields = vec![
@@ -527,12 +548,12 @@ impl<S: Shape> Note<S> for Evidence<S> {
             Self::Chosen(n) => format!(
                 // Leaf and direction are named too: the pick is from their list, so that they decide what can
                 // be active.
-                "{} is active, number {} by area-angle ({}) as seen from the Eye, of those listed for leaf \
-                 {} and direction {}{}.",
+                "{} is active, number {} by area-angle ({}) as seen from the Eye, of those that can hide \
+                 anything and {} direction {}{}.",
                 capitalized(&occluder_name(context, n.name)),
                 n.rank + 1,
                 short(n.area_angle),
-                n.leaf,
+                n.leaf.map_or("lie toward".to_owned(), |leaf| format!("are listed for leaf {leaf} and")),
                 n.direction,
                 if n.new { "; it was not in the frame before" } else { "" }
             ),
@@ -548,6 +569,19 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 n.shared
             ),
             Self::Facing(n) => n.sentence(context),
+            Self::Parted(n) if n.is_seen => format!(
+                "The {} {} has parts in several nodes; that in node {} may be seen.",
+                S::PRIM,
+                n.prim,
+                n.node
+            ),
+            Self::Parted(n) => format!(
+                "The {} {} crosses the plane that divides node {}; each of its parts lies in a node that is \
+                 out of view or hidden.",
+                S::PRIM,
+                n.prim,
+                n.node
+            ),
         }
     }
 }
@@ -598,6 +632,7 @@ pub fn draw<S: Shape>(
             }
             shadow(n, index, view, to);
         }
+        Some(Evidence::Parted(n)) => prim_outline(scene, n.prim, to),
         None => {}
     }
 }

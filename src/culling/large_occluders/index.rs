@@ -2,14 +2,16 @@
 //!
 //! Coorg and Teller 1997, Sections 3.1, 3.2 and 4. In this order: 1. the kD-tree over all primitives; 2. the
 //! polygons of the scene as occluders; 3. for each leaf and direction those that look largest, or the same
-//! from saved bytes; 4. of all occluders those that some list names; 5. the objects that are small.
+//! from saved bytes; 4. of all occluders those that some list names, and the largest, for an Eye outside; 5.
+//! the objects that are small.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::memory::Owner;
 use super::occluders::Occluders;
-use super::selection::Selection;
+use super::ranking::Ranking;
+use super::selection::{Selection, Wanted};
 use super::space::Shape;
 use super::{Params, saved};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space};
@@ -21,12 +23,13 @@ use crate::scene::{Part, Progress, Scene};
 pub struct Index<S: Shape> {
     pub tree: KdTree<S::Vector>,
     pub occluders: Occluders<S>,
+    /// The occluders by area-angle from any point, for an Eye that is in no leaf.
+    pub ranking: Ranking<S::Vector>,
     pub selection: Selection,
     /// Bounds of each object that is small enough to be tested as a whole.
     pub details: Vec<Option<Aabb<S::Vector>>>,
-    /// The tree's primitives, those of a leaf sorted by object; and where each run of one object begins.
-    by_object: Vec<PrimId>,
-    runs: Vec<(u32, ObjectId)>,
+    /// Where the runs of one object begin in the two lists of the tree, whose nodes sort them by object.
+    runs: [Vec<(u32, ObjectId)>; 2],
     /// The selection with the numbers that all polygons of the scene have, to be saved.
     saved: Arc<[u8]>,
 }
@@ -36,11 +39,50 @@ impl Params {
         // What the lists depend on. The other parameters change only what a frame does with them.
         saved::Key {
             scene: scene.hash_hex(),
-            params: [self.tree_height, self.directions, self.occluders, self.marginal_gain],
+            params: [
+                self.levels(scene),
+                self.cells.into(),
+                self.directions,
+                self.occluders,
+                self.marginal_gain,
+                self.backface_culling.into(),
+            ],
         }
+    }
+    /// Levels of the kD-tree.
+    fn levels<S: Space>(&self, scene: &Scene<S>) -> u32 {
+        if self.tree_height > 0 {
+            return self.tree_height;
+        }
+        (scene.live().len().div_ceil(LEAF_PRIMS).max(1).ilog2() + 1).min(MOST_LEVELS)
+    }
+    fn wanted(&self) -> Wanted {
+        Wanted {
+            directions: self.directions,
+            most: self.occluders,
+            gain: f64::from(self.marginal_gain) / 100.0,
+            one_sided: self.backface_culling,
+        }
+    }
+    fn tree<S: Space>(&self, scene: &Scene<S>, progress: &dyn Progress) -> Option<KdTree<S::Vector>> {
+        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
+        let (levels, cancelled) = (self.levels(scene), || progress.cancelled());
+        let mut tree = if self.cells {
+            KdTree::build_cells(boxes, levels, &cancelled)?
+        } else {
+            KdTree::build(boxes, levels, cancelled)?
+        };
+        // Runs of one object are decided together.
+        tree.sort_lists(|p| (scene.object_of(p), p));
+        Some(tree)
     }
 }
 
+/// Primitives of a leaf where the height of the tree is chosen by the scene, and how high that may be.
+const LEAF_PRIMS: usize = 32;
+const MOST_LEVELS: u32 = 14;
+/// How many of the largest occluders are kept for an Eye outside of the scene's box, which no list serves.
+const LARGEST: usize = 2048;
 /// The most that a detail object measures, as a share of the scene's diagonal. Section 3.2 takes objects for
 /// points, "usually limited in spatial extent": an occluder that looks large from the center then looks
 /// large from all of it. Of a building's diagonal it is a piece of furniture, of a city's a house.
@@ -62,10 +104,7 @@ impl<S: Shape> Index<S> {
     ) -> Result<Option<Self>, String> {
         // 1.
         progress.report(0.0, "building the kD-tree");
-        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
-        let Some(tree) = KdTree::build(boxes, params.tree_height, || progress.cancelled()) else {
-            return Ok(None);
-        };
+        let Some(tree) = params.tree(scene, progress) else { return Ok(None) };
         // 2. Polygons, not primitives: a wall of two triangles hides what neither of them does.
         let Some(faces) = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 }) else {
             return Ok(None);
@@ -74,38 +113,42 @@ impl<S: Shape> Index<S> {
         // 3. By far the longest step, so its result is what is saved: with the numbers that all polygons
         // have, which do not depend on the selection.
         let rest = Part { whole: progress, start: 0.4, length: 0.55 };
-        let gain = f64::from(params.marginal_gain) / 100.0;
         let made = match saved {
-            Some(bytes) => Some(saved::read(bytes, &params.key(scene), tree.nodes().len(), all.len())?),
-            None => Selection::new(&tree, &all, [params.directions, params.occluders], gain, &rest),
+            Some(bytes) => Some(saved::read::<S>(bytes, &params.key(scene), tree.nodes().len(), all.len())?),
+            None => Selection::new(&tree, &all, &params.wanted(), &rest),
         };
         let Some(selection) = made else { return Ok(None) };
         let saved = saved::write(&params.key(scene), &selection);
-        // 4. Only what some list names can ever be active: of many polygons a few, which stay in the cache.
-        let kept = selection.named();
+        // 4. Only what some list names can ever be active within the scene: of many polygons a few, which
+        // stay in the cache.
+        let mut kept = selection.named();
+        kept.extend(largest(&all));
+        kept.sort_unstable();
+        kept.dedup();
         let faces: Vec<_> = kept.iter().map(|&id| faces[all.get(id).source as usize].clone()).collect();
         let occluders = Occluders::<S>::new(scene.points(), &faces);
-        // 5.
-        let (by_object, runs) = runs(scene, &tree);
+        let Some(ranking) = Ranking::new(&occluders, || progress.cancelled()) else { return Ok(None) };
         let selection = selection.renumbered(&kept);
-        Ok(Some(Self {
-            tree,
-            occluders,
-            selection,
-            details: details(scene),
-            by_object,
-            runs,
-            saved: saved.into(),
-        }))
+        let runs = runs(scene, &tree);
+        // 5.
+        let details = details(scene);
+        Ok(Some(Self { tree, occluders, ranking, selection, details, runs, saved: saved.into() }))
     }
-    /// The primitives at and below a node, object by object within each leaf.
-    pub fn objects_of(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
-        // The leaves below a node lie side by side, and so do their runs: two searches find the ends.
-        let range = self.tree.range(node);
-        let start = |i: usize| self.runs.get(i).map_or(self.by_object.len(), |r| r.0 as usize);
-        let first = self.runs.partition_point(|r| (r.0 as usize) < range.start);
-        let last = self.runs.partition_point(|r| (r.0 as usize) < range.end);
-        (first..last).map(move |i| (self.runs[i].1, &self.by_object[start(i)..start(i + 1)]))
+    /// The primitives that a node has for itself, object by object.
+    pub fn own(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
+        self.runs_of(0, self.tree.own(node))
+    }
+    /// Those of nodes above that reach into a leaf, object by object.
+    pub fn shared(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
+        self.runs_of(1, self.tree.shared(node))
+    }
+    fn runs_of(&self, list: usize, range: Range<usize>) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
+        // What a node lists begins with a run and ends with one: two searches find the ends.
+        let (runs, prims) = (&self.runs[list][..], self.tree.lists()[list]);
+        let start = move |i: usize| runs.get(i).map_or(prims.len(), |r| r.0 as usize);
+        let first = runs.partition_point(|r| (r.0 as usize) < range.start);
+        let last = runs.partition_point(|r| (r.0 as usize) < range.end);
+        (first..last).map(move |i| (runs[i].1, &prims[start(i)..start(i + 1)]))
     }
     /// The box that a test was about.
     pub fn bounds_of(&self, owner: Owner) -> Aabb<S::Vector> {
@@ -116,27 +159,35 @@ impl<S: Shape> Index<S> {
     }
 }
 
-/// The tree's primitives with those of each leaf sorted by object, and the beginnings of the runs.
-fn runs<S: Space>(scene: &Scene<S>, tree: &KdTree<S::Vector>) -> (Vec<PrimId>, Vec<(u32, ObjectId)>) {
-    let mut order = tree.prims_below(NodeId(0)).to_vec();
-    // Leaf by leaf in the order of their ranges, so that runs come out ascending; a node's range is a range
-    // of runs, since it begins and ends with a leaf.
-    let mut leaves: Vec<Range<usize>> = (0..tree.nodes().len())
-        .filter(|&n| tree.nodes()[n].is_leaf())
-        .map(|n| tree.range(NodeId(n as u32)))
-        .collect();
-    leaves.sort_unstable_by_key(|r| r.start);
-    let mut runs = Vec::new();
-    for leaf in leaves {
-        order[leaf.clone()].sort_unstable_by_key(|&p| (scene.object_of(p), p));
-        for at in leaf.clone() {
-            let object = scene.object_of(order[at]);
-            if at == leaf.start || scene.object_of(order[at - 1]) != object {
-                runs.push((at as u32, object));
+/// The numbers of the largest occluders, in no order that matters.
+fn largest<S: Shape>(all: &Occluders<S>) -> Vec<u32> {
+    let mut ids: Vec<u32> = (0..all.len() as u32).collect();
+    let larger = |a: &u32, b: &u32| all.get(*b).area.total_cmp(&all.get(*a).area).then(a.cmp(b));
+    if ids.len() > LARGEST {
+        ids.select_nth_unstable_by(LARGEST, larger);
+        ids.truncate(LARGEST);
+    }
+    ids
+}
+
+/// Where the runs of one object begin in the tree's lists, which are sorted by object node by node.
+fn runs<S: Space>(scene: &Scene<S>, tree: &KdTree<S::Vector>) -> [Vec<(u32, ObjectId)>; 2] {
+    let nodes = || (0..tree.nodes().len() as u32).map(NodeId);
+    let of = |prims: &[PrimId], mut ranges: Vec<Range<usize>>| {
+        ranges.sort_unstable_by_key(|r| r.start);
+        let mut runs: Vec<(u32, ObjectId)> = Vec::new();
+        for range in ranges {
+            for at in range.clone() {
+                let object = scene.object_of(prims[at]);
+                if at == range.start || scene.object_of(prims[at - 1]) != object {
+                    runs.push((at as u32, object));
+                }
             }
         }
-    }
-    (order, runs)
+        runs
+    };
+    let [order, shared] = tree.lists();
+    [of(order, nodes().map(|n| tree.own(n)).collect()), of(shared, nodes().map(|n| tree.shared(n)).collect())]
 }
 
 /// Bounds of the objects that count as details (Section 3.2).
@@ -174,15 +225,18 @@ impl<S: Shape> Hierarchy<S> for Index<S> {
     fn prims(&self, node: NodeId) -> &[PrimId] {
         self.tree.prims_below(node)
     }
+    fn held(&self, node: NodeId) -> usize {
+        Hierarchy::<S>::held(&self.tree, node)
+    }
     fn save(&self) -> Option<Vec<u8>> {
         Some(self.saved.to_vec())
     }
     fn bytes(&self) -> usize {
         Hierarchy::<S>::bytes(&self.tree)
             + self.occluders.bytes()
+            + self.ranking.bytes::<S>()
             + self.selection.bytes()
             + self.details.len() * size_of::<Option<Aabb<S::Vector>>>()
-            + self.by_object.len() * size_of::<PrimId>()
-            + self.runs.len() * size_of::<(u32, ObjectId)>()
+            + self.runs.iter().map(|r| r.len() * size_of::<(u32, ObjectId)>()).sum::<usize>()
     }
 }

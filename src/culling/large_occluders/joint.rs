@@ -38,6 +38,8 @@ pub struct Scratch {
 
 /// A set of candidates, by their place in the list.
 pub type Members = u64;
+/// How many candidates such a set has places for.
+pub const MOST_CANDIDATES: usize = Members::BITS as usize;
 
 /// The largest set of candidates that jointly hides the box; 0 if none does. At most 64 candidates.
 pub fn jointly<S: Shape>(

@@ -18,14 +18,14 @@ const KEPT: usize = 128;
 /// See the module. Made for one scene and its parameters.
 #[derive(Clone, Debug)]
 pub struct Memory<S: Shape> {
-    nodes: Vec<Vec<Relation<S>>>,
-    objects: Vec<Vec<Relation<S>>>,
+    nodes: Vec<Kept<S>>,
+    objects: Vec<Kept<S>>,
     /// Whether a node or one below it keeps anything.
     below: Vec<bool>,
     /// The occluders in use, best first.
     pub active: Vec<u32>,
     /// For each detail object the occluders near it, for the latest direction.
-    near: Vec<Option<(u32, Box<[u32]>)>>,
+    near: Vec<Option<(Sight, Box<[u32]>)>>,
     list: Vec<(u32, f32)>,
     /// How the eye of this frame sees each occluder that was looked up.
     eye_sides: Vec<EyeSide<S>>,
@@ -37,6 +37,24 @@ pub struct Memory<S: Shape> {
     keeping: Vec<ObjectId>,
     /// What this frame found out about each detail object.
     pub fates: Vec<Option<Verdict>>,
+    /// Whether this frame has decided a primitive that several leaves refer to.
+    pub decided: Vec<bool>,
+}
+
+/// The relations of one node or object.
+#[derive(Clone, Debug)]
+struct Kept<S: Shape> {
+    relations: Vec<Relation<S>>,
+    /// Occluder and side of each, apart: a search reads a few bytes of each and not all of its planes.
+    names: Vec<(u32, i8)>,
+    /// The occluder that hid it when it was last hidden, which mostly hides it still.
+    hider: Option<u32>,
+}
+
+impl<S: Shape> Default for Kept<S> {
+    fn default() -> Self {
+        Self { relations: Vec::new(), names: Vec::new(), hider: None }
+    }
 }
 
 impl<S: Shape> Default for Memory<S> {
@@ -54,9 +72,13 @@ impl<S: Shape> Default for Memory<S> {
             joint: super::joint::Scratch::default(),
             keeping: Vec::new(),
             fates: Vec::new(),
+            decided: Vec::new(),
         }
     }
 }
+
+/// A direction, and whether the Eye stands within the scene's box.
+pub type Sight = (u32, bool);
 
 /// Whose relations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,17 +89,19 @@ pub enum Owner {
 
 impl<S: Shape> Memory<S> {
     /// Begins a frame: earlier eye_sides are stale, relations are not.
-    pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize) {
+    pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize, prims: usize) {
         // Only the first frame grows anything: the memory belongs to one index.
-        self.nodes.resize_with(nodes, Vec::new);
+        self.nodes.resize_with(nodes, Kept::default);
         self.below.resize(nodes, false);
-        self.objects.resize_with(objects, Vec::new);
+        self.objects.resize_with(objects, Kept::default);
         self.near.resize(objects, None);
         self.eye_sides.resize_with(occluders, EyeSide::default);
         self.fresh.resize(occluders, false);
         // Only what the last frame looked up: most occluders of a scene are far from any one place.
         self.seen.drain(..).for_each(|id| self.fresh[id as usize] = false);
         self.fates.resize(objects, None);
+        self.decided.clear();
+        self.decided.resize(prims, false);
         // "Until the node is no longer involved in the visibility calculation" (Section 3), said of objects:
         // those that the last frame did not decide keep nothing.
         let (fates, kept, near) = (&mut self.fates, &mut self.objects, &mut self.near);
@@ -86,7 +110,7 @@ impl<S: Shape> Memory<S> {
         self.keeping.retain(|object| {
             let was_decided = fates[object.at()].take().is_some();
             if !was_decided {
-                (kept[object.at()], near[object.at()]) = (Vec::new(), None);
+                (kept[object.at()], near[object.at()]) = (Kept::default(), None);
             }
             was_decided
         });
@@ -97,7 +121,7 @@ impl<S: Shape> Memory<S> {
     pub fn near(
         &mut self,
         object: ObjectId,
-        direction: u32,
+        direction: Sight,
         choose: impl FnOnce(&mut Vec<(u32, f32)>),
     ) -> usize {
         // Chosen again only when the object is seen from another direction: a walk past it asks a few times.
@@ -137,19 +161,29 @@ impl<S: Shape> Memory<S> {
     pub fn find(&self, owner: Owner, occluder: u32, side: i8, near: usize) -> Option<usize> {
         // A set changes little from frame to frame, so a relation is mostly found at its place or just
         // behind.
-        let kept = self.of(owner);
-        let fits = |r: &Relation<S>| r.occluder == occluder && r.side == side;
-        let n = kept.len();
-        (near..n).chain(0..near.min(n)).find(|&i| fits(&kept[i]))
+        let (names, wanted) = (&self.of(owner).names, (occluder, side));
+        let n = names.len();
+        (near..n).chain(0..near.min(n)).find(|&i| names[i] == wanted)
     }
     /// A kept relation.
     pub fn get(&self, owner: Owner, at: usize) -> &Relation<S> {
-        &self.of(owner)[at]
+        &self.of(owner).relations[at]
     }
-    fn of(&self, owner: Owner) -> &Vec<Relation<S>> {
+    fn of(&self, owner: Owner) -> &Kept<S> {
         match owner {
             Owner::Node(n) => &self.nodes[n.at()],
             Owner::Object(o) => &self.objects[o.at()],
+        }
+    }
+    /// The occluder that hid a box when it was last hidden by one alone.
+    pub fn hider(&self, owner: Owner) -> Option<u32> {
+        self.of(owner).hider
+    }
+    /// An occluder hides a box.
+    pub fn hides(&mut self, owner: Owner, occluder: u32) {
+        match owner {
+            Owner::Node(n) => self.nodes[n.at()].hider = Some(occluder),
+            Owner::Object(o) => self.objects[o.at()].hider = Some(occluder),
         }
     }
     /// Keeps a relation in place of one for the other side; returns where it is.
@@ -163,16 +197,19 @@ impl<S: Shape> Memory<S> {
             Owner::Object(o) => &mut self.objects[o.at()],
         };
         // The eye went to the other side: the planes there are others, and the old ones are of no use.
-        if let Some(at) = kept.iter().position(|r| r.occluder == relation.occluder) {
-            kept[at] = relation;
+        let name = (relation.occluder, relation.side);
+        if let Some(at) = kept.names.iter().position(|(occluder, _)| *occluder == relation.occluder) {
+            (kept.relations[at], kept.names[at]) = (relation, name);
             return at;
         }
-        if kept.len() >= KEPT {
+        if kept.names.len() >= KEPT {
             // The oldest half goes: what is in use will be kept again.
-            kept.drain(..KEPT / 2);
+            kept.relations.drain(..KEPT / 2);
+            kept.names.drain(..KEPT / 2);
         }
-        kept.push(relation);
-        kept.len() - 1
+        kept.relations.push(relation);
+        kept.names.push(name);
+        kept.names.len() - 1
     }
     /// A node on the way down keeps something below it.
     pub fn passed(&mut self, node: NodeId) {
@@ -188,7 +225,7 @@ impl<S: Shape> Memory<S> {
         // What the decided node itself keeps stays: the next frame needs it to decide again.
         for child in children {
             self.forget_below(tree, child);
-            self.nodes[child.at()].clear();
+            self.nodes[child.at()] = Kept::default();
             self.below[child.at()] = false;
         }
     }

@@ -21,6 +21,7 @@ mod joint;
 mod memory;
 mod occluders;
 pub mod parts;
+mod ranking;
 mod relation;
 #[cfg(test)]
 mod said;
@@ -54,6 +55,7 @@ pub struct LargeOccluders;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     tree_height: u32,
+    cells: bool,
     occluders: u32,
     directions: u32,
     marginal_gain: u32,
@@ -68,6 +70,7 @@ impl Default for Params {
         // are on; turned off, each shows what it is worth.
         Self {
             tree_height: 8,
+            cells: false,
             occluders: 32,
             directions: 8,
             // Section 5 names an adaptive choice of k as future work.
@@ -105,6 +108,7 @@ const CODE: &[CodeLine] = &[
     CodeLine::new("Visible:10", "    Gather(T)"),
     CodeLine::new("Visible:11", "  else S' := those of S that partially occlude T"),
     CodeLine::new("Visible:12", "    for each child T' of T: Visible(S', T', P)"),
+    CodeLine::new("Visible:13", "    leave out what crosses T's plane and no leaf drew"),
     CodeLine::new("TestOcclusion:1", "TestOcclusion(S, T, P)"),
     CodeLine::new("TestOcclusion:2", "  for each A of S"),
     CodeLine::new("TestOcclusion:3", "    if T lies on P's side of A: A does not occlude T"),
@@ -155,6 +159,7 @@ mod line {
     pub const GATHER_LEAF: u8 = line(CODE, "Visible:10");
     pub const PASS: u8 = line(CODE, "Visible:11");
     pub const CHILD: u8 = line(CODE, "Visible:12");
+    pub const CROSSING: u8 = line(CODE, "Visible:13");
     pub const TEST_OCCLUSION: u8 = line(CODE, "TestOcclusion:1");
     pub const EACH: u8 = line(CODE, "TestOcclusion:2");
     pub const BEFORE: u8 = line(CODE, "TestOcclusion:3");
@@ -192,7 +197,10 @@ const STANDS: &[(&str, &[&str])] = &[
     ("JointlyOccluded", &["TestOcclusion:12"]),
     ("ObjectClassified", &["Gather:4"]),
     ("PrimDecided outside", &["Gather:4"]),
-    ("PrimDecided hidden", &["Gather:6"]),
+    ("PrimDecided hidden", &["Gather:6", "Visible:13"]),
+    ("PartSeen", &["Gather:2", "Gather:7", "Visible:13"]),
+    ("PartsUnseen", &["Visible:13"]),
+    ("PrimDecided visible", &["Gather:2", "Gather:7", "Visible:13", "Draw:3"]),
     ("OrientationTested", &["Draw:2"]),
     ("PrimDecided faces-away", &["Draw:2"]),
 ];
@@ -226,6 +234,22 @@ const DEPARTURES: &[Departure] = &[
         what: "the list of a leaf and direction is four times as long as k, and of it those k are taken that \
                look largest from the eye itself",
         why: "a leaf may be large, and what looks large from its center need not from elsewhere in it",
+    },
+    Departure {
+        section: "3.1",
+        what: "an eye outside of the scene's box is in no leaf: all occluders are ranked where it stands",
+        why: "a leaf at the border lists what can hide something from within, such as a wall from the inside",
+    },
+    Departure {
+        section: "3.1",
+        what: "only occluders that can hide something from where the eye is are active: of one-sided ones those \
+               that face it",
+        why: "the others would take the places of those that hide something",
+    },
+    Departure {
+        section: "3.2",
+        what: "detail objects are tested against the occluders that hide a part of their node as well",
+        why: "what is large from the eye may hide an object from whose center it looks small",
     },
     Departure {
         section: "3.2",
@@ -266,9 +290,12 @@ impl<S: Shape> Method<S> for LargeOccluders {
         departures: DEPARTURES,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let meaning = "levels of the kD-tree; 8 gives 255 nodes";
+        let meaning = "levels of the kD-tree; 8 gives 255 nodes; 0: as many as leave a few dozen primitives a leaf";
         let height = Knob::new("tree-height", "levels", meaning, section!("4"));
-        knobs.integer(height, 1..=24, &mut params.tree_height);
+        knobs.integer(height, 0..=24, &mut params.tree_height);
+        let meaning = "boxes end at the planes that divide the tree, with what crosses them on both sides; \
+                       otherwise each primitive is on one side and boxes grow to hold it";
+        knobs.switch(Knob::new("cells", "", meaning, section!("4")), &mut params.cells);
         let meaning = "how many occluders are active at most, k in the paper";
         // A set of candidates is a word of 64 bits (see `joint`).
         knobs.integer(Knob::new("occluders", "", meaning, section!("3.1")), 1..=64, &mut params.occluders);
@@ -307,9 +334,10 @@ impl<S: Shape> Method<S> for LargeOccluders {
     }
     fn has_line(params: &Params, line: u8) -> bool {
         match line {
-            line::PASS | line::CHILD => params.tree_height > 1,
+            line::PASS | line::CHILD => params.tree_height != 1,
+            line::CROSSING => params.cells && params.tree_height != 1,
             // The root holds the occluders themselves, so none can hide it.
-            line::OCCLUDED => params.tree_height > 1,
+            line::OCCLUDED => params.tree_height != 1,
             line::JOINTLY | line::JOINT if params.tree_height == 1 && !params.detail_objects => false,
             line::JOINTLY | line::JOINT => params.occluders > 1,
             line::DRAW_ALL => !params.detail_objects,

@@ -109,10 +109,6 @@ impl<S: Shape> Occluders<S> {
     pub fn get(&self, id: u32) -> &Occluder<S> {
         &self.all[id as usize]
     }
-    /// All of them.
-    pub fn all(&self) -> &[Occluder<S>] {
-        &self.all
-    }
     /// The edges of one.
     #[inline]
     pub fn edges(&self, id: u32) -> &[Edge<S::Point>] {

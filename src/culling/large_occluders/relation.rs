@@ -22,7 +22,8 @@
 //! `s · min(distance, h) ≥ |r| · lateral`, plus what f64 rounds (see [`ROUNDING`]).
 //! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping tilts it by at most 2ε·px/h;
 //! so
-//! `s ≥ lateral + DEPTH_ROUNDING·(h + thickness)` keeps it in front.
+//! `s ≥ lateral + DEPTH_ROUNDING·(h + thickness)` keeps it in front; where boxes hold parts of primitives the
+//! share is greater (see `walk`).
 
 use super::occluders::Occluders;
 use super::space::{Point, Shape, corner};
@@ -189,6 +190,8 @@ pub struct EyeSide<S: Shape> {
 pub struct Margin {
     /// World units per unit of view depth.
     pub lateral: f64,
+    /// How much nearer than what it hides an occluder must be, relative to its distance.
+    pub depth: f64,
     /// Least height of the eye above an occluder: below it the near plane may cut a hole that the eye looks
     /// through.
     pub height: f64,
@@ -197,24 +200,26 @@ pub struct Margin {
 impl Margin {
     /// Occlusion in the sense of geometry: no pixels, no near plane; only what f64 rounds is on the safe
     /// side.
-    pub const GEOMETRIC: Self = Self { lateral: 0.0, height: 0.0 };
+    pub const GEOMETRIC: Self = Self { lateral: 0.0, depth: DEPTH_ROUNDING, height: 0.0 };
     /// The margin of a view.
     pub fn of<S: Shape>(view: &View<S>) -> Self {
         let tan = f64::from(view.eye.fov * 0.5).tan();
-        let aspect = f64::from(view.width) / f64::from(view.height.max(1));
         // The field of view spans the height of an image of space, and the width of one of flatland.
-        let (across, pixels) = if Relation::<S>::AXES > 2 {
-            (tan * tan * (1.0 + aspect * aspect), view.height)
-        } else {
-            (tan * tan, view.width)
-        };
+        let pixels = if Relation::<S>::AXES > 2 { view.height } else { view.width };
         // A ray within the image makes at most this angle with the line of sight; a hundredth for the snapped
         // border.
-        let secant = (1.0 + across).sqrt();
+        let secant = (1.0 + Self::spread(view).powi(2)).sqrt();
         Self {
             lateral: SNAP_PX * 2.0 * tan / f64::from(pixels),
+            depth: DEPTH_ROUNDING,
             height: f64::from(view.eye.near) * secant * 1.01,
         }
+    }
+    /// The tangent of the angle from the line of sight to a corner of the image.
+    pub fn spread<S: Shape>(view: &View<S>) -> f64 {
+        let tan = f64::from(view.eye.fov * 0.5).tan();
+        let aspect = f64::from(view.width) / f64::from(view.height.max(1));
+        if Relation::<S>::AXES > 2 { tan * (1.0 + aspect * aspect).sqrt() } else { tan }
     }
 }
 
@@ -314,7 +319,7 @@ impl<S: Shape> Relation<S> {
         let [s, _] = self.behind;
         let lateral = margin.lateral * depth.max(0.0);
         found.behind = s > 0.0
-            && s >= lateral + DEPTH_ROUNDING * (eye_side.height + thickness + s)
+            && s >= lateral + margin.depth * (eye_side.height + thickness + s)
             && s * eye_side.height >= eye_side.reach * lateral;
         let (lateral, blur) = self.blurred(lateral);
         // Figure 2: outside one separating plane is region 1, inside all supporting ones region 3, the rest

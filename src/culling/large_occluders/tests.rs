@@ -360,7 +360,7 @@ fn walk<S: Space>(scene: &Scene<S>, count: usize, seed: u64) -> Vec<View<S>> {
 }
 
 fn kept_planes_change_nothing<S: Methods>(scene: &Arc<Scene<S>>, count: usize) {
-    for extra in [("detail-objects", "true"), ("backface-culling", "true")] {
+    for extra in [("detail-objects", "true"), ("backface-culling", "true"), ("cells", "true")] {
         let (mut with, mut without) = (run(scene, &[extra]), run(scene, &[extra, ("cache", "false")]));
         let mut reused = 0;
         for (i, view) in walk(scene, count, 5).iter().enumerate() {
@@ -453,4 +453,83 @@ fn nothing_hides_what_lies_before_it_or_what_the_near_plane_uncovers() {
     let before = Aabb { min: Vec3::new(-0.1, -0.1, 0.1), max: Vec3::new(0.1, 0.1, 0.2) };
     let blockers = Blockers::<Solid>::new(&wall, &[vec![0, 1, 2, 3]]);
     assert_eq!(blockers.classify(0, &before, Vec3::new(0.0, 0.0, 3.0)), Occlusion::None);
+}
+
+/// How many of the segments that a fact of a lecture scene calls hidden are left out.
+fn hidden_left_out(name: &str, eye: usize) -> [usize; 2] {
+    let path = format!("{}/scenes2d/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let Ok(AnyScene::Flat(scene)) = load(&path, &LoadOptions::default(), &Quiet) else { panic!("{path}") };
+    let fact = scene.about().expect.iter().find(|f| f.eye == eye && f.frame == 0).expect("a fact");
+    let drawn = run(&scene, &[]).cull(&scene.paths()[0].views[eye]).prims;
+    [fact.hidden.iter().filter(|p| !drawn.contains(p)).count(), fact.hidden.len()]
+}
+
+#[test]
+fn lecture_scenes_show_their_lesson() {
+    // All that is hidden where that is what the scene teaches. Elsewhere a side of a box that touches a side
+    // which hides it is drawn, as is what only occluders that share nothing hide together.
+    for (name, eye, drawn) in [
+        ("occluder_and_box", 0, 0),
+        ("connected_occluders", 0, 0),
+        ("connected_occluders", 1, 1),
+        ("fusion", 0, 1),
+        ("fusion", 1, 2),
+        ("picket_fence", 0, 0),
+        ("moving_door", 0, 5),
+        ("spiral", 2, 2),
+        ("silhouette_edge", 1, 1),
+        ("detail_objects", 0, 2),
+        ("detail_objects", 1, 1),
+        ("two_viewpoints", 0, 12),
+        ("city_blocks", 2, 11),
+        ("rooms", 0, 1),
+        ("bottleneck", 0, 18),
+    ] {
+        let [found, all] = hidden_left_out(name, eye);
+        assert!(found + drawn >= all, "{name}, eye {eye}: {found} of {all} hidden segments are left out");
+    }
+}
+
+/// A closed box of side 10 about small boxes that touch nothing.
+fn shed() -> Arc<Scene<Solid>> {
+    let (mut points, mut prims) = (Vec::new(), Vec::new());
+    let mut block = |min: Vec3, max: Vec3| {
+        let first = points.len() as u32;
+        let bounds = Aabb { min, max };
+        points.extend(bounds.corners());
+        for [a, b, c, d] in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
+            prims.extend([[a, b, c], [a, c, d]].map(|t: [u32; 3]| t.map(|v| first + v)));
+        }
+    };
+    block(Vec3::splat(-5.0), Vec3::splat(5.0));
+    for i in 0..21 {
+        let at = Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32) * 3.0 - Vec3::splat(4.0);
+        block(at, at + Vec3::new(0.8, 0.8, 1.5));
+    }
+    Arc::new(Scene::new(crate::scene::Parts::simple("shed", points, prims)).expect("a scene"))
+}
+
+#[test]
+fn an_eye_outside_of_the_scene_has_occluders_too() {
+    let scene = shed();
+    let mut run = run(&scene, &[]);
+    for place in [Vec3::new(20.0, 3.0, 20.0), Vec3::new(0.0, 3.0, 20.0), Vec3::new(0.1, 30.0, 0.1)] {
+        let mut view = framing_view::<Solid>(&scene.bounds(), 128, 128);
+        (view.eye.position, view.eye.target) = (place, Vec3::ZERO);
+        let drawn = run.cull(&view).prims.len();
+        assert!(drawn <= 40, "from {place} {drawn} of {} triangles are drawn", scene.live().len());
+    }
+}
+
+#[test]
+fn where_back_faces_are_culled_all_active_occluders_can_hide() {
+    let scene = example("street").expect("a scene");
+    let mut run = run(&scene, &[("backface-culling", "true")]);
+    for view in &scene.paths()[0].views {
+        let film = run.record(view, usize::MAX).film;
+        let about_root = |at: &usize| film.subject(*at) == Subject::Node(crate::geometry::NodeId(0));
+        let of_kind = |kind: &'static str| (0..film.events().len()).filter(move |&at| film.kind(at) == kind);
+        let [active, tested] = [of_kind("OccluderChosen").count(), of_kind("OcclusionTested").filter(about_root).count()];
+        assert!(active > 8 && active == tested, "{active} are active and {tested} tested");
+    }
 }

@@ -6,20 +6,27 @@
 
 use std::ops::Range;
 
-use super::explain::{Chosen, Edge, Evidence, Joined, Related};
+use super::explain::{Chosen, Edge, Evidence, Joined, Parted, Related};
 use super::index::Index;
-use super::joint::{Candidate, jointly};
+use super::joint::{Candidate, MOST_CANDIDATES, jointly};
 use super::memory::{Memory, Owner};
 use super::occluders::Occluders;
 use super::relation::{Classified, EyeSide, Margin, Occlusion, Relation};
-use super::selection::{largest_from, leaf_at};
+use super::selection::{has_depth, leaf_at, least_angle, ranked_from};
 use super::space::{Point, Shape};
 use super::{Active, LargeOccluders, Params, line};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Vector, View};
+use crate::index::KdNode;
 use crate::method::evidence::{Facing, Tested, prim_faces_away};
 use crate::method::{DrawList, Event, Frame, Observer, Verdict};
 use crate::scene::Scene;
+
+/// By how much, relative to its distance, an occluder must be nearer than a part of a primitive that reaches
+/// out of its box.
+const PARTS_DEPTH: f64 = 1.0 / (1u32 << 11) as f64;
+/// [`Walk::is_edge_on`]: 2⁻²⁴ · (6 · 768 + 8) is below [`PARTS_DEPTH`].
+const EDGE_ON: f64 = 768.0;
 
 /// One traversal.
 pub struct Walk<'a, S: Shape, O> {
@@ -35,6 +42,8 @@ pub struct Walk<'a, S: Shape, O> {
     eye: S::Point,
     forward: S::Point,
     margin: Margin,
+    /// 1 + the tangent of the angle from the line of sight to a corner of the image.
+    spread: f64,
     /// The occluder sets of the nodes on the way down, one after the other.
     sets: Vec<u32>,
     candidates: Vec<Candidate>,
@@ -56,7 +65,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         watch: &'a mut O,
     ) -> Self {
         let Frame { index, scene, view, params, .. } = *frame;
-        memory.begin(index.tree.nodes().len(), index.details.len(), index.occluders.len());
+        memory.begin(index.tree.nodes().len(), index.details.len(), index.occluders.len(), scene.prim_count());
+        let margin = Margin::of(view);
         Self {
             index,
             scene,
@@ -69,7 +79,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             frustum: view.frustum(),
             eye: S::widened(view.eye.position),
             forward: S::widened(view.eye.forward()),
-            margin: Margin::of(view),
+            margin: if index.tree.is_parted() { Margin { depth: PARTS_DEPTH, ..margin } } else { margin },
+            spread: 1.0 + Margin::spread(view),
             sets: Vec::new(),
             candidates: Vec::new(),
         }
@@ -88,38 +99,47 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn select(&mut self) {
         self.line(line::SELECT);
         let index = self.index;
-        let leaf = leaf_at::<S>(&index.tree, self.view.eye.position);
         let direction = index.selection.direction_of::<S>(self.forward);
-        // A departure: the paper takes the list as it is. A leaf may be large, so of its list, which is
-        // longer than k, those are taken that look largest from the Eye itself.
-        let mut list = Vec::new();
-        largest_from(
-            &index.occluders,
-            index.selection.list(leaf, direction).iter(),
-            self.eye,
-            self.params.occluders,
-            &mut list,
-        );
-        for (rank, &(id, area_angle)) in list.iter().enumerate() {
-            self.line(line::PICK);
-            let memory = &self.memory;
-            self.watch.note(|| {
-                Evidence::Chosen(Chosen::of(
-                    &index.occluders,
-                    id,
-                    rank,
-                    area_angle,
-                    [leaf.0, direction],
-                    !memory.active.contains(&id),
-                ))
+        let (whole, position) = (index.tree.nodes()[0].bounds, self.view.eye.position);
+        if whole.contains(position) {
+            // A departure: the paper takes the list as it is. A leaf may be large, so of its list, which is
+            // longer than k, those are taken that look largest from the Eye itself.
+            let (leaf, mut ranked) = (leaf_at::<S>(&index.tree, position), Vec::new());
+            let list = index.selection.list(leaf, direction);
+            ranked_from(&index.occluders, list, self.eye, &mut ranked);
+            let mut list = ranked.into_iter();
+            while list.next().is_some_and(|(id, area)| self.choose(id, area, Some(leaf), direction)) {}
+        } else {
+            // An Eye outside of the scene's box is in no leaf.
+            let (occluders, eye) = (&index.occluders, self.eye);
+            let gain = f64::from(self.params.marginal_gain) / 100.0;
+            let mut sum = 0.0;
+            index.selection.search(occluders, &index.ranking, eye, direction, |id, area| {
+                if !has_depth(occluders, id, &whole, eye) {
+                    return true;
+                }
+                let adds = sum == 0.0 || f64::from(area) >= gain * sum;
+                sum += f64::from(area);
+                adds && self.choose(id, area, None, direction)
             });
-            // Active, though it may hide nothing from here, as from within its plane.
-            self.active.choose(id);
-            if self.can_hide(id) {
-                self.sets.push(id);
-            }
         }
         self.memory.active.clone_from(&self.active.0);
+    }
+
+    /// Makes an occluder active if it can hide anything; whether there is room for more.
+    fn choose(&mut self, id: u32, area_angle: f32, leaf: Option<NodeId>, direction: u32) -> bool {
+        // One that shows its back or its edge would take the place of one that hides something.
+        if self.can_hide(id) {
+            self.line(line::PICK);
+            let (memory, occluders, rank) = (&self.memory, &self.index.occluders, self.active.0.len());
+            self.watch.note(|| {
+                let new = !memory.active.contains(&id);
+                Evidence::Chosen(Chosen::of(occluders, id, rank, area_angle, leaf, direction, new))
+            });
+            self.active.choose(id);
+            self.sets.push(id);
+        }
+        self.active.0.len() < self.params.occluders as usize
     }
 
     /// Computes how the eye sees an occluder, once a frame; whether it can hide anything.
@@ -149,7 +169,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let mut cutting = 0;
         if planes != 0 {
             self.line(line::FRUSTUM);
-            let test = self.frustum.test(&node.bounds, planes);
+            let test = self.frustum_test(node, planes);
             self.watch
                 .note(move || Evidence::Tested(Tested::of(Subject::Node(id), &node.bounds, planes, test)));
             match test {
@@ -194,28 +214,32 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let undecided = cutting != 0 || !left.is_empty();
         self.line(line::FREE);
         if !undecided {
-            return self.keep(id, cutting, line::GATHER_FREE);
+            return self.keep(id, cutting, left, line::GATHER_FREE);
         }
         self.line(line::IS_OCCLUDED);
         self.line(line::IS_LEAF);
         let Some(children) = index.tree.nodes()[id.at()].children() else {
-            return self.keep(id, cutting, line::GATHER_LEAF);
+            return self.keep(id, cutting, left, line::GATHER_LEAF);
         };
         self.line(line::PASS);
         self.watch.event(Event::DecidedNode(id, Verdict::Partial));
         if self.params.cache && !left.is_empty() {
             self.memory.passed(id);
         }
-        for child in children {
+        // The side of the Eye first: what is drawn later is then more often behind.
+        let KdNode { axis, split, .. } = index.tree.nodes()[id.at()];
+        let is_low = self.view.eye.position.get(axis.into()) <= split;
+        for child in if is_low { children } else { [children[1], children[0]] } {
             self.line(line::CHILD);
             self.visible(child, cutting, left.clone());
         }
+        self.finish_crossing(id);
     }
 
     /// Gathers a node at this line.
-    fn keep(&mut self, id: NodeId, cutting: u8, line: u8) {
+    fn keep(&mut self, id: NodeId, cutting: u8, left: Range<usize>, line: u8) {
         self.line(line);
-        self.gather(id, cutting);
+        self.gather(id, cutting, left);
         // Back in Visible: what Gather did not leave out is drawn.
         self.line(line);
         self.watch.event(Event::DecidedNode(id, Verdict::Visible));
@@ -234,12 +258,30 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.candidates.clear();
         // Lines 2 to 10: each alone. One that fully occludes ends it, so that planes to the others need not
         // be made; the set is sorted by area-angle, and that one mostly comes early.
+        let hider = if self.params.cache { self.memory.hider(owner) } else { None };
+        // "Temporal Coherence": what hid it in the frame before, before all others.
+        let first = hider.and_then(|id| set.clone().find(|&at| self.sets[at] == id));
+        let tested = first.map(|at| {
+            self.line(line::EACH);
+            self.test_one(owner, bounds, self.sets[at], depth, at - set.start)
+        });
+        if let Some((Occlusion::Full, _)) = tested {
+            return Fate::Hidden;
+        }
         for at in set.clone() {
             let occluder = self.sets[at];
-            self.line(line::EACH);
-            let (occlusion, candidate) = self.test_one(owner, bounds, occluder, depth, at - set.start);
+            let (occlusion, candidate) = match tested {
+                Some(known) if first == Some(at) => known,
+                _ => {
+                    self.line(line::EACH);
+                    self.test_one(owner, bounds, occluder, depth, at - set.start)
+                }
+            };
             match occlusion {
-                Occlusion::Full => return Fate::Hidden,
+                Occlusion::Full => {
+                    self.memory.hides(owner, occluder);
+                    return Fate::Hidden;
+                }
                 Occlusion::Partial => {
                     self.sets.push(occluder);
                     self.candidates.extend(candidate);
@@ -321,34 +363,132 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         (0..S::Vector::AXES).map(axis).sum::<f64>() * (1.0 + 1e-5)
     }
 
-    /// Step 3: draws the primitives of a node that the planes `cutting` cut, but for detail objects that are
-    /// out of view or that the occluders near them hide.
-    fn gather(&mut self, id: NodeId, cutting: u8) {
-        let index = self.index;
-        self.line(line::GATHER);
-        if !self.params.detail_objects {
-            self.line(line::DRAW_ALL);
-            self.draw(index.tree.prims_below(id));
-            return;
-        }
-        for (object, prims) in index.objects_of(id) {
-            self.line(line::OBJECT);
-            match self.fate(object, cutting) {
-                Verdict::Visible => {
-                    self.line(line::DRAW_OBJECT);
-                    self.draw(prims);
-                }
-                // Decided by name: the node as a whole is called visible.
-                fate => {
-                    self.line(if fate == Verdict::Hidden {
-                        line::OBJECT_OCCLUDED
-                    } else {
-                        line::OBJECT_OUTSIDE
-                    });
-                    prims.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, fate)));
+    /// A node's box against the frustum.
+    fn frustum_test(&self, node: &KdNode<S::Vector>, planes: u8) -> FrustumTest {
+        let test = self.frustum.test(&node.bounds, planes);
+        let far = 1 << (Frustum::<S::Vector>::PLANES - 1);
+        match test {
+            // The depth of a primitive is interpolated over all of it. What little that is off may bring a
+            // part beyond the far plane before it, so the far plane leaves out whole primitives only.
+            FrustumTest::Outside(plane) if 1 << plane.plane == far && !node.is_whole() => {
+                match self.frustum.test(&node.bounds, planes & !far) {
+                    FrustumTest::Inside => FrustumTest::Partial(far),
+                    FrustumTest::Partial(cutting) => FrustumTest::Partial(cutting | far),
+                    outside @ FrustumTest::Outside(_) => outside,
                 }
             }
+            _ => test,
         }
+    }
+
+    /// Step 3: draws the primitives at and below a node that the planes `cutting` cut and the occluders `left`
+    /// partially occlude, but for detail objects that are out of view or that those or the occluders near them
+    /// hide.
+    fn gather(&mut self, id: NodeId, cutting: u8, left: Range<usize>) {
+        let index = self.index;
+        self.line(line::GATHER);
+        let children = index.tree.nodes()[id.at()].children();
+        // What an inner node has for itself crosses its plane, so leaves below refer to it again.
+        for (object, prims) in index.own(id) {
+            self.gather_object(id, object, prims, children.is_some(), cutting, left.clone());
+        }
+        for child in children.into_iter().flatten() {
+            self.gather(child, cutting, left.clone());
+        }
+        for (object, prims) in index.shared(id) {
+            self.gather_object(id, object, prims, true, cutting, left.clone());
+        }
+    }
+
+    /// Draws primitives of an object that were met at a node, or leaves them out; those that are parted once
+    /// a frame, since several leaves refer to them.
+    fn gather_object(
+        &mut self,
+        id: NodeId,
+        object: ObjectId,
+        prims: &[PrimId],
+        are_parted: bool,
+        cutting: u8,
+        left: Range<usize>,
+    ) {
+        let (fate, line) = if self.params.detail_objects {
+            self.line(line::OBJECT);
+            match self.fate(object, cutting, left) {
+                Verdict::Hidden => (Verdict::Hidden, line::OBJECT_OCCLUDED),
+                Verdict::Outside => (Verdict::Outside, line::OBJECT_OUTSIDE),
+                fate => (fate, line::DRAW_OBJECT),
+            }
+        } else {
+            (Verdict::Visible, line::DRAW_ALL)
+        };
+        if are_parted {
+            prims.iter().for_each(|&prim| self.decide_once(id, prim, fate, line));
+            return;
+        }
+        self.line(line);
+        match fate {
+            Verdict::Visible => self.draw(prims),
+            // Decided by name: the node as a whole is called visible.
+            fate => prims.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, fate))),
+        }
+    }
+    /// Draws a primitive that was met at a node and that several leaves refer to, or leaves it out.
+    fn decide_once(&mut self, id: NodeId, prim: PrimId, fate: Verdict, line: u8) {
+        if std::mem::replace(&mut self.memory.decided[prim.at()], true) {
+            return;
+        }
+        self.line(line);
+        if fate != Verdict::Visible {
+            self.watch.event(Event::DecidedPrim(prim, fate));
+            return;
+        }
+        self.watch.note(move || Evidence::Parted(Parted { prim, node: id, is_seen: true }));
+        let drawn = self.out.prims.len();
+        self.draw(&[prim]);
+        // By name, for it is not among those that the node decides.
+        if self.out.prims.len() > drawn {
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+        }
+    }
+
+    /// What crosses a node's plane and none of the leaves below has drawn: each of its parts is out of view
+    /// or hidden.
+    fn finish_crossing(&mut self, id: NodeId) {
+        let index = self.index;
+        for &prim in &index.tree.lists()[0][index.tree.own(id)] {
+            if self.memory.decided[prim.at()] {
+                continue;
+            }
+            if self.is_edge_on(prim) {
+                self.decide_once(id, prim, Verdict::Visible, line::CROSSING);
+            } else {
+                self.line(line::CROSSING);
+                self.watch.note(move || Evidence::Parted(Parted { prim, node: id, is_seen: false }));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+            }
+        }
+    }
+
+    /// Whether the eye sees a primitive so much from its edge that the depth of a part of it may be off by
+    /// more than the margin of [`PARTS_DEPTH`].
+    ///
+    /// The rasterizer's depth is `z + dx·X + dy·Y` in 32 bits, X and Y from the farthest corner. The sum of
+    /// the terms' amounts exceeds the depth itself, along the plane's horizon, by at most `(1 + t)·L/H`: H the
+    /// distance of the eye from the plane, L the longest edge, t the tangent of the angle from the line of
+    /// sight to a corner of the image. Each term is rounded a few times by 2⁻²⁴. In flatland there is but one
+    /// term.
+    fn is_edge_on(&self, prim: PrimId) -> bool {
+        if S::Vector::AXES == 2 {
+            return false;
+        }
+        let mut corners = [S::Point::default(); 3];
+        corners.iter_mut().zip(self.scene.prim_points(prim)).for_each(|(to, p)| *to = S::widened(p));
+        let area = S::area(&corners);
+        let height = area.dot(self.eye - corners[0]).abs() / area.length();
+        let sides = [[0, 1], [1, 2], [2, 0]].map(|[a, b]: [usize; 2]| (corners[b] - corners[a]).length());
+        let longest = sides.into_iter().fold(0.0, f64::max);
+        let is_near = height * EDGE_ON <= longest * self.spread;
+        is_near && !self.frustum.excludes(&self.scene.prim_bounds(prim))
     }
 
     /// Draws primitives, without those that face away if back faces are culled.
@@ -373,7 +513,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Section 3.2: whether a detail object is hidden by what looks large from it toward the eye, since
     /// visibility between two points goes both ways. Found out once a frame.
-    fn fate(&mut self, object: ObjectId, cutting: u8) -> Verdict {
+    fn fate(&mut self, object: ObjectId, cutting: u8, left: Range<usize>) -> Verdict {
         if let Some(known) = self.memory.fates[object.at()] {
             return known;
         }
@@ -381,7 +521,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let index = self.index;
         let fate = match &index.details[object.at()] {
             Some(bounds) if cutting != 0 && self.is_outside(object, bounds, cutting) => Verdict::Outside,
-            Some(bounds) if self.is_hidden(object, bounds) => Verdict::Hidden,
+            Some(bounds) if self.is_hidden(object, bounds, left) => Verdict::Hidden,
             _ => Verdict::Visible,
         };
         self.memory.fates[object.at()] = Some(fate);
@@ -395,26 +535,47 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         matches!(test, FrustumTest::Outside(_))
     }
 
-    fn is_hidden(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>) -> bool {
+    fn is_hidden(&mut self, object: ObjectId, bounds: &Aabb<S::Vector>, left: Range<usize>) -> bool {
         let index = self.index;
         self.line(line::DETAIL);
         // "Visibility between two points is reflexive": occluders that look large from the center toward the
         // Eye are near the object, though the Eye may see none of them large.
         let center = bounds.center();
         let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
-        let most = self.params.occluders;
-        let near = self.memory.near(object, direction, |list| {
-            let leaf = leaf_at::<S>(&index.tree, center);
-            // What cuts or touches the object's box, as its own primitives do, cannot hide all of it.
-            let beside =
-                index.selection.list(leaf, direction).iter().filter(|l| !index.occluders.cuts(l.0, bounds));
-            largest_from(&index.occluders, beside, S::widened(center), most, list);
+        let (most, one_sided) = (self.params.occluders as usize, self.params.backface_culling);
+        let (occluders, center) = (&index.occluders, S::widened(center));
+        // What cuts or touches the object's box, as its own primitives do, cannot hide all of it; of one-sided
+        // ones those can that show it their back.
+        let can_hide = |id: &u32| {
+            !occluders.cuts(*id, bounds) && (!one_sided || occluders.heights(*id, bounds)[1] < 0.0)
+        };
+        // The lists lack what has no scene behind it, as seen from within. To an Eye outside that may be what
+        // hides most, as a roof.
+        let is_inside = index.tree.nodes()[0].bounds.contains(self.view.eye.position);
+        let near = self.memory.near(object, (direction, is_inside), |list| {
+            if is_inside {
+                let leaf = leaf_at::<S>(&index.tree, bounds.center());
+                let listed = index.selection.list(leaf, direction).filter(can_hide);
+                ranked_from(occluders, listed, center, list);
+                list.truncate(most);
+            } else {
+                list.clear();
+                index.selection.search(occluders, &index.ranking, center, direction, |id, area| {
+                    if can_hide(&id) {
+                        list.push((id, area));
+                    }
+                    list.len() < most && area >= least_angle::<S>()
+                });
+            }
         });
         // "It is necessary to perform the visibility test on the entire detail object."
+        // First those that hide a part of the node in which it is met: what is large from the Eye and far
+        // from the object may hide it too.
         let start = self.sets.len();
+        self.sets.extend_from_within(left);
         for at in 0..near {
             let id = self.memory.near_to(object, at);
-            if self.can_hide(id) {
+            if self.sets.len() - start < MOST_CANDIDATES && self.can_hide(id) && !self.sets[start..].contains(&id) {
                 self.sets.push(id);
             }
         }
