@@ -194,7 +194,8 @@ impl<V: Vector> KdTree<V> {
         self.nodes[at].first_shared = self.shared.len() as u32;
         self.nodes[at].held = entries.len() as u32;
         // 1 and 2.
-        let plane = if u32::from(level) + 1 < height { plane(&entries, level as usize % V::AXES) } else { None };
+        let plane =
+            if u32::from(level) + 1 < height { plane(&entries, level as usize % V::AXES) } else { None };
         if let Some((axis, split)) = plane {
             let (passed, halves) = divided(entries, axis, split);
             self.order.extend(passed.iter().map(|e| e.prim));
@@ -474,12 +475,17 @@ mod tests {
             let held: Vec<PrimId> = own.iter().chain(&shared[tree.shared(id)]).copied().collect();
             assert_eq!(held.len(), node.held as usize, "node {i}");
             for &(prim, b) in boxes {
-                let overlaps = (0..V::AXES).all(|a| b.min.get(a) < cell.max.get(a) && cell.min.get(a) < b.max.get(a));
+                let overlaps =
+                    (0..V::AXES).all(|a| b.min.get(a) < cell.max.get(a) && cell.min.get(a) < b.max.get(a));
                 assert!(!overlaps || held.contains(&prim), "leaf {i} refers to {prim}");
             }
             for prim in held {
-                let part = Aabb { min: bounds_of(prim).min.max(cell.min), max: bounds_of(prim).max.min(cell.max) };
-                assert!(!part.is_empty() && node.bounds.encloses(&part), "leaf {i} bounds its part of {prim}");
+                let part =
+                    Aabb { min: bounds_of(prim).min.max(cell.min), max: bounds_of(prim).max.min(cell.max) };
+                assert!(
+                    !part.is_empty() && node.bounds.encloses(&part),
+                    "leaf {i} bounds its part of {prim}"
+                );
                 leaves_of[prim.at()].push(i);
             }
         }

@@ -44,7 +44,8 @@ fn table_1_is_what_the_draw_lists_say() {
     views.iter_mut().for_each(|v| (v.width, v.height) = (128, 96));
     let mut percent = Vec::new();
     let nodes = [("detail-objects", "false")];
-    for (key, pairs) in [("frustum", &[][..]), ("large-occluders", &nodes[..]), ("large-occluders", &[][..])] {
+    for (key, pairs) in [("frustum", &[][..]), ("large-occluders", &nodes[..]), ("large-occluders", &[][..])]
+    {
         let entry = Solid::method(key).expect("a method");
         let mut run = entry.ready(solid, &Settings::of(pairs), &Quiet).expect("fine").expect("not cancelled");
         let shares = views.iter().map(|v| run.cull(v).prims.len() as f64 / solid.live().len() as f64);

@@ -504,7 +504,9 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 integer("rank", n.rank),
                 number("area_angle", n.area_angle.into()),
                 // Missing where the Eye is in no leaf.
-                n.leaf.map_or(Field { name: "leaf", value: Value::Word("none".into()) }, |leaf| integer("leaf", leaf.0)),
+                n.leaf.map_or(Field { name: "leaf", value: Value::Word("none".into()) }, |leaf| {
+                    integer("leaf", leaf.0)
+                }),
                 integer("direction", n.direction),
                 switch("new", n.new),
             ],

@@ -290,7 +290,8 @@ impl<S: Shape> Method<S> for LargeOccluders {
         departures: DEPARTURES,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let meaning = "levels of the kD-tree; 8 gives 255 nodes; 0: as many as leave a few dozen primitives a leaf";
+        let meaning =
+            "levels of the kD-tree; 8 gives 255 nodes; 0: as many as leave a few dozen primitives a leaf";
         let height = Knob::new("tree-height", "levels", meaning, section!("4"));
         knobs.integer(height, 0..=24, &mut params.tree_height);
         let meaning = "boxes end at the planes that divide the tree, with what crosses them on both sides; \

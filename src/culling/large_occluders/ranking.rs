@@ -28,10 +28,7 @@ pub struct Ranking<V> {
 
 impl<V: Vector> Ranking<V> {
     /// Of all occluders; `None` when cancelled.
-    pub fn new<S: Shape<Vector = V>>(
-        occluders: &Occluders<S>,
-        cancelled: impl Fn() -> bool,
-    ) -> Option<Self> {
+    pub fn new<S: Shape<Vector = V>>(occluders: &Occluders<S>, cancelled: impl Fn() -> bool) -> Option<Self> {
         let boxes = (0..occluders.len() as u32).map(|id| (PrimId(id), Aabb::of(occluders.outline(id))));
         let height = occluders.len().div_ceil(LEAF).max(1).ilog2() + 2;
         let tree = KdTree::build(boxes, height, cancelled)?;

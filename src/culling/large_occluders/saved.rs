@@ -44,12 +44,7 @@ pub fn write(key: &Key, selection: &Selection) -> Vec<u8> {
 ///
 /// # Errors
 /// Why they do not fit: damaged, of another version, scene or parameters.
-pub fn read<S: Shape>(
-    bytes: &[u8],
-    key: &Key,
-    nodes: usize,
-    occluders: usize,
-) -> Result<Selection, String> {
+pub fn read<S: Shape>(bytes: &[u8], key: &Key, nodes: usize, occluders: usize) -> Result<Selection, String> {
     let damaged = || "the file is damaged".to_owned();
     let Some((body, sum)) = bytes.split_last_chunk::<CHECKSUM>() else { return Err(damaged()) };
     let Some((magic, rest)) = body.split_first_chunk::<12>() else { return Err(damaged()) };

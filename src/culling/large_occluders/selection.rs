@@ -239,7 +239,8 @@ impl Selection {
     /// The best occluders of a leaf and direction, by area-angle from the middle of the leaf, best first.
     pub fn list(&self, leaf: NodeId, direction: u32) -> impl Iterator<Item = u32> {
         let at = self.leaf_of[leaf.at()] as usize;
-        let (range, stride) = (self.starts[at] as usize..self.starts[at + 1] as usize, stride(self.ways.len()));
+        let (range, stride) =
+            (self.starts[at] as usize..self.starts[at + 1] as usize, stride(self.ways.len()));
         let (byte, bit) = (direction as usize / 8, direction % 8);
         range.filter(move |i| self.toward[i * stride + byte] >> bit & 1 == 1).map(|i| self.lists[i])
     }
@@ -265,7 +266,13 @@ impl Selection {
         let fits = leaf_of.len() == nodes && starts.len() == leaves + 1;
         let known = lists.iter().all(|&id| (id as usize) < occluders);
         let marked = toward.len() == lists.len() * stride(ways.len());
-        (ascending && whole && fits && known && marked).then_some(Self { ways, leaf_of, starts, lists, toward })
+        (ascending && whole && fits && known && marked).then_some(Self {
+            ways,
+            leaf_of,
+            starts,
+            lists,
+            toward,
+        })
     }
     /// Bytes of the lists.
     pub fn bytes(&self) -> usize {
@@ -420,12 +427,7 @@ pub fn has_depth<S: Shape>(
 }
 
 /// The center of an occluder, its corners and the middles between, from a point on, with their distances.
-fn places_of<S: Shape>(
-    occluders: &Occluders<S>,
-    id: u32,
-    from: S::Point,
-    into: &mut Vec<(S::Point, f64)>,
-) {
+fn places_of<S: Shape>(occluders: &Occluders<S>, id: u32, from: S::Point, into: &mut Vec<(S::Point, f64)>) {
     let center = occluders.get(id).center;
     let middles = occluders.edges(id).iter().flat_map(|e| [e.from, (e.from + center) * 0.5]);
     into.clear();

@@ -497,7 +497,9 @@ fn shed() -> Arc<Scene<Solid>> {
         let first = points.len() as u32;
         let bounds = Aabb { min, max };
         points.extend(bounds.corners());
-        for [a, b, c, d] in [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]] {
+        for [a, b, c, d] in
+            [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
+        {
             prims.extend([[a, b, c], [a, c, d]].map(|t: [u32; 3]| t.map(|v| first + v)));
         }
     };
@@ -529,7 +531,8 @@ fn where_back_faces_are_culled_all_active_occluders_can_hide() {
         let film = run.record(view, usize::MAX).film;
         let about_root = |at: &usize| film.subject(*at) == Subject::Node(crate::geometry::NodeId(0));
         let of_kind = |kind: &'static str| (0..film.events().len()).filter(move |&at| film.kind(at) == kind);
-        let [active, tested] = [of_kind("OccluderChosen").count(), of_kind("OcclusionTested").filter(about_root).count()];
+        let [active, tested] =
+            [of_kind("OccluderChosen").count(), of_kind("OcclusionTested").filter(about_root).count()];
         assert!(active > 8 && active == tested, "{active} are active and {tested} tested");
     }
 }

@@ -65,7 +65,12 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         watch: &'a mut O,
     ) -> Self {
         let Frame { index, scene, view, params, .. } = *frame;
-        memory.begin(index.tree.nodes().len(), index.details.len(), index.occluders.len(), scene.prim_count());
+        memory.begin(
+            index.tree.nodes().len(),
+            index.details.len(),
+            index.occluders.len(),
+            scene.prim_count(),
+        );
         let margin = Margin::of(view);
         Self {
             index,
@@ -575,7 +580,10 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.sets.extend_from_within(left);
         for at in 0..near {
             let id = self.memory.near_to(object, at);
-            if self.sets.len() - start < MOST_CANDIDATES && self.can_hide(id) && !self.sets[start..].contains(&id) {
+            if self.sets.len() - start < MOST_CANDIDATES
+                && self.can_hide(id)
+                && !self.sets[start..].contains(&id)
+            {
                 self.sets.push(id);
             }
         }

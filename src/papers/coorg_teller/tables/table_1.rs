@@ -108,7 +108,11 @@ fn plots(table: &Table) -> Vec<Plot> {
         series: vec![
             Series::new("after frustum culling, nodes", Role::Scene, first_of_each(table, "frustum_percent")),
             Series::new("and objects", Role::Outside, first_of_each(table, "frustum_objects_percent")),
-            Series::new("after occlusion culling, nodes", Role::Occluder, first_of_each(table, "tree_percent")),
+            Series::new(
+                "after occlusion culling, nodes",
+                Role::Occluder,
+                first_of_each(table, "tree_percent"),
+            ),
             Series::new("and objects", Role::Visible, first_of_each(table, "occlusion_percent")),
             Series::new("after frustum culling, paper", Role::Approximated, theirs(|p| p.2)),
             Series::new("after occlusion culling, paper", Role::Hidden, theirs(|p| p.3)),
