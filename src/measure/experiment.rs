@@ -77,8 +77,10 @@ pub struct Experiment {
     pub scenes: &'static [&'static str],
     /// What is to be known for reading the table.
     pub notes: &'static [&'static str],
-    /// Parameters that it varies itself.
+    /// Parameters that it sets itself.
     pub varies: &'static [&'static str],
+    /// Parameters that it gives another value than the method does, where none is set.
+    pub settings: &'static [(&'static str, &'static str)],
     /// What it does.
     pub sweep: &'static Sweep,
 }
@@ -123,7 +125,10 @@ impl Experiment {
         progress: &dyn Progress,
     ) -> Result<Report, ExperimentError> {
         self.check(&setup.settings)?;
-        let setup = Setup { frames: setup.frames.max(1), ..setup.clone() };
+        let mut setup = Setup { frames: setup.frames.max(1), ..setup.clone() };
+        for (key, value) in self.settings {
+            setup.settings.0.entry((*key).to_owned()).or_insert_with(|| (*value).to_owned());
+        }
         let mut table = Table::new(self.sweep.columns);
         let mut measured = Vec::new();
         for (i, scene) in scenes.iter().enumerate() {

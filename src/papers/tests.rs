@@ -323,6 +323,7 @@ fn an_unknown_method_is_an_error() {
         scenes: &[],
         notes: &[],
         varies: &[],
+        settings: &[],
         sweep,
     };
     let error = experiment.check(&Settings::default()).expect_err("no such method");

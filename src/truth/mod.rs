@@ -6,8 +6,10 @@
 pub mod certificate;
 mod flip;
 mod hidden;
+mod layering;
 
 pub use flip::flip_mean;
+pub use layering::layering_numbers;
 
 use glam::DVec3;
 

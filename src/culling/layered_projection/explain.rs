@@ -3,12 +3,13 @@
 use super::LayeredProjection;
 use super::front::Front;
 use super::index::{Index, cell_of, node_of};
+use super::rules::{Penalizing, Transfer};
 use crate::culling::depth::{Answer, Faces};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{CellId, NodeId, PrimId, Vector, View};
 use crate::index::tessellation::Cellular;
 use crate::method::evidence::{self, Facing, Tested, axes, integer, label, number, short};
-use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value};
+use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value, Words};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -30,8 +31,14 @@ pub enum Evidence<S: Cellular> {
     Compared(Compared),
     /// The budget is spent, and what the rest could still change was found.
     Bounded(Bounded),
-    /// The traversal ended.
+    /// The budget is spent, and nothing asks for more.
+    Spent(Spent),
+    /// The front is empty.
     Ended(Ended),
+    /// A cell or a primitive that the budget left out.
+    LeftOut(LeftOut),
+    /// A primitive that no cell in view holds.
+    Unreached(Unreached),
 }
 
 /// A cell from which the front grows.
@@ -48,11 +55,14 @@ pub struct Seeded {
 pub enum Origin {
     /// It holds the Eye.
     Eye,
-    /// It is the nearest to the Eye, which is outside of all cells.
+    /// It is the closest to the Eye, which is outside of all cells.
+    Closest,
+    /// The Eye is outside of all cells, and of those in view that hold something its box is the nearest.
     Nearest,
     /// It is the first that holds something on a ray from the Eye.
     Ray,
-    /// The front had run dry, and it is the nearest that was not reached.
+    /// The front had run dry, and of the cells in view that hold something and were not reached its box is
+    /// the nearest.
     Again,
 }
 
@@ -67,15 +77,18 @@ pub struct Transferred<V> {
     /// What A adds: |A| / ρ_max, or the part of it that faces the Eye.
     // Kept besides the two, whose quotient it is only where every primitive counts one.
     pub share: f32,
-    /// v, unit vector from the Eye to the center of B.
+    /// v, a unit vector: where the Eye looks, or from the Eye to the center of B.
     pub sight: V,
     /// n(B), unit normal of the shared face toward B.
     pub normal: V,
-    /// The part of ρ(A) that is handed on: v · n(B), not below 0, or 1.
+    pub transfer: Transfer,
+    /// The part of ρ(A) that is handed on: v · n(B), or 1.
     pub along: f32,
     /// ρ(A).
     pub of_a: f32,
     pub star_shaped: bool,
+    /// How a penalty is applied, if it is not star-shaped.
+    pub penalizing: Penalizing,
     /// ρ(B), penalty included.
     pub solidity: f32,
     /// What B had in the front.
@@ -88,6 +101,7 @@ impl Origin {
     fn word(self) -> &'static str {
         match self {
             Self::Eye => "eye",
+            Self::Closest => "closest",
             Self::Nearest => "nearest",
             Self::Ray => "ray",
             Self::Again => "again",
@@ -110,8 +124,13 @@ pub struct Projected {
     pub rank: u32,
     pub solidity: f32,
     pub held: u32,
+    /// Of these, drawn now.
     pub drawn: u32,
+    /// Of these, left out since the budget ended.
+    pub cut_off: u32,
+    /// Of the budget.
     pub left: u32,
+    pub is_in_view: bool,
 }
 
 /// A cell that the budget left out was compared with what is drawn.
@@ -142,12 +161,44 @@ pub struct Bounded {
     pub drawn: u32,
 }
 
-/// The front is empty or the budget spent.
+/// The budget was spent with a cell.
+#[derive(Clone, Copy, Debug)]
+pub struct Spent {
+    pub cell: CellId,
+    pub solidity: f32,
+    /// Cells projected, and primitives drawn.
+    pub cells: u32,
+    pub drawn: u32,
+    /// Primitives of this cell that are left out.
+    pub cut_off: u32,
+}
+
+/// The front is empty.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended {
     pub cells: u32,
     pub left: u32,
-    pub spent: bool,
+}
+
+/// What the budget left out, and how much more of it would have drawn it.
+#[derive(Clone, Copy, Debug)]
+pub struct LeftOut {
+    /// The cell that was left out, or that would have drawn the primitive.
+    pub cell: CellId,
+    pub prim: Option<PrimId>,
+    /// Solidity and place in the front, from 1, when the budget was spent; `None` if it did not wait there.
+    pub queued: Option<(f32, u32)>,
+    /// The cell that was projected last, and its solidity.
+    pub last: CellId,
+    pub of_last: f32,
+    /// Primitives that the budget was too small by: for the primitive, or for all of the cell.
+    pub more: u32,
+}
+
+/// A primitive none of whose cells is in view.
+#[derive(Clone, Copy, Debug)]
+pub struct Unreached {
+    pub prim: PrimId,
 }
 
 /// Projected cells that are numbered in a picture, the latest ones: far more than fit at [`LABELS_APART`],
@@ -201,7 +252,7 @@ impl<S: Cellular> Tallied for Evidence<S> {
                 tally.add("cells_hidden", n.answer.is_hidden.into());
             }
             Self::Bounded(_) => tally.add("bounds_found", 1),
-            Self::Compared(_) | Self::Ended(_) => {}
+            Self::Compared(_) | Self::Spent(_) | Self::Ended(_) | Self::LeftOut(_) | Self::Unreached(_) => {}
         }
     }
 }
@@ -217,7 +268,11 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Queried(_) => "CellAsked",
             Self::Compared(_) => "PrimCompared",
             Self::Bounded(_) => "DoubtBounded",
+            Self::Spent(_) => "BudgetSpent",
             Self::Ended(_) => "TraversalEnded",
+            Self::LeftOut(LeftOut { prim: None, .. }) => "CellLeftOut",
+            Self::LeftOut(_) => "PrimLeftOut",
+            Self::Unreached(_) => "PrimUnreached",
         }
     }
     fn subject(&self) -> Subject {
@@ -229,6 +284,9 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Projected(n) => Subject::Node(node_of(n.cell)),
             Self::Queried(n) => Subject::Node(node_of(n.cell)),
             Self::Compared(n) => Subject::Prim(n.prim),
+            Self::Spent(n) => Subject::Node(node_of(n.cell)),
+            Self::LeftOut(n) => n.prim.map_or(Subject::Node(node_of(n.cell)), Subject::Prim),
+            Self::Unreached(n) => Subject::Prim(n.prim),
             // About all cells, which are below the root.
             Self::Bounded(_) | Self::Ended(_) => Subject::Node(NodeId(0)),
         }
@@ -244,7 +302,10 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             | Self::Transferred(_)
             | Self::Projected(_)
             | Self::Bounded(_)
-            | Self::Ended(_) => None,
+            | Self::Spent(_)
+            | Self::Ended(_)
+            | Self::LeftOut(_)
+            | Self::Unreached(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -272,6 +333,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 // Before the penalty; `solidity` is after it.
                 number("transferred", n.sum().into()),
                 switch("star_shaped", n.star_shaped),
+                word("penalty_as", n.penalizing.word()),
                 number("solidity", n.solidity.into()),
                 switch("keeps", n.keeps),
             ],
@@ -281,7 +343,9 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 number("solidity", n.solidity.into()),
                 integer("held", n.held),
                 integer("drawn", n.drawn),
+                integer("left_out", n.cut_off),
                 integer("budget_left", n.left),
+                switch("in_view", n.is_in_view),
             ],
             Self::Queried(n) => vec![
                 integer("node", node_of(n.cell).0),
@@ -305,9 +369,16 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 number("allowed", n.most.into()),
                 integer("drawn", n.drawn),
             ],
-            Self::Ended(n) => {
-                vec![integer("cells", n.cells), integer("budget_left", n.left), switch("spent", n.spent)]
-            }
+            Self::Spent(n) => vec![
+                integer("node", node_of(n.cell).0),
+                number("solidity", n.solidity.into()),
+                integer("cells", n.cells),
+                integer("drawn", n.drawn),
+                integer("left_out", n.cut_off),
+            ],
+            Self::Ended(n) => vec![integer("cells", n.cells), integer("budget_left", n.left)],
+            Self::LeftOut(n) => left_out_fields(n),
+            Self::Unreached(n) => vec![integer("prim", n.prim.0)],
         }
     }
     fn sentence(&self, context: &Context<'_, S>) -> String {
@@ -317,17 +388,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Tested(n) => n.sentence(context),
             Self::Facing(n) => n.sentence(context),
             Self::Transferred(n) => transfer_sentence::<S>(n),
-            Self::Projected(n) => format!(
-                // "Now": the others were drawn with an earlier cell, were culled, or found no budget.
-                "Node {} has the least solidity of the front, {}; it is projected as number {}: {} of the {} \
-                 {prims}s that meet it are drawn now, {} of the budget are left.",
-                node_of(n.cell),
-                short(n.solidity),
-                n.rank + 1,
-                n.drawn,
-                n.held,
-                n.left
-            ),
+            Self::Projected(n) => projection_sentence::<S>(n),
             Self::Queried(n) => query_sentence(n),
             Self::Compared(n) => comparison_sentence::<S>(n),
             Self::Bounded(n) => format!(
@@ -339,11 +400,108 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             ),
             // Not the same to a student: a spent budget may leave out what is visible, an empty front has
             // left nothing in view.
-            Self::Ended(n) if n.spent => format!("The budget is spent after {} cells.", n.cells),
+            Self::Spent(n) => format!(
+                "The budget is spent with node {}, projected as number {} at solidity {}, after {}. {} left \
+                 out.",
+                node_of(n.cell),
+                n.cells,
+                short(n.solidity),
+                many(n.drawn, S::PRIM),
+                match n.cut_off {
+                    0 => "Nothing in it is".to_owned(),
+                    1 => format!("1 {prims} in it is"),
+                    more => format!("{more} {prims}s in it are"),
+                }
+            ),
             Self::Ended(n) => {
-                format!("The front is empty after {} cells; {} of the budget are left.", n.cells, n.left)
+                format!(
+                    "The front is empty after {}; {} of the budget left.",
+                    many(n.cells, "cell"),
+                    is(n.left)
+                )
+            }
+            Self::LeftOut(n) => left_out_sentence::<S>(n),
+            Self::Unreached(n) => {
+                format!("No cell that the {prims} {} meets is in view: nothing of it can be seen.", n.prim)
             }
         }
+    }
+}
+
+/// Such as `1 cell` or `12 cells`.
+pub(super) fn many(count: u32, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Such as `1 is` or `12 are`.
+fn is(count: u32) -> String {
+    format!("{count} {}", if count == 1 { "is" } else { "are" })
+}
+
+fn projection_sentence<S: Cellular>(n: &Projected) -> String {
+    let taken = format!(
+        "Node {} has the least solidity of the front, {}; it is projected as number {}",
+        node_of(n.cell),
+        short(n.solidity),
+        n.rank + 1
+    );
+    let left = format!("{} of the budget left", is(n.left));
+    if !n.is_in_view {
+        return format!("{taken}. It is out of view, so nothing of it is drawn; {left}.");
+    }
+    if n.held == 0 {
+        return format!("{taken}. It is empty; {left}.");
+    }
+    // "Now": the others were drawn with an earlier cell, were culled, or found no budget.
+    let drawn = format!("of the {} that meet it {} drawn now", many(n.held, S::PRIM), is(n.drawn));
+    match n.cut_off {
+        0 => format!("{taken}: {drawn}; {left}."),
+        cut_off => format!("{taken}: {drawn} and {} left out, for the budget ends here.", is(cut_off)),
+    }
+}
+
+fn left_out_fields(n: &LeftOut) -> Vec<Field> {
+    let mut fields: Vec<Field> = n.prim.map(|prim| integer("prim", prim.0)).into_iter().collect();
+    fields.push(integer("node", node_of(n.cell).0));
+    if let Some((solidity, place)) = n.queued {
+        fields.extend([number("solidity", solidity.into()), integer("place", place)]);
+    }
+    fields.extend([
+        integer("last_node", node_of(n.last).0),
+        number("last_solidity", n.of_last.into()),
+        integer("budget_short", n.more),
+    ]);
+    fields
+}
+
+fn left_out_sentence<S: Cellular>(n: &LeftOut) -> String {
+    let (node, last, of_last) = (node_of(n.cell), node_of(n.last), short(n.of_last));
+    let larger = format!("With a budget larger by {}", n.more);
+    if n.cell == n.last {
+        let name = n.prim.map_or_else(|| format!("all of node {node}"), |p| format!("the {} {p}", S::PRIM));
+        return format!(
+            "The budget ended in node {node}, of solidity {of_last}. {larger} {name} would be drawn."
+        );
+    }
+    // Why it was not its turn, in the terms of the front.
+    let waits = match n.queued {
+        Some((solidity, place)) => format!(
+            "waits at place {place} of the front with solidity {}, and the last cell projected, node {last}, \
+             had {of_last}",
+            short(solidity)
+        ),
+        None => {
+            format!("is not in the front yet; the last cell projected, node {last}, had solidity {of_last}")
+        }
+    };
+    match n.prim {
+        Some(prim) => format!(
+            "Of the cells that the {} {prim} meets node {node} would draw it first. It {waits}. {larger} the {} \
+             would be drawn.",
+            S::PRIM,
+            S::PRIM
+        ),
+        None => format!("Node {node} {waits}. {larger} all in it that is in view would be drawn."),
     }
 }
 
@@ -351,8 +509,13 @@ fn seed_sentence(n: &Seeded) -> String {
     let (node, distance) = (node_of(n.cell), short(n.distance));
     match n.origin {
         Origin::Eye => format!("The Eye is in the cell of node {node}: the front begins there."),
+        Origin::Closest => format!(
+            "The Eye is outside of all cells; the cell closest to it is node {node}, {distance} units away: \
+             the front begins there."
+        ),
         Origin::Nearest => format!(
-            "The Eye is outside of all cells; the nearest cell in view is node {node}, {distance} units away."
+            "The Eye is outside of all cells. Of those in view that hold something node {node} has the \
+             nearest box, {distance} units away: the front begins there."
         ),
         Origin::Ray => {
             format!(
@@ -362,8 +525,8 @@ fn seed_sentence(n: &Seeded) -> String {
         }
         Origin::Again => {
             format!(
-                "The front is empty and budget is left: the nearest cell in view that was not reached, node \
-                 {node}, starts a new one."
+                "The front is empty and budget is left. Of the cells in view that hold something and were \
+                 not reached node {node} has the nearest box, {distance} units away: a new front begins there."
             )
         }
     }
@@ -410,8 +573,11 @@ fn query_sentence(n: &Queried) -> String {
 
 fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     let (a, b) = (node_of(n.a), node_of(n.b));
-    // The formula of line 1 with names, then with numbers.
-    let part = if n.along == 1.0 { "ρ(A)" } else { "(v · n) ρ(A)" };
+    // The formula of line 1 that ran, with names, then with numbers.
+    let (part, product) = match n.transfer {
+        Transfer::Whole => ("ρ(A)", short(n.of_a)),
+        Transfer::Aligned => ("(v · n) ρ(A)", format!("{} × {}", short(n.along), short(n.of_a))),
+    };
     // The same division as the run's: equal results say how primitives were counted, or that it does not
     // matter.
     let (name, share) = if n.share == n.held as f32 / n.most.max(1) as f32 {
@@ -419,16 +585,18 @@ fn transfer_sentence<S: Cellular>(n: &Transferred<S::Vector>) -> String {
     } else {
         ("what of A faces the Eye, of ρ_max", short(n.share))
     };
-    let product =
-        if n.along == 1.0 { short(n.of_a) } else { format!("{} × {}", short(n.along), short(n.of_a)) };
     let terms = format!("{share} + {product} = {}", short(n.sum()));
     // Why a penalty is due, in terms of the ray that the picture shows.
     let star = if n.star_shaped {
         String::new()
     } else {
+        let penalized = match n.penalizing {
+            Penalizing::Factor => "times the penalty factor it has",
+            Penalizing::Sum => "with the penalty added it has",
+        };
         format!(
             " The way from its center to the Eye does not leave through that face: it is not star-shaped, \
-             and with the penalty it has {}.",
+             and {penalized} {}.",
             short(n.solidity)
         )
     };
@@ -495,6 +663,14 @@ pub fn draw<S: Cellular + Faces>(
         }
         Some(Evidence::Compared(n)) => evidence::outline(scene, n.prim, to),
         Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),
+        Some(Evidence::Spent(n)) => outline(index, n.cell, Layer::Emphasis, Role::Current, to),
+        // Beside the cell that it waits for the one that was the last before it.
+        Some(Evidence::LeftOut(n)) => {
+            outline(index, n.last, Layer::Emphasis, Role::Partial, to);
+            outline(index, n.cell, Layer::Emphasis, Role::Current, to);
+            n.prim.into_iter().for_each(|prim| evidence::outline(scene, prim, to));
+        }
+        Some(Evidence::Unreached(n)) => evidence::outline(scene, n.prim, to),
         // About all cells, so there is no place to point at.
         Some(Evidence::Bounded(_) | Evidence::Ended(_)) | None => {}
     }

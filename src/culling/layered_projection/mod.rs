@@ -13,23 +13,27 @@
 //! 5. Extensions of Section 6: several seeds, queries of what the budget left out against the z-buffer, a
 //!    budget that grows until the image is good enough, and solidity by what faces the Eye ([`rest`]).
 //!
-//! Departures, argued where they are made: v is the direction from the Eye to the cell's center, not one for
-//! the whole frame; a transfer against the view direction counts as none; in a cell that the border of the
-//! view cuts, primitives are tested one by one; where the front runs dry before the budget does, a new one
-//! starts, so that with an unlimited budget nothing is missed; the penalty is added, not a factor. Two
-//! parameters go beyond the paper by default, for they find more (`cullscope paper klosowski-silva-table-1`):
-//! `transfer=whole` hands on all solidity in place of its part v · n, for through the oblique faces of
-//! tetrahedra that part shrinks from cell to cell; `update=star-shaped` lets the value stand that came
-//! through the face toward the Eye, where in the paper the latest one replaces it. `transfer=aligned`,
-//! `update=latest` is the paper's arithmetic. Cost: O(cells projected · log front) and the primitives in
-//! them; memory O(cells) a frame.
+//! Two sets of rules ([`rules`]). `rules=paper` is Figures 4 and 5 as they are printed. `rules=ours`, the
+//! default, differs where it finds more (`cullscope paper klosowski-silva-table-1` has both): the front grows
+//! over cells in view only and, where it runs dry before the budget does, starts again; v is the direction
+//! from the Eye to the cell's center, not one for the whole frame; all solidity is handed on in place of its
+//! part v · n, for through the oblique faces of tetrahedra that part shrinks from cell to cell; the penalty
+//! is added, not a factor; the value stands that came through the face toward the Eye, where in the paper the
+//! latest one replaces it.
+//!
+//! Departures of both, argued where they are made: in a cell that the border of the view cuts, primitives are
+//! tested one by one; the tessellation reaches to the corners of the region. The paper gives no penalty
+//! factor; ours is 2. Back faces are culled where `backface-culling` says so, since that is about the scene.
+//! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod cells;
 mod explain;
 mod front;
 mod index;
+mod later;
 mod picture;
 mod rest;
+mod rules;
 mod saved;
 #[cfg(test)]
 mod tests;
@@ -41,6 +45,7 @@ pub use self::explain::{Evidence, Transferred};
 pub use self::front::Front;
 use self::index::Index;
 pub use self::index::node_of;
+use self::rules::{Occupancy, Rules, Traversal};
 use self::walk::Walk;
 use crate::culling::depth::Faces;
 use crate::drawing::Drawing;
@@ -66,33 +71,6 @@ words! {
         KdTree = "kd-tree",
     }
 }
-words! {
-    /// How much of its solidity a cell hands on.
-    enum Transfer {
-        /// v · n of it, as in Figure 5.
-        Aligned = "aligned",
-        /// All of it.
-        Whole = "whole",
-    }
-}
-words! {
-    /// Which solidity a cell in the front keeps.
-    enum Update {
-        /// The latest, as in Figure 4.
-        Latest = "latest",
-        /// That which came through the face the Eye sees the cell through.
-        StarShaped = "star-shaped",
-    }
-}
-words! {
-    /// How the primitives of a cell add to its solidity.
-    enum Occupancy {
-        /// Each counts one, as in Section 3.2.
-        Count = "count",
-        /// Each counts the cosine between its normal and the way to the Eye (Section 6).
-        FrontFacing = "front-facing",
-    }
-}
 
 /// Parameters of [`LayeredProjection`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,11 +79,9 @@ pub struct Params {
     budget: Budget,
     /// Per cent of the scene's longest side.
     leaf_size: u32,
-    transfer: Transfer,
-    /// Added to the solidity of a cell that is not star-shaped, per cent of a cell that holds ρ_max
-    /// primitives.
-    penalty: f32,
-    update: Update,
+    rules: Rules,
+    /// What follows them where it is not set.
+    how: Traversal,
     occupancy: Occupancy,
     seeds: u32,
     queries: bool,
@@ -124,12 +100,8 @@ impl Default for Params {
             budget: Budget::Percent(10.0),
             // The paper's (Section 4.3, footnote 4).
             leaf_size: 5,
-            // This and `update` are not the paper's, but find more (see the module).
-            transfer: Transfer::Whole,
-            // The paper gives none. A third of a full cell: enough that a cell is not taken behind an
-            // occluder, little enough that it is not taken after all others.
-            penalty: 30.0,
-            update: Update::StarShaped,
+            rules: Rules::Ours,
+            how: Traversal::of(Rules::Ours),
             // The extensions of Section 6 are off: by default the method is that of Sections 3 and 4.
             occupancy: Occupancy::Count,
             seeds: 1,
@@ -232,9 +204,10 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     }
     fn is_conservative(params: &Params) -> bool {
         // Queries decide about all that the budget leaves; a budget of everything leaves nothing. A time may
-        // leave something even with queries: it ends them too.
+        // leave something even with queries: it ends them too. A wanted quality of all pixels lets the budget grow
+        // until none can change.
         !matches!(params.budget, Budget::Milliseconds(_))
-            && (params.queries || params.budget == Budget::Percent(100.0))
+            && (params.queries || params.quality == 100 || params.budget == Budget::Percent(100.0))
     }
 }
 
@@ -247,15 +220,7 @@ fn paper_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     knobs.budget(Knob::new("budget", "primitives", meaning, section!("3")), true, &mut params.budget);
     let meaning = "a cell shorter than this share of the scene's longest side is not divided";
     knobs.integer(Knob::new("leaf-size", "%", meaning, section!("4.3")), 1..=100, &mut params.leaf_size);
-    let meaning =
-        "how much of a cell's solidity its neighbor gets: v · n of it, as in the paper, or the whole";
-    knobs.words(Knob::new("transfer", "", meaning, section!("3.2")), &mut params.transfer);
-    let meaning = "added to the solidity of a cell that the eye does not see through the face it is reached \
-                   by; 100 is a full cell";
-    knobs.real(Knob::new("penalty", "%", meaning, section!("3.2")), 0.0..=1000.0, &mut params.penalty);
-    let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from the \
-                   face the eye sees it through";
-    knobs.words(Knob::new("update", "", meaning, section!("3.2")), &mut params.update);
+    rules::knobs(&mut params.rules, &mut params.how, knobs);
 }
 
 /// Parameters of the extensions in Section 6.

@@ -3,7 +3,7 @@
 
 use glam::vec2;
 
-use super::explain::Evidence;
+use super::explain::{Evidence, many};
 use super::front::Front;
 use super::index::node_of;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
@@ -30,7 +30,7 @@ pub fn picture<S: Cellular>(front: &Front, notes: &[Evidence<S>], which: usize) 
 fn list<S: Cellular>(front: &Front, notes: &[Evidence<S>]) -> Drawing {
     let mut to = Drawing::default();
     let (queue, count) = (front.first(ROWS), front.count());
-    heading(&mut to, 0.0, format!("The front, least solid first: {count} cells"));
+    heading(&mut to, 0.0, format!("The front, least solid first: {}", many(count as u32, "cell")));
     heading(&mut to, 300.0, format!("Projected, the latest first: {}", front.projected().len()));
     // On the left the queue; bars are relative to the longest one shown.
     // Not 0, since widths are divided by it: all cells of a front may have solidity 0.
@@ -80,7 +80,8 @@ fn chart<S: Cellular>(notes: &[Evidence<S>]) -> Drawing {
             |n| if let Evidence::Projected(p) = n { Some((p.cell, p.solidity, p.drawn)) } else { None },
         )
         .collect();
-    heading(&mut to, 0.0, format!("Solidity of the {} cells projected so far, in their order", taken.len()));
+    let cells = many(taken.len() as u32, "cell");
+    heading(&mut to, 0.0, format!("Solidity of the {cells} projected so far, in their order"));
     let most = taken.iter().map(|t| t.1).fold(f32::MIN_POSITIVE, f32::max);
     let (left, right, top, bottom) = (44.0, WIDTH_PT - 6.0, TOP_PT + 4.0, 190.0);
     let each = taken.len().div_ceil(BARS).max(1);

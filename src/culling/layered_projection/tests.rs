@@ -21,6 +21,7 @@ trait World: Methods + Drawable + Cellular {}
 impl<S: Methods + Drawable + Cellular> World for S {}
 
 const KINDS: [&str; 3] = ["octree", "delaunay", "kd-tree"];
+const RULES: [(&str, &str); 2] = [("rules", "paper"), ("rules", "ours")];
 
 fn settings(pairs: &[(&str, &str)]) -> Settings {
     Settings::of(pairs)
@@ -61,9 +62,13 @@ fn value(fields: &[Field], name: &str) -> f64 {
 
 /// Replays the front from the events: each cell is taken once, and is the first of the least.
 fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    RULES.into_iter().for_each(|rules| orders_by_priority(scene, kind, rules));
+}
+
+fn orders_by_priority<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, rules: (&str, &str)) {
     let (mut requeued, mut ties, mut projected) = (0, 0, 0);
     for view in views(scene) {
-        let film = run(scene, &[("tessellation", kind), ("budget", "1000"), ("leaf-size", "8")])
+        let film = run(scene, &[("tessellation", kind), ("budget", "1000"), ("leaf-size", "8"), rules])
             .record(&view, usize::MAX)
             .film;
         let mut front: Vec<(u32, f32)> = Vec::new();
@@ -91,7 +96,7 @@ fn is_a_priority_order<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     }
     assert!(
         projected > 50 && requeued > 20 && ties > 5,
-        "{kind}: {projected} projected, {requeued} put in again, {ties} ties"
+        "{kind}, {rules:?}: {projected} projected, {requeued} put in again, {ties} ties"
     );
 }
 
@@ -101,9 +106,9 @@ fn each_cell_is_projected_once_and_is_the_least_of_the_front() {
 }
 
 fn keeps_to_the_budget<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    for view in views(scene) {
+    for (view, rules) in views(scene).into_iter().zip(RULES.into_iter().cycle()) {
         let drawn =
-            |budget: &str| run(scene, &[("tessellation", kind), ("budget", budget)]).cull(&view).prims;
+            |budget: &str| run(scene, &[("tessellation", kind), ("budget", budget), rules]).cull(&view).prims;
         let all = drawn("100%");
         for budget in [0, 1, 2, 17, 100] {
             let part = drawn(&budget.to_string());
@@ -123,8 +128,8 @@ fn the_budget_is_used_up_and_never_exceeded() {
 }
 
 fn sees_all<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    for leaf in ["3", "20", "100"] {
-        let mut run = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", leaf)]);
+    for (leaf, rules) in ["3", "20", "20", "100"].into_iter().zip(RULES.into_iter().cycle()) {
+        let mut run = run(scene, &[("tessellation", kind), ("budget", "100%"), ("leaf-size", leaf), rules]);
         for view in views(scene) {
             let drawn = run.cull(&view).prims;
             assert_eq!(
@@ -146,27 +151,29 @@ fn with_an_unlimited_budget_the_image_is_the_z_buffers() {
 }
 
 fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
-    hands_it_on(scene, kind, "aligned", "latest");
-    hands_it_on(scene, kind, "whole", "star-shaped");
+    hands_it_on(scene, kind, &[("rules", "paper")]);
+    hands_it_on(scene, kind, &[]);
+    hands_it_on(scene, kind, &[("transfer", "aligned"), ("update", "latest")]);
 }
 
-fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &str, update: &str) {
+fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, pairs: &[(&str, &str)]) {
     let view = views(scene)[4];
     let (mut settled, mut front, mut kept) =
         (std::collections::BTreeSet::new(), std::collections::BTreeMap::<u32, f64>::new(), 0);
-    let film = run(
-        scene,
-        &[
-            ("tessellation", kind),
-            ("penalty", "50"),
-            ("budget", "100%"),
-            ("transfer", transfer),
-            ("update", update),
-        ],
-    )
-    .record(&view, usize::MAX)
-    .film;
-    let (mut solidity, mut penalties, mut count) = (std::collections::BTreeMap::new(), 0, 0);
+    let fixed = [("tessellation", kind), ("penalty", "50"), ("budget", "100%")];
+    let run = run(scene, &[&fixed, pairs].concat());
+    let knob = |name: &str| {
+        run.knobs()
+            .into_iter()
+            .find(|(k, _)| k.name == name)
+            .map(|(_, v)| v.to_string())
+            .expect("a parameter")
+    };
+    let [transfer, update, penalty_as, direction] =
+        ["transfer", "update", "penalty-as", "view-direction"].map(knob);
+    let mut run = run;
+    let film = run.record(&view, usize::MAX).film;
+    let (mut solidity, mut penalties, mut count, mut ahead) = (std::collections::BTreeMap::new(), 0, 0, 0);
     for at in 0..film.events().len() {
         let (what, fields) = film.fields(at);
         let v = |name| value(&fields, name);
@@ -175,13 +182,34 @@ fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &s
             "SolidityTransferred" => {
                 assert_eq!(solidity[&(v("from_node") as u32)], v("from_solidity"));
                 let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
-                assert!(
-                    (sum - v("transferred")).abs() <= 1e-6 * sum && (0.0..=1.00001).contains(&v("alignment"))
-                );
+                assert!((sum - v("transferred")).abs() <= 1e-5 && v("alignment").abs() <= 1.00001);
                 assert!(transfer == "aligned" || v("alignment") == 1.0);
+                let list = |name: &str| match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
+                    Some(Value::List(list)) => list.clone(),
+                    other => panic!("{name}: {other:?}"),
+                };
+                let (sight, normal) = (list("view_direction"), list("normal"));
+                let product: f64 = sight.iter().zip(&normal).map(|(a, b)| a * b).sum();
+                assert!(transfer == "whole" || (product - v("alignment")).abs() < 1e-5);
+                let forward = view.eye.forward();
+                let looks = (0..S::Vector::AXES).all(|a| sight[a] == f64::from(forward.get(a)));
+                ahead += usize::from(looks);
+                // The sentence says the formula that ran.
+                assert_eq!(
+                    film.sentence(at).contains("v · n"),
+                    transfer == "aligned",
+                    "{}",
+                    film.sentence(at)
+                );
+                let is_factor = film.sentence(at).contains("times the penalty factor");
+                assert_eq!(is_factor, penalty_as == "factor" && v("star_shaped") == 0.0);
                 let (node, star) = (v("node") as u32, v("star_shaped") == 1.0);
-                let want = v("transferred") + if star { 0.0 } else { 0.5 };
-                assert!((want - v("solidity")).abs() <= 1e-6 * want, "{want}");
+                let want = match penalty_as.as_str() {
+                    _ if star => v("transferred"),
+                    "factor" => 1.5 * v("transferred"),
+                    _ => v("transferred") + 0.5,
+                };
+                assert!((want - v("solidity")).abs() <= 1e-6 * want.abs(), "{want}");
                 let stays = update == "star-shaped"
                     && !star
                     && (settled.contains(&node) || front.get(&node).is_some_and(|s| *s <= v("solidity")));
@@ -205,6 +233,7 @@ fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, transfer: &s
     }
     assert!(penalties > 5 && penalties < count, "{kind}: {penalties} of {count}");
     assert_eq!(kept > 5, update == "star-shaped", "{kind}: {kept} of {count}");
+    assert!(if direction == "frame" { ahead == count } else { ahead < count / 2 }, "{ahead} of {count}");
 }
 
 #[test]
@@ -376,7 +405,7 @@ fn extensions_change_the_order_and_lose_nothing() {
 
 fn is_exact_with_queries<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     let mut hidden = 0;
-    for budget in ["0", "10", "20%", "100%"] {
+    for (budget, rules) in ["0", "10", "20%", "100%"].into_iter().zip(RULES.into_iter().cycle()) {
         for culled in ["false", "true"] {
             let mut run = run(
                 scene,
@@ -385,8 +414,10 @@ fn is_exact_with_queries<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
                     ("budget", budget),
                     ("queries", "true"),
                     ("backface-culling", culled),
+                    rules,
                 ],
             );
+            assert!(run.is_conservative(), "it says so");
             for view in views(scene) {
                 let (list, tally) = run.count(&view);
                 hidden += tally.named().get("cells_hidden").copied().unwrap_or(0);
@@ -463,8 +494,9 @@ fn is_about<S: World>(film: &dyn Film<S>, evidence: Subject, of: Subject) -> boo
 type Grounds = std::collections::BTreeSet<(Verdict, &'static str)>;
 
 fn has_evidence<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, verdicts: &mut Grounds) {
-    let extensions: [&[(&str, &str)]; 4] = [
+    let extensions: [&[(&str, &str)]; 5] = [
         &[],
+        &[("rules", "paper"), ("backface-culling", "true")],
         &[("queries", "true"), ("budget", "3%")],
         &[("quality", "90"), ("budget", "0")],
         &[("budget", "100%"), ("seeds", "5"), ("backface-culling", "true")],
@@ -483,9 +515,9 @@ fn has_evidence<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, verdicts: &
                 let claim = film.claim(evidence).map(|c| c.word());
                 match verdict {
                     Verdict::Outside => assert!(matches!(claim, Some("outside" | "faces-away")), "{place}"),
-                    // Without queries what no cell in view holds is hidden because the front is empty.
+                    // Without queries only what no cell in view holds.
                     Verdict::Hidden => assert!(
-                        claim == Some("hidden") || film.kind(evidence) == "TraversalEnded",
+                        claim == Some("hidden") || film.kind(evidence) == "PrimUnreached",
                         "{place}: {}",
                         film.sentence(evidence)
                     ),
@@ -505,7 +537,12 @@ fn every_decision_rests_on_evidence_about_what_it_decides() {
         |scene, kind| has_evidence(scene, kind, &mut found.borrow_mut()),
     );
     let found = found.into_inner();
-    for wanted in [(Verdict::Hidden, "CellAsked"), (Verdict::OverBudget, "TraversalEnded")] {
+    for wanted in [
+        (Verdict::Hidden, "CellAsked"),
+        (Verdict::Visible, "CellProjected"),
+        (Verdict::OverBudget, "CellLeftOut"),
+        (Verdict::OverBudget, "PrimLeftOut"),
+    ] {
         assert!(found.contains(&wanted), "{wanted:?} is not among {found:?}");
     }
     assert!(found.iter().any(|(_, kind)| *kind == "PrimCompared"), "{found:?}");
@@ -537,4 +574,173 @@ fn a_penalty_is_a_real_number_in_its_range() {
         let error = knobs(text).expect_err("refused").to_string();
         assert_eq!(error, format!("`penalty={text}`: expected a number from 0 to 1000"));
     }
+}
+
+/// The parameters from `rules` to `update`, as the method has them with these settings.
+fn rule_values(pairs: &[(&str, &str)]) -> Vec<String> {
+    let names = ["rules", "front", "transfer", "view-direction", "penalty-as", "penalty", "update"];
+    let all = Flat::method("layered-projection").expect("listed").knobs(&settings(pairs)).expect("they fit");
+    names.map(|name| all.iter().find(|(k, _)| k.name == name).expect("listed").1.to_string()).to_vec()
+}
+
+#[test]
+fn rules_set_what_is_not_set_itself() {
+    let ours = ["ours", "in-view", "whole", "cell", "sum", "30", "star-shaped"];
+    let papers = ["paper", "everywhere", "aligned", "frame", "factor", "100", "latest"];
+    assert_eq!(
+        (rule_values(&[]), rule_values(&[("rules", "ours")])),
+        (ours.map(Into::into).to_vec(), ours.map(Into::into).to_vec())
+    );
+    assert_eq!(rule_values(&[("rules", "paper")]), papers);
+    // One that is set stands, whatever the rules.
+    let mut mixed = papers;
+    (mixed[2], mixed[5]) = ("whole", "0");
+    assert_eq!(rule_values(&[("rules", "paper"), ("transfer", "whole"), ("penalty", "0")]), mixed);
+    // What a film says of its parameters makes the same run again.
+    let names = ["rules", "front", "transfer", "view-direction", "penalty-as", "penalty", "update"];
+    let said: Vec<(&str, &str)> = names.into_iter().zip(mixed).collect();
+    assert_eq!(rule_values(&said), mixed);
+}
+
+#[test]
+fn it_promises_to_miss_nothing_where_it_misses_nothing() {
+    let scene = samples::soup::<Flat>(1, 50);
+    let promises = |pairs: &[(&str, &str)]| run(&scene, pairs).is_conservative();
+    assert!(!promises(&[]) && promises(&[("budget", "100%")]) && promises(&[("queries", "true")]));
+    assert!(promises(&[("quality", "100")]) && !promises(&[("quality", "99")]));
+    assert!(!promises(&[("queries", "true"), ("budget", "5ms")]), "time ends queries too");
+}
+
+/// What was left out is drawn with as much more budget as its evidence says, and not with one less.
+fn names_what_was_missing<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
+    const BUDGET: usize = 20;
+    let mut checked = [0; 3];
+    for (view, rules) in views(scene).into_iter().zip(RULES.into_iter().cycle()) {
+        let drawn = |budget: usize| {
+            run(scene, &[("tessellation", kind), ("budget", &budget.to_string()), rules]).cull(&view).prims
+        };
+        let film = run(scene, &[("tessellation", kind), ("budget", &BUDGET.to_string()), rules])
+            .record(&view, usize::MAX)
+            .film;
+        let all = drawn(scene.live().len());
+        let last = (0..film.events().len()).rfind(|&at| film.kind(at) == "CellProjected").expect("one");
+        for at in 0..film.events().len() {
+            let (what, fields) = film.fields(at);
+            if !what.ends_with("LeftOut") {
+                continue;
+            }
+            let more = value(&fields, "budget_short") as usize;
+            assert_eq!(value(&fields, "last_node"), value(&film.fields(last).1, "node"));
+            let text = film.sentence(at);
+            assert!(text.contains(&format!("larger by {more} ")), "{text}");
+            match film.subject(at) {
+                Subject::Prim(prim) => {
+                    assert_eq!(all[BUDGET + more - 1], prim, "{kind}: {text}");
+                    checked[0] += 1;
+                }
+                Subject::Node(node) => {
+                    let mut seen = drawn(BUDGET + more);
+                    seen.sort_unstable();
+                    let of_cell = film.hierarchy().prims(node).iter().filter(|p| all.contains(p));
+                    assert!(of_cell.clone().all(|p| seen.binary_search(p).is_ok()), "{kind}: {text}");
+                    let waits = fields.iter().any(|f| f.name == "place");
+                    assert_eq!(waits, text.contains("waits at place"));
+                    checked[if waits { 1 } else { 2 }] += 1;
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    assert!(checked[0] > 10 && checked[1] + checked[2] > 3, "{kind}: {checked:?}");
+}
+
+#[test]
+fn what_the_budget_left_out_says_how_much_was_missing() {
+    both(names_what_was_missing, names_what_was_missing);
+}
+
+#[test]
+fn a_cell_in_which_the_budget_ends_is_not_kept_whole() {
+    let scene = samples::soup::<Flat>(1, 300);
+    let view = views(&scene)[4];
+    let mut ended = 0;
+    for budget in 1..40u32 {
+        let film = run(&scene, &[("budget", &budget.to_string()), ("leaf-size", "30")])
+            .record(&view, usize::MAX)
+            .film;
+        let spent = (0..film.events().len()).find(|&at| film.kind(at) == "BudgetSpent").expect("spent");
+        let fields = film.fields(spent).1;
+        assert_eq!(value(&fields, "drawn") as u32, budget);
+        let node = crate::geometry::NodeId(value(&fields, "node") as u32);
+        let left_out = value(&fields, "left_out") as usize;
+        let decided = |e: &Event| matches!(e, Event::DecidedNode(n, _) if *n == node);
+        let decision = film.events()[..spent].iter().rev().find(|e| decided(e)).expect("a decision");
+        let verdict = if left_out > 0 { Verdict::Partial } else { Verdict::Visible };
+        assert_eq!(*decision, Event::DecidedNode(node, verdict));
+        // One verdict for each of its primitives, the same as in the list.
+        let stamps = crate::trace::Stamps::new(&*film);
+        let over = scene.live().iter().filter(|p| {
+            let over = crate::trace::State::Decided(Verdict::OverBudget);
+            film.hierarchy().prims(node).contains(p) && stamps.prim(**p, film.events().len()) == over
+        });
+        assert!(over.count() <= left_out);
+        ended += usize::from(left_out > 0);
+    }
+    assert!(ended > 10, "{ended}");
+}
+
+#[test]
+fn an_eye_outside_begins_at_the_cell_that_the_sentence_says() {
+    let scene = samples::soup::<Solid>(2, 300);
+    let view = views(&scene)[4];
+    for rules in RULES {
+        let film = run(&scene, &[rules, ("tessellation", "octree")]).record(&view, usize::MAX).film;
+        let seeded = (0..film.events().len()).find(|&at| film.kind(at) == "CellSeeded").expect("a seed");
+        let (fields, text) = (film.fields(seeded).1, film.sentence(seeded));
+        let away = |node: u32| {
+            let bounds = film.hierarchy().bounds(crate::geometry::NodeId(node));
+            let eye = view.eye.position;
+            f64::from((eye - eye.max(bounds.min).min(bounds.max)).length())
+        };
+        let (node, distance) = (value(&fields, "node") as u32, value(&fields, "distance_units"));
+        assert!((away(node) - distance).abs() < 1e-4 * distance, "{text}");
+        let nearer = (1..film.hierarchy().node_count() as u32).filter(|n| away(*n) < distance * 0.9999);
+        let nearer: Vec<u32> = nearer.collect();
+        if rules.1 == "paper" {
+            assert!(text.contains("closest to it is node") && nearer.is_empty(), "{text}");
+        } else {
+            assert!(text.contains("in view that hold something"), "{text}");
+            let holds = |n: &u32| film.hierarchy().held(crate::geometry::NodeId(*n)) > 0;
+            let outside = |n: u32| {
+                film.events().contains(&Event::DecidedNode(crate::geometry::NodeId(n), Verdict::Outside))
+            };
+            assert!(nearer.into_iter().filter(holds).all(outside), "{text}");
+        }
+    }
+}
+
+/// Whether a text says such as `1 cells`.
+fn is_plural_of_one(text: &str) -> bool {
+    let words: Vec<&str> = text.split([' ', '.', ',', ':', ';']).collect();
+    words.windows(2).any(|w| w[0] == "1" && ["cells", "segments", "triangles", "are"].contains(&w[1]))
+}
+
+#[test]
+fn counts_of_one_are_singular() {
+    let scene = samples::soup::<Flat>(1, 300);
+    let view = views(&scene)[4];
+    let film = run(&scene, &[("budget", "1"), ("leaf-size", "100"), ("tessellation", "octree")])
+        .record(&view, usize::MAX)
+        .film;
+    for at in 0..film.events().len() {
+        let text = film.sentence(at);
+        assert!(!is_plural_of_one(&text), "{text}");
+        for which in 0..film.pictures().len() {
+            for item in film.picture(at, which, crate::raster::DepthScale::default()).items {
+                let crate::drawing::Mark::Text { text, .. } = item.mark else { continue };
+                assert!(!is_plural_of_one(&text), "{text}");
+            }
+        }
+    }
+    assert!((0..film.events().len()).any(|at| film.sentence(at).contains("after 1 segment.")));
 }

@@ -4,11 +4,18 @@
 //! is empty, in which case a new seed is looked for; 5. what the budget left, by queries if wanted. The
 //! numbers are those of the method's steps ([`super`]).
 
-use super::explain::{Bounded, Compared, Ended, Evidence, Origin, Projected, Queried, Seeded, Transferred};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::explain::{
+    Bounded, Compared, Ended, Evidence, Origin, Projected, Queried, Seeded, Spent, Transferred, Unreached,
+};
 use super::front::Front;
 use super::index::{Index, node_of};
+use super::later::Later;
 use super::rest::Rest;
-use super::{LayeredProjection, Occupancy, Params, Transfer, Update, line};
+use super::rules::{Entering, Occupancy, Sight, Transfer, Update};
+use super::{LayeredProjection, Params, line};
 use crate::culling::depth::Faces;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
@@ -28,11 +35,11 @@ const CHUNK: usize = 256;
 /// since all that is drawn beyond what was needed is waste. The least keeps a budget of 0 from growing by 0.
 const LEAST_GROWTH: usize = 16;
 
-/// Steps along the diagonal of the region by which a ray looks for its beginning, where it starts outside:
-/// a step is then about the size of a cell that holds anything at the default leaf size.
+/// Steps along the diagonal of the region for a ray that rounding took out of all cells: a step is then about
+/// the size of a cell that holds anything at the default leaf size.
 const STEPS_OUTSIDE: f32 = 64.0;
-/// A step along a ray inside, of the diagonal of the cell it is in: short enough that hardly a cell on the
-/// way is jumped over, and one that is loses no more than a seed.
+/// A step along a ray, of the diagonal of the cell it is in: short enough that hardly a cell on the way is
+/// jumped over, and one that is loses no more than a seed.
 const STEP_INSIDE: f32 = 0.25;
 
 /// Where a cell lies in regard to the view volume.
@@ -50,32 +57,45 @@ struct Aspect<V> {
     in_view: InView,
     /// How the way from its center to the Eye leaves it.
     exit: Exit,
-    /// v: unit vector from the Eye to its center.
+    /// v, a unit vector.
     toward: V,
+    /// Whether the front grows over it.
+    is_entered: bool,
     /// Whether its solidity came through that exit.
     is_settled: bool,
 }
 
 /// A cell that was just projected.
-struct Source {
-    cell: CellId,
-    solidity: f32,
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    pub cell: CellId,
+    pub solidity: f32,
     /// What it adds, of ρ_max.
     share: f32,
 }
 
+/// Cells that hold something, the nearest to the Eye on top: the bits of the squared distance of their boxes,
+/// which order like the number that is not negative, and among equally near ones the lower cell first.
+type Nearest = BinaryHeap<Reverse<(u32, CellId)>>;
+
 /// One frame.
 pub struct Walk<'a, S: Cellular + Faces, O> {
-    index: &'a Index<S>,
+    pub(super) index: &'a Index<S>,
     cells: &'a dyn Tessellation<S>,
-    scene: &'a Scene<S>,
+    pub(super) scene: &'a Scene<S>,
     view: &'a View<S>,
+    /// The direction in which the Eye looks.
+    forward: S::Vector,
     frustum: Frustum<S::Vector>,
     params: &'a Params,
-    front: &'a mut Front,
+    pub(super) front: &'a mut Front,
     aspects: Vec<Aspect<S::Vector>>,
+    /// Cells at which a new front may begin; found when one is looked for.
+    nearest: Option<Nearest>,
     /// Which shared primitives are decided.
-    marks: Vec<bool>,
+    pub(super) marks: Vec<bool>,
+    /// What the budget left out of the cell in which it ended.
+    pub(super) cut_off: Vec<PrimId>,
     left: usize,
     limit: Option<&'a Limit<'a>>,
     /// Primitives that were reported to `limit`, and whether it ended the frame.
@@ -87,8 +107,8 @@ pub struct Walk<'a, S: Cellular + Faces, O> {
     rest: Option<Rest<S>>,
     /// Whether the budget is spent and the rest is decided by queries.
     queries: bool,
-    out: &'a mut DrawList<S>,
-    watch: &'a mut O,
+    pub(super) out: &'a mut DrawList<S>,
+    pub(super) watch: &'a mut O,
 }
 
 impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
@@ -103,6 +123,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             in_view: InView::Unknown,
             exit: Exit::Out,
             toward: S::Vector::default(),
+            is_entered: false,
             is_settled: false,
         };
         Self {
@@ -110,11 +131,15 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             cells: index.cells.any(),
             scene,
             view,
+            // The last row of the projection is depth.
+            forward: view.projection().rows[S::Vector::AXES - 1],
             frustum: view.frustum(),
             params,
             front,
             aspects: vec![unseen; index.count()],
+            nearest: None,
             marks: vec![false; index.assignment.all_shared().len()],
+            cut_off: Vec::new(),
             left: params.budget.of(scene.live().len()),
             limit,
             reported: 0,
@@ -134,15 +159,17 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.stage("seed");
         let mut seed = self.seed();
         self.seeds_ahead();
+        let mut last = None;
         while let Some(seeded) = seed {
             self.grow_from(seeded);
             // 3. and 4.
             self.watch.stage(if self.queries { "rest" } else { "spread" });
-            if self.spread() {
+            last = self.spread();
+            if last.is_some() {
                 break;
             }
-            // A departure: the front grows over faces in view only, so it may run dry with something in view
-            // not reached, such as where the Eye is outside of all cells. The paper ends there.
+            // A departure: where the front grows over faces in view only it may run dry with something in
+            // view not reached, such as where the Eye is outside of all cells. The paper ends there.
             self.watch.stage("seed");
             seed = self.nearest_unreached();
         }
@@ -152,14 +179,13 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.draw_the_shared_rest();
         }
         self.report_drawn();
-        self.report_rest(seed.is_some());
+        self.report_rest(last);
         self.watch.event(Event::DecidedNode(NodeId(0), Verdict::Partial));
         self.watch.event(Event::Left(NodeId(0)));
     }
 
-    /// Projects cells until the front is empty; whether the budget is spent.
-    fn spread(&mut self) -> bool {
-        let cells = self.cells;
+    /// Projects cells until the front is empty, or until the budget is spent with the cell that is returned.
+    pub(super) fn spread(&mut self) -> Option<Source> {
         // Lines 1 and 2: the cell leaves the front where it is projected or found hidden, below.
         while let Some((cell, solidity)) = self.front.least() {
             self.watch.event(Event::Line(line::TAKE));
@@ -167,23 +193,30 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             if !self.queries || !self.is_hidden(cell, solidity) {
                 self.project(cell, solidity);
             }
+            let source = Source { cell, solidity, share: self.share(cell) };
             // Lines 4 and 5.
             if self.left == 0 && !self.goes_on() {
                 self.watch.event(Event::Line(line::SPENT));
-                return true;
+                let (cells, drawn, cut_off) = (self.rank, self.out.prims.len(), self.cut_off.len() as u32);
+                let drawn = drawn as u32;
+                self.watch.note(|| Evidence::Spent(Spent { cell, solidity, cells, drawn, cut_off }));
+                return Some(source);
             }
-            // Lines 6 to 10. What is out of view is skipped like what was projected: nothing of it is drawn,
-            // and what is in view beyond it is reached by other ways.
-            let source = Source { cell, solidity, share: self.share(cell) };
-            for there in cells.neighbors(cell) {
-                if self.front.is_projected(there.cell) || self.look(there.cell).in_view == InView::Outside {
-                    self.watch.event(Event::Line(line::SKIP));
-                } else if let Some((solidity, is_star_shaped)) = self.update_solidity(there, &source) {
-                    self.enqueue(there.cell, solidity, is_star_shaped);
-                }
+            self.hand_on(&source);
+        }
+        None
+    }
+    /// Lines 6 to 10. A departure where the front keeps to the view: what is out of it is skipped like what
+    /// was projected, for nothing of it is drawn, and what is in view beyond it is reached by other ways.
+    pub(super) fn hand_on(&mut self, source: &Source) {
+        let cells = self.cells;
+        for there in cells.neighbors(source.cell) {
+            if self.front.is_projected(there.cell) || !self.look(there.cell).is_entered {
+                self.watch.event(Event::Line(line::SKIP));
+            } else if let Some((solidity, is_star_shaped)) = self.update_solidity(there, source) {
+                self.enqueue(there.cell, solidity, is_star_shaped);
             }
         }
-        false
     }
 
     /// Section 6, with the budget spent: whether queries or the quality ask for more.
@@ -288,37 +321,50 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 
     /// Step 2: the cell that holds the Eye, or else the one closest to it (`findCell`, Section 4.2). A
-    /// departure: of those in view, since the front does not grow over cells that are not.
+    /// departure where the front keeps to the view: of the cells in view that hold something, the one whose
+    /// box is closest.
     fn seed(&mut self) -> Option<Seeded> {
-        let Some(cell) = self.cells.locate(self.view.eye.position, CellId(0)) else {
-            return self.nearest_unreached();
-        };
-        Some(Seeded { cell, distance: 0.0, origin: Origin::Eye })
-    }
-    /// The nearest cell in view that holds something and was not projected. Where the front grows over faces
-    /// and no number is rounded, there is one at the beginning only.
-    fn nearest_unreached(&mut self) -> Option<Seeded> {
         let eye = self.view.eye.position;
-        let mut best: Option<(f32, CellId)> = None;
-        for cell in (0..self.index.count() as u32).map(CellId) {
-            if self.front.is_projected(cell) || self.index.assignment.held(cell) == 0 {
-                continue;
-            }
-            // By its box: where two boxes are equally near, the lower number is taken, which is reproducible.
-            let bounds = self.cells.bounds(cell);
-            let away = eye - eye.max(bounds.min).min(bounds.max);
-            let squared = away.dot(away);
-            let is_nearer = best.is_none_or(|(least, _)| squared < least);
-            if is_nearer && self.look(cell).in_view != InView::Outside {
-                best = Some((squared, cell));
-            }
+        if let Some(cell) = self.cells.locate(eye, CellId(0)) {
+            return Some(Seeded { cell, distance: 0.0, origin: Origin::Eye });
         }
-        let (squared, cell) = best?;
+        if self.params.how.front == Entering::InView {
+            return self.nearest_unreached();
+        }
+        // The cells fill their region: the closest one holds the region's closest point.
+        let region = self.index.bounds(NodeId(0));
+        let at = eye.max(region.min).min(region.max);
+        let Some(cell) = self.cells.locate(at, CellId(0)) else { return self.nearest_unreached() };
+        Some(Seeded { cell, distance: (eye - at).length(), origin: Origin::Closest })
+    }
+    /// Of the cells in view that hold something and were not projected, the one whose box is nearest. Once in
+    /// a frame O(cells), then O(log cells) a cell that is passed over for good.
+    pub(super) fn nearest_unreached(&mut self) -> Option<Seeded> {
+        let mut nearest = self.nearest.take().unwrap_or_else(|| self.by_distance());
+        let found = loop {
+            let Some(Reverse((squared, cell))) = nearest.pop() else { break None };
+            // Neither becomes untrue later, so the cell need not be kept.
+            if !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside {
+                break Some((f32::from_bits(squared), cell));
+            }
+        };
+        self.nearest = Some(nearest);
+        let (squared, cell) = found?;
         let origin = if self.rank > 0 { Origin::Again } else { Origin::Nearest };
         Some(Seeded { cell, distance: squared.sqrt(), origin })
     }
+    fn by_distance(&self) -> Nearest {
+        let eye = self.view.eye.position;
+        let occupied = (0..self.index.count() as u32).map(CellId);
+        let keyed = occupied.filter(|cell| self.index.assignment.held(*cell) > 0).map(|cell| {
+            let bounds = self.cells.bounds(cell);
+            let away = eye - eye.max(bounds.min).min(bounds.max);
+            Reverse((away.dot(away).to_bits(), cell))
+        });
+        keyed.collect::<Vec<_>>().into()
+    }
     /// Puts a cell into the front for it to begin at.
-    fn grow_from(&mut self, seeded: Seeded) {
+    pub(super) fn grow_from(&mut self, seeded: Seeded) {
         self.watch.note(move || Evidence::Seeded(seeded));
         self.enqueue(seeded.cell, 0.0, true);
     }
@@ -341,9 +387,11 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// The first cell with primitives that steps along a ray from the Eye meet, and how far away they do.
     fn first_along(&self, ray: S::Vector) -> Option<(CellId, f32)> {
-        let (mut depth, mut near) = (self.view.eye.near, CellId(0));
-        let coarse = self.index.bounds(NodeId(0)).diagonal() / STEPS_OUTSIDE;
-        while depth < self.view.eye.far {
+        let (region, eye) = (self.index.bounds(NodeId(0)), self.view.eye);
+        // Outside of the region is no cell, and the far plane may be far beyond it.
+        let [mut depth, end] = stretch_in(&region, eye.position, ray, [eye.near, eye.far]);
+        let (mut near, coarse) = (CellId(0), region.diagonal() / STEPS_OUTSIDE);
+        while depth < end {
             let at = self.cells.locate(self.view.eye.position + ray * depth, near);
             if let Some(cell) = at.filter(|c| self.index.assignment.held(*c) > 0) {
                 return Some((cell, depth * ray.length()));
@@ -371,6 +419,10 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         self.aspects[cell.at()]
     }
+    /// Whether a cell is not out of view.
+    pub(super) fn is_in_view(&mut self, cell: CellId) -> bool {
+        self.look(cell).in_view != InView::Outside
+    }
     fn aspect(&mut self, cell: CellId) -> Aspect<S::Vector> {
         let bounds = self.cells.bounds(cell);
         let planes = Frustum::<S::Vector>::ALL;
@@ -385,14 +437,20 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Partial(cutting) => InView::Cut(cutting),
             FrustumTest::Inside => InView::Cut(0),
         };
-        // A departure: v belongs to the cell. The paper has "the current viewing direction" (Figure 6), and a
-        // single one says nothing near the rim of a wide view.
+        // A departure by default: v belongs to the cell. The paper has "the current viewing direction"
+        // (Figure 6), and a single one says nothing near the rim of a wide view.
         let eye = self.view.eye.position;
-        let way = self.cells.center(cell) - eye;
-        let toward = way * (1.0 / way.length().max(f32::MIN_POSITIVE));
+        let toward = match self.params.how.sight {
+            Sight::Frame => self.forward,
+            Sight::Cell => {
+                let way = self.cells.center(cell) - eye;
+                way * (1.0 / way.length().max(f32::MIN_POSITIVE))
+            }
+        };
         // The way from the center to the Eye decides about the penalty, whichever neighbor asks later.
-        let exit = if in_view == InView::Outside { Exit::Out } else { self.cells.exit(cell, eye) };
-        Aspect { in_view, exit, toward, is_settled: false }
+        let is_entered = in_view != InView::Outside || self.params.how.front == Entering::Everywhere;
+        let exit = if is_entered { self.cells.exit(cell, eye) } else { Exit::Out };
+        Aspect { in_view, exit, toward, is_entered, is_settled: false }
     }
 
     /// |A| / ρ_max, or the part of it that faces the Eye (Section 6).
@@ -419,23 +477,22 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
     fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<(f32, bool)> {
         let seen = self.aspects[b.cell.at()];
-        // Line 1. A departure: not below 0. A face that the front crosses toward the Eye would take solidity
-        // away, and what is behind would come before what is in front.
-        let along = match self.params.transfer {
+        // Line 1. As printed: through a face that the front crosses toward the Eye, solidity is taken away.
+        let how = &self.params.how;
+        let along = match how.transfer {
             Transfer::Whole => 1.0,
-            Transfer::Aligned => seen.toward.dot(b.normal).max(0.0),
+            Transfer::Aligned => seen.toward.dot(b.normal),
         };
         let sum = a.share + along * a.solidity;
         // Line 2, Section 3.2: the center of B is seen from the Eye along a ray through the shared face.
         let star_shaped = seen.exit == Exit::Ends || seen.exit == Exit::Into(a.cell);
-        // Line 3. A departure: the paper says neither what the penalty factor is nor how it is applied.
-        // Multiplying keeps empty space at solidity 0, so the front would flow around occluders at no cost.
-        let solidity = if star_shaped { sum } else { sum + self.params.penalty / 100.0 };
+        // Line 3. The paper does not say what the factor is; adding is a departure by default (see `rules`).
+        let solidity = if star_shaped { sum } else { how.penalized(sum) };
         // `enqueue` of Figure 4 reinserts with the latest value. A departure by default: a value that came
         // through the face the Eye sees B through is about what is in front of B; others are detours, and the
         // least of these stands until that one comes.
         let before = self.front.solidity(b.cell);
-        let keeps = self.params.update == Update::StarShaped
+        let keeps = how.update == Update::StarShaped
             && !star_shaped
             && (seen.is_settled || before.is_some_and(|v| v <= solidity));
         self.aspects[b.cell.at()].is_settled |= star_shaped;
@@ -451,9 +508,11 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 share,
                 sight,
                 normal,
+                transfer: how.transfer,
                 along,
                 of_a,
                 star_shaped,
+                penalizing: how.penalizing,
                 solidity,
                 before,
                 keeps,
@@ -476,35 +535,48 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Line(line::PROJECT));
         self.watch.event(Event::Entered(node));
         let in_view = self.look(cell).in_view;
-        let (drawn, rank) = (self.out.prims.len(), self.rank);
+        let (first, rank) = (self.out.prims.len(), self.rank);
+        let mut own_end = first;
         // What the cell holds alone, then what it shares if no cell before it drew that: once a frame
         // (Section 4.1).
         if let InView::Cut(cutting) = in_view {
             for &prim in index.assignment.own(cell) {
-                if let Some(verdict) = self.fate(prim, cutting) {
-                    self.watch.event(Event::DecidedPrim(prim, verdict));
-                }
+                self.draw(prim, cutting);
             }
+            own_end = self.out.prims.len();
             for &number in index.assignment.shared(cell) {
                 if !self.marks[number as usize] {
                     self.marks[number as usize] = true;
-                    let prim = index.assignment.all_shared()[number as usize];
-                    let verdict = self.fate(prim, cutting).unwrap_or(Verdict::Visible);
-                    self.watch.event(Event::DecidedPrim(prim, verdict));
+                    self.draw(index.assignment.all_shared()[number as usize], cutting);
                 }
             }
         }
         self.report_drawn();
         self.rank += 1;
         let (drawn, held, left) =
-            ((self.out.prims.len() - drawn) as u32, index.assignment.held(cell), self.budget_left());
+            ((self.out.prims.len() - first) as u32, index.assignment.held(cell), self.budget_left());
+        let (cut_off, is_in_view) = (self.cut_off.len() as u32, in_view != InView::Outside);
         self.front.project(cell);
-        self.watch.note(|| Evidence::Projected(Projected { cell, rank, solidity, held, drawn, left }));
+        self.watch.note(|| {
+            Evidence::Projected(Projected { cell, rank, solidity, held, drawn, cut_off, left, is_in_view })
+        });
+        // What the cell holds alone is decided with it, unless the budget ended in it: then some is left out.
+        let is_whole = self.cut_off.is_empty();
+        self.report_visible(if is_whole { own_end } else { first });
         // One that is out of view was decided when it was looked at.
-        if in_view != InView::Outside {
-            self.watch.event(Event::DecidedNode(node, Verdict::Visible));
+        if is_in_view {
+            let verdict = if is_whole { Verdict::Visible } else { Verdict::Partial };
+            self.watch.event(Event::DecidedNode(node, verdict));
         }
         self.watch.event(Event::Left(node));
+    }
+    /// Says of the primitives drawn since the first `from` that they are.
+    fn report_visible(&mut self, from: usize) {
+        if O::LISTENS {
+            for &prim in &self.out.prims[from..] {
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+            }
+        }
     }
 
     /// Reports newly drawn primitives to the limit, which may end the frame.
@@ -516,23 +588,21 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.reported = self.out.prims.len();
     }
 
-    /// Draws a primitive of a cell that these planes cut, or returns why not. A cell is drawn in part where
-    /// the budget ends in it (Section 4.1), but whole where queries or the quality decide about the rest:
-    /// those look at whole cells.
-    fn fate(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
-        let outside = self.outside(prim, cutting);
-        if outside.is_some() {
-            return outside;
+    /// Draws a primitive of a cell that these planes cut, unless it is outside or the budget is spent. A cell
+    /// is drawn in part where the budget ends in it (Section 4.1), but whole where queries or the quality
+    /// decide about the rest: those look at whole cells.
+    fn draw(&mut self, prim: PrimId, cutting: u8) {
+        if let Some(verdict) = self.outside(prim, cutting) {
+            self.watch.event(Event::DecidedPrim(prim, verdict));
+        } else if self.left == 0 && self.rest.is_none() {
+            self.cut_off.push(prim);
+        } else {
+            self.left = self.left.saturating_sub(1);
+            self.out.prims.push(prim);
+            if self.out.prims.len() - self.reported >= CHUNK {
+                self.report_drawn();
+            }
         }
-        if self.left == 0 && self.rest.is_none() {
-            return Some(Verdict::OverBudget);
-        }
-        self.left = self.left.saturating_sub(1);
-        self.out.prims.push(prim);
-        if self.out.prims.len() - self.reported >= CHUNK {
-            self.report_drawn();
-        }
-        None
     }
     /// Whether a primitive lies beyond one of these planes or faces away.
     fn outside(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
@@ -555,43 +625,92 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         None
     }
 
+    /// The same frame with as much budget as it needs from here on, for another to watch. `front` and `out`
+    /// hold what this one left.
+    pub(super) fn unlimited<'b, P>(
+        &'b self,
+        front: &'b mut Front,
+        out: &'b mut DrawList<S>,
+        watch: &'b mut P,
+    ) -> Walk<'b, S, P> {
+        Walk {
+            index: self.index,
+            cells: self.cells,
+            scene: self.scene,
+            view: self.view,
+            forward: self.forward,
+            frustum: self.view.frustum(),
+            params: self.params,
+            front,
+            aspects: self.aspects.clone(),
+            nearest: self.nearest.clone(),
+            marks: self.marks.clone(),
+            cut_off: Vec::new(),
+            left: usize::MAX,
+            limit: None,
+            reported: 0,
+            ended: false,
+            rank: self.rank,
+            rest: None,
+            queries: false,
+            out,
+            watch,
+        }
+    }
+
     /// Reports of every cell and primitive that was not reached why not: it is out of view, or the budget was
-    /// spent. Only if someone listens; it changes nothing.
-    fn report_rest(&mut self, spent: bool) {
-        let (cells, left) = (self.rank, self.budget_left());
-        self.watch.note(|| Evidence::Ended(Ended { cells, left, spent }));
+    /// spent, with the cell `last`. Only if someone listens; it changes nothing.
+    fn report_rest(&mut self, last: Option<Source>) {
+        if last.is_none() {
+            let (cells, left) = (self.rank, self.budget_left());
+            self.watch.note(|| Evidence::Ended(Ended { cells, left }));
+        }
         if !O::LISTENS {
             return;
         }
-        let index = self.index;
-        let count = index.count() as u32;
-        for cell in (0..count).map(CellId) {
-            // Of what the front did not reach without the need to stop, all in view is empty.
-            let is_left = !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside;
-            if is_left && spent {
-                self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
-            }
+        let later = last.map(|last| Later::of(self, last));
+        if let Some(later) = &later {
+            self.report_left_out(later);
         }
-        // A cell decided for what it holds alone; what it shares is still open.
+        // Cells are decided for what they hold alone; what they share is still open.
+        let index = self.index;
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
             if !self.marks[number] {
-                let verdict = self.fate_of_the_rest(prim, spent);
-                self.watch.event(Event::DecidedPrim(prim, verdict));
+                self.report_shared(prim, later.as_ref());
             }
         }
     }
-    /// Why a shared primitive was not reached.
-    fn fate_of_the_rest(&mut self, prim: PrimId, spent: bool) -> Verdict {
+    /// Says of a shared primitive that no cell drew why not.
+    fn report_shared(&mut self, prim: PrimId, later: Option<&Later>) {
         let (bounds, planes) = (self.scene.prim_bounds(prim), Frustum::<S::Vector>::ALL);
         let test = self.frustum.test(&bounds, planes);
         if matches!(test, FrustumTest::Outside(_)) {
             self.watch.note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, planes, test)));
-            return Verdict::Outside;
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+        } else if let Some(left_out) = later.and_then(|later| later.of_prim(prim)) {
+            self.watch.note(|| Evidence::LeftOut(left_out));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::OverBudget));
+        } else if self.params.backface_culling && prim_faces_away(self.scene, self.view.eye.position, prim) {
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+        } else {
+            // Its box may reach into view, but none of its cells does, or one of them would have drawn it.
+            self.watch.note(|| Evidence::Unreached(Unreached { prim }));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
         }
-        // With budget left its box may reach into view, but none of its cells does: it cannot be seen, though
-        // no plane says so.
-        if spent { Verdict::OverBudget } else { Verdict::Hidden }
     }
+}
+
+/// The depths, of those from `near` to `far`, at which a ray from `eye` is in a box; none where the first is
+/// not less than the second. At depth 1 the ray has come as far as `ray` is long.
+fn stretch_in<V: Vector>(bounds: &Aabb<V>, eye: V, ray: V, [near, far]: [f32; 2]) -> [f32; 2] {
+    (0..V::AXES).fold([near, far], |[from, to], axis| {
+        let at = |side: V| (side.get(axis) - eye.get(axis)) / ray.get(axis);
+        let (a, b) = (at(bounds.min), at(bounds.max));
+        // Along a ray that runs beside this axis both are infinite, or not numbers, which `max` and `min`
+        // pass over.
+        [from.max(a.min(b)), to.min(a.max(b))]
+    })
 }
 
 /// The radical inverse of a number, base 2 or 3 by axis (Halton): points spread evenly over 0 to 1.
@@ -605,4 +724,25 @@ fn spread_out(mut number: u32, axis: usize) -> f32 {
         number /= base;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec2, vec2};
+
+    #[test]
+    fn a_ray_is_followed_inside_the_region_only() {
+        let region = Aabb { min: Vec2::ZERO, max: vec2(4.0, 2.0) };
+        let stretch = |eye: Vec2, ray: Vec2| stretch_in(&region, eye, ray, [0.5, 1e6]);
+        assert_eq!(stretch(vec2(-1.0, 1.0), Vec2::X), [1.0, 5.0]);
+        assert_eq!(stretch(vec2(1.0, 1.0), vec2(2.0, 0.0)), [0.5, 1.5], "from the near plane on");
+        assert_eq!(stretch(vec2(1.0, 1.0), vec2(1.0, -1.0)), [0.5, 1.0]);
+        let [from, to] = stretch(vec2(-1.0, 3.0), Vec2::X);
+        assert!(from >= to, "beside the region it never enters: {from} {to}");
+        let [from, to] = stretch(vec2(5.0, 1.0), Vec2::X);
+        assert!(from >= to, "away from it: {from} {to}");
+        let on_the_side = stretch(vec2(0.0, 0.0), Vec2::X);
+        assert_eq!(on_the_side, [0.5, 4.0]);
+    }
 }

@@ -9,7 +9,7 @@
 //! 2. Pairs of cell and primitive are sorted by cell into one table a kind.
 //! 3. A last pass finds the most primitives of any cell, ρ_max (Section 3.1).
 
-use super::{Cellular, Tessellation};
+use super::{Cellular, Tessellation, Tried};
 use crate::geometry::{CellId, PrimId};
 use crate::scene::{Progress, Scene};
 
@@ -36,7 +36,8 @@ impl Assignment {
         progress: &dyn Progress,
     ) -> Option<Self> {
         let (mut own, mut shared, mut numbered) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut met, mut corners) = (Vec::new(), Vec::with_capacity(S::CORNERS));
+        let (mut met, mut corners, mut tried) =
+            (Vec::new(), Vec::with_capacity(S::CORNERS), Tried::default());
         let mut near = CellId(0);
         for (count, &prim) in scene.live().iter().enumerate() {
             if count % PATIENCE == 0 {
@@ -50,7 +51,7 @@ impl Assignment {
             corners.clear();
             corners.extend(scene.prim_points(prim));
             met.clear();
-            cells.meeting(&corners, near, &mut met);
+            cells.meeting(&corners, near, &mut tried, &mut met);
             near = met[0];
             // Numbers of shared primitives count up in the order of their ids, so marks are a dense table.
             if let [cell] = met[..] {

@@ -7,7 +7,7 @@
 //!    (Figure 9) walks up and down the octree from each leaf, and lets deeper leaves complete the lists of
 //!    higher ones.
 
-use super::{Adjacency, Cellular, Exit, Neighbor, Tessellation};
+use super::{Adjacency, Cellular, Exit, Neighbor, Tessellation, Tried};
 use crate::geometry::{Aabb, CellId, Vector};
 
 /// Deeper than this no tree divides, so that recursion stays shallow. These are 32 halvings on
@@ -258,7 +258,7 @@ impl<S: Cellular> Tessellation<S> for BoxCells<S::Vector> {
         };
         self.adjacency.of(from).iter().find(through).map_or(Exit::Out, |n| Exit::Into(n.cell))
     }
-    fn meeting(&self, prim: &[S::Vector], _: CellId, to: &mut Vec<CellId>) {
+    fn meeting(&self, prim: &[S::Vector], _: CellId, _: &mut Tried, to: &mut Vec<CellId>) {
         let bounds = Aabb::of(prim.iter().copied());
         let start = to.len();
         // A stack on the stack: two entries a level are enough.

@@ -64,12 +64,42 @@ pub trait Tessellation<S: Space>: Send + Sync {
     /// into one of the neighbors there, always the same.
     fn exit(&self, from: CellId, point: S::Vector) -> Exit;
     /// Adds the cells that a primitive meets, at least one, searched from the cell `near`. The primitive lies
-    /// in the region.
-    fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>);
+    /// in the region. O(cells met and their neighbors).
+    fn meeting(&self, prim: &[S::Vector], near: CellId, tried: &mut Tried, to: &mut Vec<CellId>);
     /// The edges of a cell; those of a triangle run around it.
     fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]>;
     /// Bytes that it takes.
     fn bytes(&self) -> usize;
+}
+
+/// The cells that were tried for the primitive at hand.
+#[derive(Clone, Debug, Default)]
+pub struct Tried {
+    /// For each cell the number of the last primitive that it was tried for.
+    // Numbers and not flags: the next primitive begins without clearing the table, which is as long as all
+    // cells, and looking a cell up takes the same time however many the primitive meets.
+    last: Vec<u32>,
+    number: u32,
+}
+
+impl Tried {
+    /// Begins with another primitive, of so many cells.
+    fn begin(&mut self, cells: usize) {
+        if self.last.len() != cells || self.number == u32::MAX {
+            self.last.clear();
+            self.last.resize(cells, 0);
+            self.number = 0;
+        }
+        self.number += 1;
+    }
+    #[inline]
+    fn has(&self, cell: CellId) -> bool {
+        self.last[cell.at()] == self.number
+    }
+    #[inline]
+    fn add(&mut self, cell: CellId) {
+        self.last[cell.at()] = self.number;
+    }
 }
 
 /// The neighbors of all cells, one list after the other.

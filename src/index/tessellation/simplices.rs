@@ -11,7 +11,7 @@
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::{Adjacency, BoxCells, Cellular, Exit, Neighbor, Tessellation};
+use super::{Adjacency, BoxCells, Cellular, Exit, Neighbor, Tessellation, Tried};
 use crate::geometry::{Aabb, CellId, Vector};
 
 /// No neighbor.
@@ -199,9 +199,12 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
             cell => Exit::Into(CellId(cell)),
         }
     }
-    fn meeting(&self, prim: &[S::Vector], near: CellId, to: &mut Vec<CellId>) {
+    fn meeting(&self, prim: &[S::Vector], near: CellId, tried: &mut Tried, to: &mut Vec<CellId>) {
         let start = to.len();
-        to.push(self.locate(prim[0], near).unwrap_or(near));
+        tried.begin(self.cells.len());
+        let first = self.locate(prim[0], near).unwrap_or(near);
+        tried.add(first);
+        to.push(first);
         // The cells that meet a connected set hang together by faces: breadth first, the list is the queue.
         let mut seen = start;
         while seen < to.len() {
@@ -210,11 +213,14 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
             let simplex = self.cells[at.at()];
             for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
                 let next = CellId(simplex.neighbors[face]);
-                // In the order of cost: known already, some corner at or beyond the face, the separating
-                // axes.
+                // In the order of cost: tried already, some corner at or beyond the face, the separating axes.
+                // Those say the same whichever face a cell is reached by, so it is tried once, met or not.
                 let reaches = || prim.iter().any(|p| self.side(&simplex, face, *p) <= 0.0);
-                if !to[start..].contains(&next) && reaches() && S::meets_simplex(prim, &self.corners(next)) {
-                    to.push(next);
+                if !tried.has(next) && reaches() {
+                    tried.add(next);
+                    if S::meets_simplex(prim, &self.corners(next)) {
+                        to.push(next);
+                    }
                 }
             }
         }

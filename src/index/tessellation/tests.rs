@@ -318,3 +318,17 @@ fn tables_make_the_same_cells_and_damaged_ones_none() {
     check(&*samples::soup::<Flat>(1, 120));
     check(&*samples::soup::<Solid>(1, 60));
 }
+
+#[test]
+fn cells_that_were_tried_are_those_of_this_primitive() {
+    let mut tried = super::Tried::default();
+    tried.begin(3);
+    tried.add(CellId(1));
+    assert!(tried.has(CellId(1)) && !tried.has(CellId(0)));
+    tried.begin(3);
+    assert!(!tried.has(CellId(1)), "another primitive");
+    tried.number = u32::MAX;
+    tried.add(CellId(2));
+    tried.begin(3);
+    assert!(!all(3).any(|cell| tried.has(cell)), "numbers begin anew");
+}

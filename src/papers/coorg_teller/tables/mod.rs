@@ -31,6 +31,7 @@ pub const TABLES: &[Experiment] = &[
              paper does not say how its frustum column was made; its ratio stands beside ours with objects.",
         ],
         varies: &["detail-objects"],
+        settings: &[],
         sweep: &table_1::SWEEP,
     },
     Experiment {
@@ -45,6 +46,7 @@ pub const TABLES: &[Experiment] = &[
             "We draw with a software rasterizer, the paper with graphics hardware of its time.",
         ],
         varies: &[],
+        settings: &[],
         sweep: &table_2::SWEEP,
     },
     Experiment {
@@ -60,6 +62,7 @@ pub const TABLES: &[Experiment] = &[
              view-frustum tests.",
         ],
         varies: &["cache"],
+        settings: &[],
         sweep: &table_3::SWEEP,
     },
     Experiment {
@@ -73,6 +76,7 @@ pub const TABLES: &[Experiment] = &[
              states for both models.",
         ],
         varies: &[],
+        settings: &[],
         sweep: &nodes::SWEEP,
     },
     Experiment {
@@ -88,6 +92,7 @@ pub const TABLES: &[Experiment] = &[
              taken.",
         ],
         varies: &["occluders", "marginal-gain"],
+        settings: &[],
         sweep: &occluders::SWEEP,
     },
 ];

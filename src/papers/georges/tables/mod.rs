@@ -24,6 +24,7 @@ pub const TABLES: &[Experiment] = &[
              that of the monitor, which it does not state.",
         ],
         varies: &[],
+        settings: &[],
         sweep: &box_model::SWEEP,
     },
     Experiment {
@@ -39,6 +40,7 @@ pub const TABLES: &[Experiment] = &[
              hidden.",
         ],
         varies: &[],
+        settings: &[],
         sweep: &flight::SWEEP,
     },
     Experiment {
@@ -52,6 +54,7 @@ pub const TABLES: &[Experiment] = &[
              resolution nothing is missed.",
         ],
         varies: &[],
+        settings: &[],
         sweep: &aliasing::SWEEP,
     },
 ];

@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use super::ways::{BY_CENTROID, DELAUNAY, FRAME, KD_TREE, Most, OCTREE, ORDER, Way, ready};
+use super::ways::{
+    BY_CENTROID, DELAUNAY, FRAME, KD_TREE, Most, OCTREE, ORDER, PAPERS_DELAUNAY, PAPERS_OCTREE, RULES, Way,
+    ready,
+};
 use crate::drawing::{Plot, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points, quoted};
 use crate::measure::experiment::{Rows, Sweep, World};
@@ -18,6 +21,7 @@ pub const SWEEP: Sweep = Sweep {
         SOURCE,
         SCENE,
         ORDER,
+        RULES,
         FRAME,
         column("found_percent", "found", "% of visible", 1),
         column("wrong_percent", "wrong", "% of pixels", 2),
@@ -31,7 +35,8 @@ pub const SWEEP: Sweep = Sweep {
     plots,
 };
 
-const WAYS: [Way; 4] = [DELAUNAY, OCTREE, KD_TREE, BY_CENTROID];
+const WAYS: [Way; COUNT] = [PAPERS_DELAUNAY, PAPERS_OCTREE, DELAUNAY, OCTREE, KD_TREE, BY_CENTROID];
+const COUNT: usize = 6;
 
 /// What is found and wrong in a frame, per cent; its times to cull, to draw and in all, ms.
 type Numbers = [f64; 5];
@@ -45,11 +50,11 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             setup,
             way,
             &[Most::AsSet],
-            &part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32),
+            &part(progress, 0.03 * i as f32, 0.03 * (i + 1) as f32),
         )?);
     }
     let (mut judge, mut target) = (Judge::new(scene, setup), Target::default());
-    let mut all: Vec<[Numbers; 4]> = vec![Default::default(); path.views.len()];
+    let mut all: Vec<[Numbers; COUNT]> = vec![Default::default(); path.views.len()];
     let times = in_turns(&mut runs, &path.views, &part(progress, 0.2, 1.0), "flying", |run, turn| {
         if turn.is_first_round && turn.is_first_run {
             judge.look(turn.view);
@@ -70,9 +75,9 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
 }
 
 /// First what all frames together say, then each frame.
-fn table_rows(about: &Measured, all: &[[Numbers; 4]]) -> Vec<Vec<Cell>> {
+fn table_rows(about: &Measured, all: &[[Numbers; COUNT]]) -> Vec<Vec<Cell>> {
     let row = |w: usize, frame: Cell, numbers: Numbers| {
-        measured(&about.name, [WAYS[w].label.into(), frame], numbers)
+        measured(&about.name, WAYS[w].cells().into_iter().chain([frame]), numbers)
     };
     let mut rows = Vec::new();
     for w in 0..WAYS.len() {
@@ -89,16 +94,19 @@ fn table_rows(about: &Measured, all: &[[Numbers; 4]]) -> Vec<Vec<Cell>> {
 }
 
 /// Order, the mean share found, and the most pixels wrong in any frame (Section 5.2.1).
-const PAPER: [(Way, f64, f64); 3] = [(DELAUNAY, 90.0, 4.0), (OCTREE, 64.0, 9.0), (BY_CENTROID, 30.0, 40.0)];
+const PAPER: [(Way, f64, f64); 3] =
+    [(PAPERS_DELAUNAY, 90.0, 4.0), (PAPERS_OCTREE, 64.0, 9.0), (BY_CENTROID, 30.0, 40.0)];
 
 fn paper() -> Vec<Vec<Cell>> {
     let row = |way: Way, frame: &str, key: &str, percent: f64| {
+        let [order, rules] = way.cells();
         quoted(
             SWEEP.columns,
             [
                 (SOURCE.key, "paper".into()),
                 (SCENE.key, "City".into()),
-                (ORDER.key, way.label.into()),
+                (ORDER.key, order),
+                (RULES.key, rules),
                 (FRAME.key, frame.into()),
                 (key, percent.into()),
             ],
@@ -124,7 +132,7 @@ fn plots(table: &Table) -> Vec<Plot> {
             let series = WAYS
                 .iter()
                 .zip(frames.chunks(each.max(1)))
-                .map(|(way, rows)| Series::new(way.label, way.role, points(table, rows, FRAME.key, key)));
+                .map(|(way, rows)| Series::new(way.name(), way.role, points(table, rows, FRAME.key, key)));
             plots.push(Plot {
                 title: format!("{name}: {what}"),
                 x_label: "frame".into(),

@@ -4,14 +4,17 @@
 
 use std::sync::Arc;
 
+use super::ways::{OURS, PAPERS, RULES};
 use crate::drawing::{Plot, Role, Series, Shape};
+use crate::geometry::View;
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
 use crate::measure::deadline::frame_within;
 use crate::measure::experiment::{Rows, Sweep, World};
 use crate::measure::harness::path::{about, path};
 use crate::measure::harness::{Judge, checkpoint, part, ready, under_load};
 use crate::measure::timing::{median, quantile};
-use crate::measure::{Setup, Table};
+use crate::measure::{Cell, ExperimentError, Setup, Table};
+use crate::method::Run;
 use crate::papers::keys::LAYERED_PROJECTION;
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
@@ -20,6 +23,7 @@ pub const SWEEP: Sweep = Sweep {
     columns: &[
         SOURCE,
         SCENE,
+        RULES,
         column("machine", "machine", "", 0),
         column("deadline_ms", "deadline", "ms", 0),
         column("median_ms", "a frame, median", "ms", 2),
@@ -42,15 +46,31 @@ const LOADED: usize = 1;
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Rows {
     let path = path(scene, setup);
-    let build = part(progress, 0.0, 0.2);
-    let mut run = ready(scene, LAYERED_PROJECTION, setup, &[("budget", "100%")], &build)?;
-    let (mut judge, mut image, n) = (Judge::new(scene, setup), Target::default(), path.views.len());
-    let about = about(scene, &path);
+    let mut rows = Vec::new();
+    for (i, rules) in [PAPERS, OURS].into_iter().enumerate() {
+        let whole = part(progress, 0.5 * i as f32, 0.5 * (i + 1) as f32);
+        let on_top = [("budget", "100%"), ("rules", rules)];
+        let mut run = ready(scene, LAYERED_PROJECTION, setup, &on_top, &part(&whole, 0.0, 0.2))?;
+        rows.extend(rows_of(scene, setup, &mut *run, rules, &path.views, &whole)?);
+    }
+    Ok((rows, about(scene, &path)))
+}
+
+/// The rows of one set of rules: each machine at each deadline.
+fn rows_of<S: World>(
+    scene: &Arc<Scene<S>>,
+    setup: &Setup,
+    run: &mut dyn Run<S>,
+    rules: &str,
+    views: &[View<S>],
+    progress: &dyn Progress,
+) -> Result<Vec<Vec<Cell>>, ExperimentError> {
+    let (mut judge, mut image, n) = (Judge::new(scene, setup), Target::default(), views.len());
     let mut rows = Vec::new();
     for (m, machine) in MACHINES.into_iter().enumerate() {
         for (d, deadline) in DEADLINES_MS.into_iter().enumerate() {
             let (mut times, mut found, mut drawn) = (Vec::new(), 0.0, 0);
-            for (k, view) in path.views.iter().enumerate() {
+            for (k, view) in views.iter().enumerate() {
                 let done = (m * DEADLINES_MS.len() + d) * n + k;
                 checkpoint(
                     progress,
@@ -58,7 +78,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
                     "keeping deadlines",
                 )?;
                 let old_image = std::mem::take(&mut image);
-                let within = || frame_within(&mut *run, scene, view, old_image, deadline);
+                let within = || frame_within(run, scene, view, old_image, deadline);
                 let frame = if m == LOADED { under_load(within) } else { within() };
                 judge.look(view);
                 found += judge.compare(&frame.list.prims).coverage_percent / n as f64;
@@ -72,16 +92,18 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             times.sort_unstable_by(f64::total_cmp);
             let worst = times.last().copied().unwrap_or_default();
             let times = [quantile(&times, 0.5), quantile(&times, 0.99), worst, share];
-            let mut row = measured(&about.name, [machine.into(), deadline.into()], times);
+            let mut row = measured(scene.name(), [rules.into(), machine.into(), deadline.into()], times);
             row.extend([overshoot.into(), (drawn as f64 / n as f64).into(), found.into()]);
             rows.push(row);
         }
     }
-    Ok((rows, about))
+    Ok(rows)
 }
 
 fn plots(table: &Table) -> Vec<Plot> {
+    // The chart shows our rules, whose rows come last.
     let lines = |(name, rows): (String, Vec<usize>)| {
+        let rows = &rows[rows.len() / 2..];
         let series = |of: usize, key: &str, label: &str, role: Role| {
             let some = rows.chunks(DEADLINES_MS.len()).nth(of).unwrap_or_default();
             Series::new(label, role, points(table, some, "deadline_ms", key))

@@ -1,5 +1,5 @@
-//! Section 6: what each extension of the method does, beside the method as it is and beside the paper's
-//! arithmetic.
+//! Section 6: what each extension of the method does, beside the paper's rules and ours, and what each
+//! difference between those does.
 
 use std::sync::Arc;
 
@@ -36,10 +36,15 @@ pub const SWEEP: Sweep = Sweep {
 /// A form of the method: its name and the parameters that make it.
 type Form = (&'static str, &'static [(&'static str, &'static str)]);
 
-const FORMS: [Form; 9] = [
-    ("as it is", &[]),
-    ("the paper's", &[("transfer", "aligned"), ("update", "latest")]),
-    ("latest update", &[("update", "latest")]),
+const FORMS: [Form; 14] = [
+    ("the paper's rules", &[("rules", "paper")]),
+    ("paper's, front in view", &[("rules", "paper"), ("front", "in-view")]),
+    ("paper's, whole transfer", &[("rules", "paper"), ("transfer", "whole")]),
+    ("paper's, v of the cell", &[("rules", "paper"), ("view-direction", "cell")]),
+    ("paper's, penalty added", &[("rules", "paper"), ("penalty-as", "sum"), ("penalty", "30")]),
+    ("paper's, star-shaped update", &[("rules", "paper"), ("update", "star-shaped")]),
+    ("our rules", &[]),
+    ("ours, latest update", &[("update", "latest")]),
     ("front-facing count", &[("occupancy", "front-facing")]),
     ("64 seeds", &[("seeds", "64")]),
     ("quality 90 %", &[("quality", "90")]),

@@ -9,6 +9,7 @@ mod comparison;
 mod deadline;
 mod extensions;
 mod frames;
+mod layering;
 mod overhead;
 mod preprocess;
 mod stability;
@@ -26,6 +27,21 @@ const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel 
                        frame the share of it that was drawn, then the mean over the frames. A pixel is wrong \
                        if its color differs from the exact image's.";
 
+/// All runs of the paper cull back faces (Section 5).
+const AS_THEIRS: &[(&str, &str)] = &[("backface-culling", "true")];
+/// What is called the paper's.
+const RULED: &str = "The paper's rules are those of its Figures 4 and 5 as printed (`rules=paper`), with a \
+                     penalty factor of 2, since it gives none; ours (`rules=ours`, the default) were chosen \
+                     on the generated city and the generated cars. Back faces are culled unless set \
+                     otherwise, as in the paper's runs.";
+
+/// Parameters that a table sets itself: these, the rules and what follows them.
+macro_rules! varies {
+    ($($own:literal),*) => {
+        &[$($own,)* "rules", "front", "transfer", "view-direction", "penalty-as", "penalty", "update"]
+    };
+}
+
 /// The tables.
 pub const TABLES: &[Experiment] = &[
     Experiment {
@@ -37,9 +53,11 @@ pub const TABLES: &[Experiment] = &[
                   worst frame's wrong pixels",
         notes: &[
             COVERED,
+            RULED,
             "The paper's most wrong pixels are stated without a budget; they are shown at the largest.",
         ],
-        varies: &["tessellation", "budget"],
+        varies: varies!["tessellation", "budget"],
+        settings: AS_THEIRS,
         sweep: &table_1::SWEEP,
     },
     Experiment {
@@ -51,11 +69,13 @@ pub const TABLES: &[Experiment] = &[
                   frame",
         notes: &[
             COVERED,
+            RULED,
             FRAME_TIMES,
             "The paper's frames are 4 times faster at 5 percent (City) and 10 times at 1 percent (5 Car \
              Body/Engine) than with everything drawn.",
         ],
-        varies: &["budget"],
+        varies: varies!["budget"],
+        settings: AS_THEIRS,
         sweep: &frames::SWEEP,
     },
     Experiment {
@@ -67,11 +87,13 @@ pub const TABLES: &[Experiment] = &[
                   centroid, frame by frame",
         notes: &[
             COVERED,
+            RULED,
             FRAME_TIMES,
             "The paper's centroid order has 7 to 40 percent of the pixels wrong; its Delaunay cells find \
              over 90 percent.",
         ],
-        varies: &["tessellation"],
+        varies: varies!["tessellation"],
+        settings: AS_THEIRS,
         sweep: &comparison::SWEEP,
     },
     Experiment {
@@ -87,8 +109,10 @@ pub const TABLES: &[Experiment] = &[
              both exact images and is right in one view and wrong in the other. A set changes by its share \
              of those that are in either view's set and not in both. The paper says that nothing major pops, \
              without figures.",
+            RULED,
         ],
-        varies: &["tessellation", "budget"],
+        varies: varies!["tessellation", "budget"],
+        settings: AS_THEIRS,
         sweep: &stability::SWEEP,
     },
     Experiment {
@@ -102,7 +126,8 @@ pub const TABLES: &[Experiment] = &[
              of the index, neighbors and normals included; the scene is all that we keep of it. Overhead: \
              cells and references against the scene; in the paper, against its triangles.",
         ],
-        varies: &["tessellation", "budget"],
+        varies: varies!["tessellation", "budget"],
+        settings: AS_THEIRS,
         sweep: &preprocess::SWEEP,
     },
     Experiment {
@@ -114,10 +139,12 @@ pub const TABLES: &[Experiment] = &[
                   share of a frame",
         notes: &[
             FRAME_TIMES,
+            RULED,
             "View-frustum culling walks a kD-tree and keeps nodes whole; a frame of it is culled, and all \
              that was kept is drawn. At 100 percent all that is in view is drawn, triangle by triangle.",
         ],
-        varies: &["tessellation", "budget"],
+        varies: varies!["tessellation", "budget"],
+        settings: AS_THEIRS,
         sweep: &overhead::SWEEP,
     },
     Experiment {
@@ -125,10 +152,11 @@ pub const TABLES: &[Experiment] = &[
         method: LAYERED_PROJECTION,
         scenes: LARGE,
         title: "Klosowski and Silva 2000, Section 6: extensions",
-        summary: "What each extension finds and costs: other solidities, several seeds, a wanted quality, \
-                  queries for the rest",
-        notes: &[COVERED, "With a quality or queries the budget is where they begin."],
-        varies: &["budget", "transfer", "update", "occupancy", "seeds", "quality", "queries"],
+        summary: "What the paper's rules and ours find, each difference between them alone, and each \
+                  extension: solidities, seeds, a wanted quality, queries",
+        notes: &[COVERED, RULED, "With a quality or queries the budget is where they begin."],
+        varies: varies!["budget", "occupancy", "seeds", "quality", "queries"],
+        settings: AS_THEIRS,
         sweep: &extensions::SWEEP,
     },
     Experiment {
@@ -138,8 +166,30 @@ pub const TABLES: &[Experiment] = &[
         title: "Klosowski and Silva 2000, Section 3: time-critical frames",
         summary: "How long frames take that end at a deadline, on an idle and on a loaded machine, and how \
                   far they overshoot",
-        notes: &["Loaded: two more busy threads for each core. A frame is culled and drawn on one thread."],
-        varies: &["budget"],
+        notes: &[
+            "Loaded: two more busy threads for each core. A frame is culled and drawn on one thread.",
+            RULED,
+        ],
+        varies: varies!["budget"],
+        settings: AS_THEIRS,
         sweep: &deadline::SWEEP,
+    },
+    Experiment {
+        name: "klosowski-silva-layering",
+        method: LAYERED_PROJECTION,
+        scenes: LARGE,
+        title: "Klosowski and Silva 2000, Section 3: projected by layers?",
+        summary: "Rank correlation of the order of projection with the layering numbers that it is to follow",
+        notes: &[
+            "Along the scene's own path, means over the frames. The layering number ζ of a triangle is the \
+             smallest rank that it has at any pixel, by distance; by fragments of every triangle, exact. \
+             Order: Kendall's rank correlation of ζ and the place in the order of projection, over the pairs \
+             of triangles of different ζ: 1 by layers, 0 at random, −1 back to front. Triangles that cover \
+             no pixel are left out. The paper defines ζ and measures none.",
+            RULED,
+        ],
+        varies: varies!["tessellation", "budget"],
+        settings: AS_THEIRS,
+        sweep: &layering::SWEEP,
     },
 ];

@@ -4,7 +4,9 @@
 
 use std::sync::Arc;
 
-use super::ways::{BUDGET, DELAUNAY, KD_TREE, Most, OCTREE, Way, ready};
+use super::ways::{
+    BUDGET, DELAUNAY, KD_TREE, Most, OCTREE, PAPERS_DELAUNAY, PAPERS_OCTREE, RULES, Way, ready,
+};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
 use crate::measure::experiment::{Rows, Sweep, World};
@@ -20,6 +22,7 @@ pub const SWEEP: Sweep = Sweep {
         SOURCE,
         SCENE,
         column("tessellation", "cells are of", "", 0),
+        RULES,
         BUDGET,
         column("drawn_triangles", "drawn", "triangles", 0),
         column("cull_ms", "cull", "ms", 3),
@@ -34,7 +37,7 @@ pub const SWEEP: Sweep = Sweep {
     plots,
 };
 
-const WAYS: [Way; 3] = [DELAUNAY, OCTREE, KD_TREE];
+const WAYS: [Way; 5] = [PAPERS_DELAUNAY, PAPERS_OCTREE, DELAUNAY, OCTREE, KD_TREE];
 const BASELINE: &str = "view frustum";
 /// Budgets, per cent: at the last all that is in view is drawn.
 const ALL_BUDGETS: [f64; 5] = [1.0, 2.0, 5.0, 10.0, 100.0];
@@ -49,7 +52,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             setup,
             way,
             &budgets,
-            &part(progress, 0.05 * (i + 1) as f32, 0.05 * (i + 2) as f32),
+            &part(progress, 0.05 + 0.03 * i as f32, 0.05 + 0.03 * (i + 1) as f32),
         )?);
     }
     let (mut target, n, ways) = (Target::default(), path.views.len(), runs.len());
@@ -66,10 +69,11 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let row = |w: usize| {
         let ([cull, draw], [base_cull, base_draw]) = (times[w], times[0]);
         let names = match w.checked_sub(1) {
-            None => [BASELINE.into(), Cell::Missing],
+            None => [BASELINE.into(), Cell::Missing, Cell::Missing],
             Some(w) => {
                 let (way, budget) = (w / ALL_BUDGETS.len(), w % ALL_BUDGETS.len());
-                [WAYS[way].label.into(), ALL_BUDGETS[budget].into()]
+                let [label, rules] = WAYS[way].cells();
+                [label, rules, ALL_BUDGETS[budget].into()]
             }
         };
         let numbers = [drawn[w] as f64 / n as f64, cull, draw, 100.0 * cull / (cull + draw)];
@@ -87,7 +91,7 @@ fn plots(table: &Table) -> Vec<Plot> {
         let base = table.number(rows[0], "cull_ms").unwrap_or_default();
         let mut series = vec![Series::new(BASELINE, Role::Ink, [1.0, 100.0].map(|x| (x, base)).to_vec())];
         for (way, rows) in WAYS.iter().zip(rows[1..].chunks(ALL_BUDGETS.len())) {
-            series.push(Series::new(way.label, way.role, points(table, rows, BUDGET.key, "cull_ms")));
+            series.push(Series::new(way.name(), way.role, points(table, rows, BUDGET.key, "cull_ms")));
         }
         plots.push(Plot {
             title: name,

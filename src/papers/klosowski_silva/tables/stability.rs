@@ -5,7 +5,10 @@
 
 use std::sync::Arc;
 
-use super::ways::{BUDGET, BUDGETS, BY_CENTROID, DELAUNAY, Most, OCTREE, ORDER, Way, ready};
+use super::ways::{
+    BUDGET, BUDGETS, BY_CENTROID, DELAUNAY, Most, OCTREE, ORDER, PAPERS_DELAUNAY, PAPERS_OCTREE, RULES, Way,
+    ready,
+};
 use crate::drawing::{Plot, Series, Shape};
 use crate::geometry::{PrimId, Vector, View, ViewPath, WALKING_STEP_M};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
@@ -22,6 +25,7 @@ pub const SWEEP: Sweep = Sweep {
         SOURCE,
         SCENE,
         ORDER,
+        RULES,
         BUDGET,
         column("exact_change_percent", "visible set changes", "%", 2),
         column("drawn_change_percent", "its drawn part changes", "%", 2),
@@ -35,7 +39,7 @@ pub const SWEEP: Sweep = Sweep {
     plots,
 };
 
-const WAYS: [Way; 3] = [DELAUNAY, OCTREE, BY_CENTROID];
+const WAYS: [Way; 5] = [PAPERS_DELAUNAY, PAPERS_OCTREE, DELAUNAY, OCTREE, BY_CENTROID];
 /// Places along the path at which a walker starts, evenly spaced.
 const STARTS: usize = 8;
 
@@ -141,7 +145,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             setup,
             way,
             &BUDGETS.map(Most::Percent),
-            &part(progress, 0.1 * i as f32, 0.1 * (i + 1) as f32),
+            &part(progress, 0.06 * i as f32, 0.06 * (i + 1) as f32),
         )?);
     }
     let mut judge = Judge::new(scene, setup);
@@ -163,7 +167,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let about = about(scene, &path);
     let row = |r: usize| {
         let (way, budget) = (WAYS[r / BUDGETS.len()], BUDGETS[r % BUDGETS.len()]);
-        measured(&about.name, [way.label.into(), budget.into()], sums[r].means())
+        measured(&about.name, way.cells().into_iter().chain([budget.into()]), sums[r].means())
     };
     Ok(((0..runs.len()).map(row).collect(), about))
 }
@@ -178,7 +182,7 @@ fn plots(table: &Table) -> Vec<Plot> {
             let series = WAYS
                 .iter()
                 .zip(rows.chunks(BUDGETS.len()))
-                .map(|(way, rows)| Series::new(way.label, way.role, points(table, rows, BUDGET.key, key)));
+                .map(|(way, rows)| Series::new(way.name(), way.role, points(table, rows, BUDGET.key, key)));
             plots.push(Plot {
                 title: format!("{name}: {what}"),
                 x_label: "budget, % of the triangles".into(),

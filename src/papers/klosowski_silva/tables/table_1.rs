@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use super::ways::{BUDGETS, BY_CENTROID, DELAUNAY, Most, OCTREE, ORDER, Way, ready};
+use super::ways::{
+    BUDGETS, BY_CENTROID, DELAUNAY, Most, OCTREE, ORDER, PAPERS, PAPERS_DELAUNAY, PAPERS_OCTREE, RULES, Way,
+    ready,
+};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, quoted};
 use crate::measure::experiment::{Rows, Sweep, World};
@@ -17,6 +20,7 @@ pub const SWEEP: Sweep = Sweep {
         SOURCE,
         SCENE,
         ORDER,
+        RULES,
         column("found_1_percent", "found, 1 %", "% of visible", 1),
         column("found_2_percent", "2 %", "%", 1),
         column("found_5_percent", "5 %", "%", 1),
@@ -32,7 +36,7 @@ pub const SWEEP: Sweep = Sweep {
     plots,
 };
 
-const WAYS: [Way; 3] = [DELAUNAY, OCTREE, BY_CENTROID];
+const WAYS: [Way; 5] = [PAPERS_DELAUNAY, PAPERS_OCTREE, DELAUNAY, OCTREE, BY_CENTROID];
 const FOUND: [&str; 4] = ["found_1_percent", "found_2_percent", "found_5_percent", "found_10_percent"];
 
 /// Scene, ε at each budget, and the most pixels wrong in any frame, of which the budget is not named.
@@ -44,7 +48,13 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let budgets = BUDGETS.map(Most::Percent);
     let mut runs = Vec::new();
     for (i, way) in WAYS.into_iter().enumerate() {
-        runs.push(ready(scene, setup, way, &budgets, &part(progress, 0.1 * i as f32, 0.1 * (i + 1) as f32))?);
+        runs.push(ready(
+            scene,
+            setup,
+            way,
+            &budgets,
+            &part(progress, 0.06 * i as f32, 0.06 * (i + 1) as f32),
+        )?);
     }
     let mut judge = Judge::new(scene, setup);
     let n = path.views.len();
@@ -63,7 +73,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     }
     let about = about(scene, &path);
     let row = |w: usize| {
-        let mut row = measured(&about.name, [WAYS[w].label.into()], found[w]);
+        let mut row = measured(&about.name, WAYS[w].cells(), found[w]);
         row.extend(worst[w].map(Cell::from));
         row
     };
@@ -73,8 +83,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
 fn paper() -> Vec<Vec<Cell>> {
     let row = |(scene, found, worst): (&str, [f64; 4], f64)| {
         let names = [(SOURCE.key, "paper".into()), (SCENE.key, scene.into())];
-        let order = [(ORDER.key, DELAUNAY.label.into()), ("worst_10_percent", worst.into())];
-        let found = FOUND.into_iter().zip(found.map(Cell::from));
+        let order = [(ORDER.key, PAPERS_DELAUNAY.label.into()), (RULES.key, PAPERS.into())];
+        let found = FOUND.into_iter().zip(found.map(Cell::from)).chain([("worst_10_percent", worst.into())]);
         quoted(SWEEP.columns, names.into_iter().chain(order).chain(found))
     };
     PAPER.map(row).to_vec()
@@ -90,9 +100,9 @@ fn plots(table: &Table) -> Vec<Plot> {
                 .zip(FOUND)
                 .filter_map(|(b, key)| Some((b, table.number(r, key)?)))
                 .collect();
-            series.push(Series::new(way.label, way.role, points));
+            series.push(Series::new(way.name(), way.role, points));
         }
-        for ((scene, found, _), role) in PAPER.into_iter().zip([Role::Approximated, Role::Partial]) {
+        for ((scene, found, _), role) in PAPER.into_iter().zip([Role::Ink, Role::Faint]) {
             series.push(Series::new(
                 format!("paper, {scene}"),
                 role,

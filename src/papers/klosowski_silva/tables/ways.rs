@@ -6,7 +6,7 @@ use crate::drawing::Role;
 use crate::measure::columns::{self, column};
 use crate::measure::experiment::World;
 use crate::measure::harness::{part, restore_or_build, settings};
-use crate::measure::{Column, ExperimentError, Setup};
+use crate::measure::{Cell, Column, ExperimentError, Setup};
 use crate::method::Run;
 use crate::papers::keys::{CENTROID, LAYERED_PROJECTION};
 use crate::scene::{Progress, Scene};
@@ -17,21 +17,47 @@ pub const BUDGETS: [f64; 4] = [1.0, 2.0, 5.0, 10.0];
 /// Columns that several tables have.
 pub const FRAME: Column = column(columns::FRAME, "frame", "", 0);
 pub const ORDER: Column = column("order", "order", "", 0);
+pub const RULES: Column = column("rules", "rules", "", 0);
 pub const BUDGET: Column = column("budget_percent", "budget", "%", 0);
 
 /// An order in which primitives are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
     pub label: &'static str,
-    /// Cells of the method; none for the baseline.
-    pub tessellation: Option<&'static str>,
+    /// Cells of the method and its rules; none for the baseline.
+    pub method: Option<[&'static str; 2]>,
     pub role: Role,
 }
 
-pub const DELAUNAY: Way = Way { label: "Delaunay", tessellation: Some("delaunay"), role: Role::Visible };
-pub const OCTREE: Way = Way { label: "octree", tessellation: Some("octree"), role: Role::Hidden };
-pub const KD_TREE: Way = Way { label: "kD-tree", tessellation: Some("kd-tree"), role: Role::Partial };
-pub const BY_CENTROID: Way = Way { label: "centroid", tessellation: None, role: Role::Outside };
+/// The paper's rules and ours.
+pub const PAPERS: &str = "paper";
+pub const OURS: &str = "ours";
+
+/// A way of the method.
+pub const fn way(label: &'static str, cells: &'static str, rules: &'static str, role: Role) -> Way {
+    Way { label, method: Some([cells, rules]), role }
+}
+
+pub const PAPERS_DELAUNAY: Way = way("Delaunay", "delaunay", PAPERS, Role::Approximated);
+pub const PAPERS_OCTREE: Way = way("octree", "octree", PAPERS, Role::Undecided);
+pub const DELAUNAY: Way = way("Delaunay", "delaunay", OURS, Role::Visible);
+pub const OCTREE: Way = way("octree", "octree", OURS, Role::Hidden);
+pub const KD_TREE: Way = way("kD-tree", "kd-tree", OURS, Role::Partial);
+pub const BY_CENTROID: Way = Way { label: "centroid", method: None, role: Role::Outside };
+
+impl Way {
+    /// What it says under [`ORDER`] and [`RULES`].
+    pub fn cells(&self) -> [Cell; 2] {
+        [self.label.into(), self.method.map(|[_, rules]| rules).into()]
+    }
+    /// Its name in charts.
+    pub fn name(&self) -> String {
+        match self.method {
+            Some([_, PAPERS]) => format!("{}, paper's rules", self.label),
+            _ => self.label.to_owned(),
+        }
+    }
+}
 
 /// How many primitives may be drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,16 +77,16 @@ pub fn ready<S: World>(
     budgets: &[Most],
     progress: &dyn Progress,
 ) -> Result<Runs<S>, ExperimentError> {
-    let key = if way.tessellation.is_some() { LAYERED_PROJECTION } else { CENTROID };
+    let key = if way.method.is_some() { LAYERED_PROJECTION } else { CENTROID };
     let mut runs: Runs<S> = Vec::new();
     let mut saved = None;
     for (i, budget) in budgets.iter().enumerate() {
         let rest = part(progress, if i == 0 { 0.0 } else { 0.9 }, if i == 0 { 0.9 } else { 1.0 });
         let percent = if let Most::Percent(percent) = budget { Some(format!("{percent}%")) } else { None };
         let on_top: Vec<(&str, &str)> = way
-            .tessellation
-            .map(|cells| ("tessellation", cells))
+            .method
             .into_iter()
+            .flat_map(|[cells, rules]| [("tessellation", cells), ("rules", rules)])
             .chain(percent.as_deref().map(|percent| ("budget", percent)))
             .collect();
         let settings = settings::<S>(key, setup, &on_top)?;

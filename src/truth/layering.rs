@@ -1,0 +1,125 @@
+//! Layering numbers: behind how many others a primitive is, where it is behind the fewest.
+//!
+//! Klosowski and Silva 2000, Section 3: order the primitives along each pixel by their distance to the eye;
+//! the layering number ζ of a primitive is the smallest rank that it has over all pixels to which it
+//! contributes. ζ is 1 if and only if the primitive is visible. By that definition and no other:
+//!
+//! 1. Each primitive is drawn alone, which gives its depth at each pixel that it covers.
+//! 2. At each pixel these are ranked as the z-buffer would: the nearer first, at equal depth the lower id.
+//! 3. Of its ranks a primitive keeps the least.
+//!
+//! Cost: O(pixels covered, those behind others too); for each primitive that the view volume may clip the
+//! whole image.
+
+use super::turns_away;
+use crate::geometry::{Frustum, FrustumTest, PixelRect, PrimId, View};
+use crate::raster::{Drawable, Options, Target};
+use crate::scene::Scene;
+
+/// A primitive at a pixel: `1/w` and its id.
+type Fragment = (f32, u32);
+
+/// ζ of each primitive, by its number; 0 of those that cover no pixel. Primitives have two sides, or one if
+/// `backface_culling`: then those that turn away are none.
+pub fn layering_numbers<S: Drawable>(scene: &Scene<S>, view: &View<S>, backface_culling: bool) -> Vec<u32> {
+    let prims = scene.live().iter().copied();
+    let fragments =
+        fragments(scene, view, prims.filter(|p| !(backface_culling && turns_away(scene, view, *p))));
+    // 2. A counting sort by pixel, then each pixel by itself.
+    let mut starts = vec![0usize; view.width as usize * view.height as usize + 1];
+    fragments.iter().for_each(|(pixel, _)| starts[*pixel as usize + 1] += 1);
+    (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
+    let (mut sorted, mut next) = (vec![(0.0, 0); fragments.len()], starts.clone());
+    for (pixel, fragment) in fragments {
+        sorted[next[pixel as usize]] = fragment;
+        next[pixel as usize] += 1;
+    }
+    let mut numbers = vec![0; scene.prim_count()];
+    for pixel in starts.windows(2) {
+        let there: &mut [Fragment] = &mut sorted[pixel[0]..pixel[1]];
+        there.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        // 3.
+        for (rank, (_, prim)) in there.iter().enumerate() {
+            let (number, rank) = (&mut numbers[*prim as usize], rank as u32 + 1);
+            *number = if *number == 0 { rank } else { rank.min(*number) };
+        }
+    }
+    numbers
+}
+
+/// 1. Each primitive at each pixel that it covers.
+fn fragments<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    prims: impl Iterator<Item = PrimId>,
+) -> Vec<(u32, Fragment)> {
+    let (frustum, options, empty) = (view.frustum(), Options::default(), 1.0 / view.eye.far);
+    let image = PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height };
+    let (mut alone, mut found) = (Target::new(view), Vec::new());
+    for prim in prims {
+        // Where the rasterizer names no pixels for a primitive that needs no clipping, it covers none.
+        let may_be_clipped = match frustum.test(&scene.prim_bounds(prim), Frustum::<S::Vector>::ALL) {
+            FrustumTest::Outside(_) => continue,
+            FrustumTest::Partial(_) => true,
+            FrustumTest::Inside => false,
+        };
+        let extent = S::extent(scene, view, prim, &options).map(|extent| extent.pixels);
+        let Some(covered) = extent.or(may_be_clipped.then_some(image)) else { continue };
+        S::draw(&mut alone, scene, view, &[prim], &options);
+        for y in covered.y0..covered.y1 {
+            for x in covered.x0..covered.x1 {
+                let at = y * view.width + x;
+                let (depth, item) = (&mut alone.depth[at as usize], &mut alone.item[at as usize]);
+                if *item == prim.0 {
+                    found.push((at, (*depth, *item)));
+                    (*depth, *item) = (empty, Target::NONE);
+                }
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Flat, Solid};
+    use crate::raster::{render, visible};
+    use crate::scene::{random_views, samples};
+
+    fn is_the_least_rank<S: Drawable>(seed: u64) {
+        let scene = samples::soup::<S>(seed, 200);
+        for mut view in random_views(&*scene, 3, 5) {
+            (view.width, view.height) = (48, view.height.min(48));
+            let numbers = layering_numbers(&scene, &view, false);
+            let seen = visible(&render(&*scene, &view, scene.live()));
+            let first: Vec<PrimId> = scene.live().iter().copied().filter(|p| numbers[p.at()] == 1).collect();
+            assert_eq!(first, seen, "ζ is 1 if and only if it is visible");
+            let deepest = numbers.iter().copied().max().unwrap_or(0);
+            assert!(deepest > 2, "{deepest}");
+            for &prim in scene.live() {
+                assert_eq!(numbers[prim.at()], brute_force(&scene, &view, prim), "{prim}");
+            }
+        }
+    }
+
+    /// The definition for one primitive, pixel by pixel: with which of all others it shares one, and loses.
+    fn brute_force<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> u32 {
+        let mine = render(scene, view, &[prim]);
+        let mut before = vec![0u32; mine.item.len()];
+        for &other in scene.live().iter().filter(|o| **o != prim) {
+            let both = render(scene, view, &[prim, other]);
+            for at in (0..before.len()).filter(|at| mine.item[*at] == prim.0) {
+                before[at] += u32::from(both.item[at] != prim.0);
+            }
+        }
+        let own = (0..before.len()).filter(|at| mine.item[*at] == prim.0);
+        own.map(|at| before[at] + 1).min().unwrap_or(0)
+    }
+
+    #[test]
+    fn it_is_the_least_rank_over_all_pixels() {
+        is_the_least_rank::<Flat>(3);
+        is_the_least_rank::<Solid>(4);
+    }
+}
