@@ -9,7 +9,7 @@ use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{CellId, NodeId, PrimId, Vector, View};
 use crate::index::tessellation::Cellular;
 use crate::method::evidence::{self, Facing, Tested, axes, integer, label, number, short};
-use crate::method::{Claim, Context, Field, Frame, Note, Tallied, Tally, Value, Words};
+use crate::method::{self, Claim, Context, Field, Frame, Note, Tallied, Tally, Value, Words};
 use crate::scene::Scene;
 
 /// What the method records.
@@ -25,6 +25,8 @@ pub enum Evidence<S: Cellular> {
     Transferred(Transferred<S::Vector>),
     /// A cell was projected.
     Projected(Projected),
+    /// A primitive was drawn that meets several cells.
+    Drawn(Drawn),
     /// The budget is spent, and a cell's box was compared with the z-buffer.
     Queried(Queried),
     /// The same of a primitive that no cell drew.
@@ -123,6 +125,8 @@ pub struct Projected {
     pub cell: CellId,
     pub rank: u32,
     pub solidity: f32,
+    /// The least solidity of the rest of the front.
+    pub next: Option<f32>,
     pub held: u32,
     /// Of these, drawn now.
     pub drawn: u32,
@@ -131,6 +135,14 @@ pub struct Projected {
     /// Of the budget.
     pub left: u32,
     pub is_in_view: bool,
+}
+
+/// A primitive that meets several cells was drawn: with the first of them, or with none, where a wanted
+/// quality asked for it.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn {
+    pub prim: PrimId,
+    pub cell: Option<CellId>,
 }
 
 /// A cell that the budget left out was compared with what is drawn.
@@ -252,7 +264,12 @@ impl<S: Cellular> Tallied for Evidence<S> {
                 tally.add("cells_hidden", n.answer.is_hidden.into());
             }
             Self::Bounded(_) => tally.add("bounds_found", 1),
-            Self::Compared(_) | Self::Spent(_) | Self::Ended(_) | Self::LeftOut(_) | Self::Unreached(_) => {}
+            Self::Drawn(_)
+            | Self::Compared(_)
+            | Self::Spent(_)
+            | Self::Ended(_)
+            | Self::LeftOut(_)
+            | Self::Unreached(_) => {}
         }
     }
 }
@@ -265,6 +282,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
             Self::Transferred(_) => "SolidityTransferred",
             Self::Projected(_) => "CellProjected",
+            Self::Drawn(_) => "PrimDrawn",
             Self::Queried(_) => "CellAsked",
             Self::Compared(_) => "PrimCompared",
             Self::Bounded(_) => "DoubtBounded",
@@ -282,6 +300,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.subject(),
             Self::Transferred(n) => Subject::Node(node_of(n.b)),
             Self::Projected(n) => Subject::Node(node_of(n.cell)),
+            Self::Drawn(n) => Subject::Prim(n.prim),
             Self::Queried(n) => Subject::Node(node_of(n.cell)),
             Self::Compared(n) => Subject::Prim(n.prim),
             Self::Spent(n) => Subject::Node(node_of(n.cell)),
@@ -297,15 +316,39 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.claim(context),
             Self::Queried(n) => n.answer.is_hidden.then_some(Claim::Hidden),
             Self::Compared(n) => n.is_hidden.then_some(Claim::Hidden),
+            Self::Unreached(_) => Some(Claim::Hidden),
             // Solidity is a guess: it proves nothing.
             Self::Seeded(_)
             | Self::Transferred(_)
             | Self::Projected(_)
+            | Self::Drawn(_)
             | Self::Bounded(_)
             | Self::Spent(_)
             | Self::Ended(_)
-            | Self::LeftOut(_)
-            | Self::Unreached(_) => None,
+            | Self::LeftOut(_) => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<method::Compared> {
+        let of = |found: (&'static str, f32), with: (&'static str, f32)| {
+            Some(method::Compared::of((found.0, found.1.into()), (with.0, with.1.into())))
+        };
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            Self::Transferred(n) => of(("its solidity", n.solidity), ("in the front", n.before?)),
+            Self::Projected(n) => of(("its solidity", n.solidity), ("the next least", n.next?)),
+            // Buffers hold 1/w, people compare depths.
+            Self::Queried(n) => {
+                let (_, held) = n.answer.decisive?;
+                of(("nearest depth", 1.0 / n.answer.nearest), ("farthest drawn there", 1.0 / held))
+            }
+            Self::Compared(n) => {
+                let [nearest, held] = n.depths?.map(|depth| 1.0 / depth);
+                of(("nearest depth", nearest), ("farthest drawn there", held))
+            }
+            Self::Bounded(n) => of(("% that could change", 100.0 * n.share), ("% allowed", 100.0 * n.most)),
+            Self::LeftOut(n) => of(("its solidity", n.queued?.0), ("of the last projected", n.of_last)),
+            Self::Seeded(_) | Self::Drawn(_) | Self::Spent(_) | Self::Ended(_) | Self::Unreached(_) => None,
         }
     }
     fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
@@ -347,6 +390,10 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 integer("budget_left", n.left),
                 switch("in_view", n.is_in_view),
             ],
+            Self::Drawn(n) => {
+                let cell = n.cell.map(|cell| integer("node", node_of(cell).0));
+                [integer("prim", n.prim.0)].into_iter().chain(cell).collect()
+            }
             Self::Queried(n) => vec![
                 integer("node", node_of(n.cell).0),
                 number("solidity", n.solidity.into()),
@@ -389,7 +436,15 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence(context),
             Self::Transferred(n) => transfer_sentence::<S>(n),
             Self::Projected(n) => projection_sentence::<S>(n),
-            Self::Queried(n) => query_sentence(n),
+            Self::Drawn(Drawn { prim, cell: Some(cell) }) => format!(
+                "Node {} is the first projected of the cells that the {prims} {prim} meets: it is drawn.",
+                node_of(*cell)
+            ),
+            Self::Drawn(Drawn { prim, cell: None }) => format!(
+                "The {prims} {prim} may reach through the near plane, so nothing bounds what it could change: \
+                 it is drawn."
+            ),
+            Self::Queried(n) => query_sentence(n, 1.0 / context.view.eye.far),
             Self::Compared(n) => comparison_sentence::<S>(n),
             Self::Bounded(n) => format!(
                 "After {} {prims}s what is left could still change {} % of the image; {} % are allowed: {}.",
@@ -545,7 +600,8 @@ fn comparison_sentence<S: Cellular>(n: &Compared) -> String {
     }
 }
 
-fn query_sentence(n: &Queried) -> String {
+/// `empty` is what the buffer holds where nothing is drawn.
+fn query_sentence(n: &Queried, empty: f32) -> String {
     let node = node_of(n.cell);
     let depth = |v: f32| short(1.0 / v);
     match (n.answer.is_hidden, n.answer.decisive) {
@@ -559,10 +615,13 @@ fn query_sentence(n: &Queried) -> String {
         }
         // It is in view, but nothing of it could be drawn.
         (true, None) => format!("Node {node} covers no pixel's center: it is hidden."),
+        (false, Some((_, held))) if held <= empty => {
+            format!("Somewhere where node {node} would show nothing is drawn yet: it is projected.")
+        }
         (false, Some((_, held))) => {
             format!(
-                "Node {node} begins at depth {}, and where it would show nothing nearer than {} is drawn: it \
-                 is projected.",
+                "Node {node} begins at depth {}, and somewhere where it would show the farthest thing drawn is \
+                 at {}, not before it: it is projected.",
                 depth(n.answer.nearest),
                 depth(held)
             )
@@ -660,6 +719,10 @@ pub fn draw<S: Cellular + Faces>(
         Some(Evidence::Queried(n)) => {
             let role = if n.answer.is_hidden { Role::Hidden } else { Role::Current };
             outline(index, n.cell, Layer::Emphasis, role, to);
+        }
+        Some(Evidence::Drawn(n)) => {
+            n.cell.into_iter().for_each(|cell| outline(index, cell, Layer::Emphasis, Role::Partial, to));
+            evidence::outline(scene, n.prim, to);
         }
         Some(Evidence::Compared(n)) => evidence::outline(scene, n.prim, to),
         Some(Evidence::Transferred(n)) => draw_transfer(n, index, view, to),

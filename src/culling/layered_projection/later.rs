@@ -54,10 +54,7 @@ impl Later {
         let mut list = DrawList { prims: walk.cut_off.clone(), stand_ins: Vec::new() };
         let mut further = walk.unlimited(&mut front, &mut list, &mut seen);
         further.hand_on(&last);
-        while further.spread().is_none() {
-            let Some(seed) = further.nearest_unreached() else { break };
-            further.grow_from(seed);
-        }
+        while further.spread().is_none() && further.begin_again().is_some() {}
         let mut of_cell = vec![NEVER; cells];
         let mut of_prim = vec![(last.cell, NEVER); walk.scene.prim_count()];
         let mut more = 0;

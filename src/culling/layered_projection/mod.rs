@@ -13,20 +13,13 @@
 //! 5. Extensions of Section 6: several seeds, queries of what the budget left out against the z-buffer, a
 //!    budget that grows until the image is good enough, and solidity by what faces the Eye ([`rest`]).
 //!
-//! Two sets of rules ([`rules`]). `rules=paper` is Figures 4 and 5 as they are printed. `rules=ours`, the
-//! default, differs where it finds more (`cullscope paper klosowski-silva-table-1` has both): the front grows
-//! over cells in view only and, where it runs dry before the budget does, starts again; v is the direction
-//! from the Eye to the cell's center, not one for the whole frame; all solidity is handed on in place of its
-//! part v · n, for through the oblique faces of tetrahedra that part shrinks from cell to cell; the penalty
-//! is added, not a factor; the value stands that came through the face toward the Eye, where in the paper the
-//! latest one replaces it.
-//!
-//! Departures of both, argued where they are made: in a cell that the border of the view cuts, primitives are
-//! tested one by one; the tessellation reaches to the corners of the region. The paper gives no penalty
-//! factor; ours is 2. Back faces are culled where `backface-culling` says so, since that is about the scene.
+//! Two sets of rules ([`rules`]): `rules=paper` is Figures 4 and 5 as they are printed, `rules=ours`, the
+//! default, differs where that finds more (`cullscope paper klosowski-silva-table-1` has both). Where they
+//! differ, and other departures, stand with the pseudocode ([`code`]).
 //! Cost: O(cells projected · log front) and the primitives in them; memory O(cells) a frame.
 
 mod cells;
+mod code;
 mod explain;
 mod front;
 mod index;
@@ -51,8 +44,8 @@ use crate::culling::depth::Faces;
 use crate::drawing::Drawing;
 use crate::index::tessellation::Cellular;
 use crate::method::{
-    Budget, Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    backface_knob, words,
+    Budget, Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
+    words,
 };
 use crate::raster::DepthScale;
 use crate::scene::{Progress, Scene};
@@ -113,39 +106,6 @@ impl Default for Params {
     }
 }
 
-// Figures 4 and 5. Line 7 also asks for the view: Section 4.2 culls by the frustum without saying in which
-// line.
-const CODE: &[CodeLine] = &[
-    CodeLine::new("RenderingLoop:1", "while the front F is not empty"),
-    CodeLine::new("RenderingLoop:2", "  c := the cell of least solidity of F"),
-    CodeLine::new("RenderingLoop:3", "  project c"),
-    CodeLine::new("RenderingLoop:4", "  if the budget is spent"),
-    CodeLine::new("RenderingLoop:5", "    break"),
-    CodeLine::new("RenderingLoop:6", "  for each cell n adjacent to c"),
-    CodeLine::new("RenderingLoop:7", "    if n is projected or out of view"),
-    CodeLine::new("RenderingLoop:8", "      continue"),
-    CodeLine::new("RenderingLoop:9", "    ρ := UpdateSolidity(n, c)"),
-    CodeLine::new("RenderingLoop:10", "    enqueue n with ρ"),
-    CodeLine::new("UpdateSolidity:1", "ρ(B) := |A| / ρ_max + (v · n(B)) ρ(A)"),
-    CodeLine::new("UpdateSolidity:2", "if B is not star-shaped toward the eye"),
-    CodeLine::new("UpdateSolidity:3", "  ρ(B) := ρ(B) + penalty"),
-    CodeLine::new("UpdateSolidity:4", "return ρ(B)"),
-    CodeLine::new("Section 6", "after the budget: project c unless the z-buffer hides it"),
-];
-
-/// Lines that the run reaches.
-mod line {
-    use super::CODE;
-    use crate::method::line;
-    pub const TAKE: u8 = line(CODE, "RenderingLoop:2");
-    pub const PROJECT: u8 = line(CODE, "RenderingLoop:3");
-    pub const SPENT: u8 = line(CODE, "RenderingLoop:5");
-    pub const SKIP: u8 = line(CODE, "RenderingLoop:8");
-    pub const ENQUEUE: u8 = line(CODE, "RenderingLoop:10");
-    pub const PENALTY: u8 = line(CODE, "UpdateSolidity:3");
-    pub const QUERY: u8 = line(CODE, "Section 6");
-}
-
 /// The paper, of which a parameter names the section.
 macro_rules! section {
     ($section:literal) => {
@@ -169,9 +129,9 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
                 Estimation. IEEE TVCG 6(2), 2000.",
         doi: "10.1109/2945.856993",
         conservative: false,
-        code: CODE,
-        stands: &[],
-        departures: &[],
+        code: code::CODE,
+        stands: code::STANDS,
+        departures: code::DEPARTURES,
     };
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         paper_knobs(params, knobs);
@@ -201,6 +161,9 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     ) {
         watch.event(Event::FrameBegan);
         Walk::new(frame, front, out, watch).run();
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        code::has_line(params, line)
     }
     fn is_conservative(params: &Params) -> bool {
         // Queries decide about all that the budget leaves; a budget of everything leaves nothing. A time may

@@ -7,15 +7,17 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use super::code::{either, line};
 use super::explain::{
-    Bounded, Compared, Ended, Evidence, Origin, Projected, Queried, Seeded, Spent, Transferred, Unreached,
+    Bounded, Compared, Drawn, Ended, Evidence, Origin, Projected, Queried, Seeded, Spent, Transferred,
+    Unreached,
 };
 use super::front::Front;
 use super::index::{Index, node_of};
 use super::later::Later;
 use super::rest::Rest;
-use super::rules::{Entering, Occupancy, Sight, Transfer, Update};
-use super::{LayeredProjection, Params, line};
+use super::rules::{Entering, Occupancy, Penalizing, Sight, Transfer, Update};
+use super::{LayeredProjection, Params};
 use crate::culling::depth::Faces;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
@@ -51,16 +53,16 @@ enum InView {
     Cut(u8),
 }
 
-/// A cell as it is seen in this frame; found out once, when the front reaches it.
+/// A cell as it is seen in this frame; found out once, when it is asked for.
 #[derive(Clone, Copy)]
 struct Aspect<V> {
     in_view: InView,
+    /// Whether what follows is known.
+    is_known: bool,
     /// How the way from its center to the Eye leaves it.
     exit: Exit,
     /// v, a unit vector.
     toward: V,
-    /// Whether the front grows over it.
-    is_entered: bool,
     /// Whether its solidity came through that exit.
     is_settled: bool,
 }
@@ -121,9 +123,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let Frame { index, scene, view, params, limit, .. } = *frame;
         let unseen = Aspect {
             in_view: InView::Unknown,
+            is_known: false,
             exit: Exit::Out,
             toward: S::Vector::default(),
-            is_entered: false,
             is_settled: false,
         };
         Self {
@@ -157,21 +159,22 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Entered(NodeId(0)));
         // 2. The paper places one cell in the front; more are its last extension.
         self.watch.stage("seed");
+        self.line(either(line::SEED, self.grows_everywhere()));
         let mut seed = self.seed();
+        if let Some(seeded) = seed {
+            self.grow_from(seeded);
+        }
         self.seeds_ahead();
         let mut last = None;
-        while let Some(seeded) = seed {
-            self.grow_from(seeded);
+        while seed.is_some() {
             // 3. and 4.
             self.watch.stage(if self.queries { "rest" } else { "spread" });
             last = self.spread();
             if last.is_some() {
                 break;
             }
-            // A departure: where the front grows over faces in view only it may run dry with something in
-            // view not reached, such as where the Eye is outside of all cells. The paper ends there.
             self.watch.stage("seed");
-            seed = self.nearest_unreached();
+            seed = self.begin_again();
         }
         // 5. What no cell decided.
         self.watch.stage("rest");
@@ -179,6 +182,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.draw_the_shared_rest();
         }
         self.report_drawn();
+        self.line(line::END);
         self.report_rest(last);
         self.watch.event(Event::DecidedNode(NodeId(0), Verdict::Partial));
         self.watch.event(Event::Left(NodeId(0)));
@@ -187,36 +191,55 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Projects cells until the front is empty, or until the budget is spent with the cell that is returned.
     pub(super) fn spread(&mut self) -> Option<Source> {
         // Lines 1 and 2: the cell leaves the front where it is projected or found hidden, below.
+        self.line(line::WHILE);
         while let Some((cell, solidity)) = self.front.least() {
-            self.watch.event(Event::Line(line::TAKE));
+            self.line(line::TAKE);
             // Line 3; past the budget only what the z-buffer does not hide (Section 6).
             if !self.queries || !self.is_hidden(cell, solidity) {
+                self.line(line::PROJECT);
                 self.project(cell, solidity);
             }
             let source = Source { cell, solidity, share: self.share(cell) };
             // Lines 4 and 5.
+            self.line(line::IF_SPENT);
             if self.left == 0 && !self.goes_on() {
-                self.watch.event(Event::Line(line::SPENT));
+                self.line(line::BREAK);
                 let (cells, drawn, cut_off) = (self.rank, self.out.prims.len(), self.cut_off.len() as u32);
                 let drawn = drawn as u32;
                 self.watch.note(|| Evidence::Spent(Spent { cell, solidity, cells, drawn, cut_off }));
                 return Some(source);
             }
             self.hand_on(&source);
+            self.line(line::WHILE);
         }
         None
     }
     /// Lines 6 to 10. A departure where the front keeps to the view: what is out of it is skipped like what
     /// was projected, for nothing of it is drawn, and what is in view beyond it is reached by other ways.
     pub(super) fn hand_on(&mut self, source: &Source) {
-        let cells = self.cells;
+        let (cells, everywhere) = (self.cells, self.grows_everywhere());
         for there in cells.neighbors(source.cell) {
-            if self.front.is_projected(there.cell) || !self.look(there.cell).is_entered {
-                self.watch.event(Event::Line(line::SKIP));
-            } else if let Some((solidity, is_star_shaped)) = self.update_solidity(there, source) {
+            self.line(line::EACH);
+            self.line(either(line::IF_DONE, everywhere));
+            if self.front.is_projected(there.cell) || !everywhere && !self.is_in_view(there.cell) {
+                self.line(line::CONTINUE);
+                continue;
+            }
+            self.line(line::UPDATE);
+            let update = self.update_solidity(there, source);
+            self.line(either(line::ENQUEUE, self.params.how.update == Update::Latest));
+            if let Some((solidity, is_star_shaped)) = update {
                 self.enqueue(there.cell, solidity, is_star_shaped);
             }
         }
+    }
+    /// Whether the front grows over cells out of view too.
+    fn grows_everywhere(&self) -> bool {
+        self.params.how.front == Entering::Everywhere
+    }
+    #[inline]
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
     }
 
     /// Section 6, with the budget spent: whether queries or the quality ask for more.
@@ -226,16 +249,21 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         rest.catch_up(self.scene, &self.out.prims);
         if self.params.queries {
             // First the budget, then queries for the rest, which now mostly find something in front.
+            self.line(line::ASK_ON);
             self.watch.stage("rest");
             (self.queries, self.left) = (true, usize::MAX);
         } else {
             // Adjust the budget until the image is as good as asked for. What could change a pixel is
             // bounded, not what does: the promise holds, and the budget is larger than it need be.
+            self.line(line::GROW);
             let most = 1.0 - self.params.quality as f32 / 100.0;
             let (share, bare) = self.doubt(&mut rest);
             let drawn = self.out.prims.len() as u32;
             self.watch.note(|| Evidence::Bounded(Bounded { share, most, drawn }));
-            bare.iter().for_each(|&prim| self.watch.event(Event::DecidedPrim(prim, Verdict::Visible)));
+            for prim in bare {
+                self.watch.note(|| Evidence::Drawn(Drawn { prim, cell: None }));
+                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+            }
             self.left = if share > most { (self.out.prims.len() / 2).max(LEAST_GROWTH) } else { 0 };
         }
         self.rest = Some(rest);
@@ -249,7 +277,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (mut doubt, mut bare) = (rest.doubt(self.view), Vec::new());
         // What meets one cell alone lies in its box.
         for cell in (0..index.count() as u32).map(CellId).filter(|c| !index.assignment.own(*c).is_empty()) {
-            if !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside {
+            if !self.front.is_projected(cell) && self.is_in_view(cell) {
                 doubt.of_box(&self.cells.bounds(cell));
             }
         }
@@ -277,11 +305,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         rest.catch_up(self.scene, &self.out.prims);
         // Out of view: projecting it draws nothing and lets the front grow on.
         let Some(answer) = rest.hides(&bounds) else { return false };
-        self.watch.event(Event::Line(line::QUERY));
+        self.watch.event(Event::Line(line::ASK));
         self.watch.event(Event::Entered(node));
         self.watch.note(|| Evidence::Queried(Queried { cell, solidity, answer }));
         // A hidden cell is done with, but its solidity goes on to its neighbors: they may be seen past it.
         if answer.is_hidden {
+            self.watch.event(Event::Line(line::LEAVE));
             self.front.leave_out(cell);
             self.rank += 1;
             self.watch.event(Event::DecidedNode(node, Verdict::Hidden));
@@ -294,9 +323,10 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // Out of view or facing away first: the z-buffer need not be read for those.
         let shared = self.index.assignment.all_shared();
         let mut open = Vec::new();
+        self.line(line::SHARED);
         for number in (0..shared.len()).filter(|n| !self.marks[*n]).collect::<Vec<_>>() {
             self.marks[number] = true;
-            match self.outside(shared[number], Frustum::<S::Vector>::ALL) {
+            match self.outside(shared[number], Frustum::<S::Vector>::ALL, [line::COMPARE; 2]) {
                 Some(verdict) => self.watch.event(Event::DecidedPrim(shared[number], verdict)),
                 None => open.push(shared[number]),
             }
@@ -313,6 +343,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 self.out.prims.push(prim);
             }
             let (rest, scene) = (&*rest, self.scene);
+            self.watch.event(Event::Line(line::COMPARE));
             self.watch
                 .note(|| Evidence::Compared(Compared { prim, depths: rest.depths(scene, prim), is_hidden }));
             let verdict = if is_hidden { Verdict::Hidden } else { Verdict::Visible };
@@ -328,7 +359,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if let Some(cell) = self.cells.locate(eye, CellId(0)) {
             return Some(Seeded { cell, distance: 0.0, origin: Origin::Eye });
         }
-        if self.params.how.front == Entering::InView {
+        if !self.grows_everywhere() {
             return self.nearest_unreached();
         }
         // The cells fill their region: the closest one holds the region's closest point.
@@ -337,14 +368,28 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let Some(cell) = self.cells.locate(at, CellId(0)) else { return self.nearest_unreached() };
         Some(Seeded { cell, distance: (eye - at).length(), origin: Origin::Closest })
     }
+    /// A departure: where the front grows over faces in view only it may run dry with something in view not
+    /// reached, such as where the Eye is outside of all cells. The paper ends there.
+    pub(super) fn begin_again(&mut self) -> Option<Seeded> {
+        // One that grows everywhere has reached all: cells hang together.
+        if self.grows_everywhere() {
+            return None;
+        }
+        self.line(line::AGAIN);
+        let seed = self.nearest_unreached();
+        if let Some(seeded) = seed {
+            self.grow_from(seeded);
+        }
+        seed
+    }
     /// Of the cells in view that hold something and were not projected, the one whose box is nearest. Once in
     /// a frame O(cells), then O(log cells) a cell that is passed over for good.
-    pub(super) fn nearest_unreached(&mut self) -> Option<Seeded> {
+    fn nearest_unreached(&mut self) -> Option<Seeded> {
         let mut nearest = self.nearest.take().unwrap_or_else(|| self.by_distance());
         let found = loop {
             let Some(Reverse((squared, cell))) = nearest.pop() else { break None };
             // Neither becomes untrue later, so the cell need not be kept.
-            if !self.front.is_projected(cell) && self.look(cell).in_view != InView::Outside {
+            if !self.front.is_projected(cell) && self.is_in_view(cell) {
                 break Some((f32::from_bits(squared), cell));
             }
         };
@@ -364,7 +409,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         keyed.collect::<Vec<_>>().into()
     }
     /// Puts a cell into the front for it to begin at.
-    pub(super) fn grow_from(&mut self, seeded: Seeded) {
+    fn grow_from(&mut self, seeded: Seeded) {
         self.watch.note(move || Evidence::Seeded(seeded));
         self.enqueue(seeded.cell, 0.0, true);
     }
@@ -375,6 +420,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let rows = self.view.projection().rows;
         let forward = rows[S::Vector::AXES - 1];
         for number in 1..self.params.seeds {
+            self.line(line::SEEDS);
             // Through the point whose coordinates are spread over −1 to 1: the rows are orthogonal.
             let ray = (0..S::Vector::AXES - 1).fold(forward, |ray, axis| {
                 let row = rows[axis];
@@ -406,51 +452,57 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Line 10.
     fn enqueue(&mut self, cell: CellId, solidity: f32, is_star_shaped: bool) {
-        self.watch.event(Event::Line(line::ENQUEUE));
         self.front.put(cell, solidity, is_star_shaped);
         self.watch.event(Event::Queued(node_of(cell), solidity));
     }
 
-    /// How a cell is seen; found out once a frame.
+    /// Where a cell lies in regard to the view volume; found out once a frame.
     #[inline]
-    fn look(&mut self, cell: CellId) -> Aspect<S::Vector> {
+    fn in_view(&mut self, cell: CellId) -> InView {
         if self.aspects[cell.at()].in_view == InView::Unknown {
-            self.aspects[cell.at()] = self.aspect(cell);
+            self.aspects[cell.at()].in_view = self.test(cell);
         }
-        self.aspects[cell.at()]
+        self.aspects[cell.at()].in_view
     }
     /// Whether a cell is not out of view.
     pub(super) fn is_in_view(&mut self, cell: CellId) -> bool {
-        self.look(cell).in_view != InView::Outside
+        self.in_view(cell) != InView::Outside
     }
-    fn aspect(&mut self, cell: CellId) -> Aspect<S::Vector> {
+    fn test(&mut self, cell: CellId) -> InView {
         let bounds = self.cells.bounds(cell);
         let planes = Frustum::<S::Vector>::ALL;
         let test = self.frustum.test(&bounds, planes);
         self.watch
             .note(move || Evidence::Tested(Tested::of(Subject::Node(node_of(cell)), &bounds, planes, test)));
-        let in_view = match test {
+        match test {
             FrustumTest::Outside(_) => {
                 self.watch.event(Event::DecidedNode(node_of(cell), Verdict::Outside));
                 InView::Outside
             }
             FrustumTest::Partial(cutting) => InView::Cut(cutting),
             FrustumTest::Inside => InView::Cut(0),
-        };
-        // A departure by default: v belongs to the cell. The paper has "the current viewing direction"
-        // (Figure 6), and a single one says nothing near the rim of a wide view.
-        let eye = self.view.eye.position;
-        let toward = match self.params.how.sight {
-            Sight::Frame => self.forward,
-            Sight::Cell => {
-                let way = self.cells.center(cell) - eye;
-                way * (1.0 / way.length().max(f32::MIN_POSITIVE))
-            }
-        };
-        // The way from the center to the Eye decides about the penalty, whichever neighbor asks later.
-        let is_entered = in_view != InView::Outside || self.params.how.front == Entering::Everywhere;
-        let exit = if is_entered { self.cells.exit(cell, eye) } else { Exit::Out };
-        Aspect { in_view, exit, toward, is_entered, is_settled: false }
+        }
+    }
+    /// How the front sees a cell; found out once a frame, when the front reaches it.
+    #[inline]
+    fn look(&mut self, cell: CellId) -> Aspect<S::Vector> {
+        if !self.aspects[cell.at()].is_known {
+            let eye = self.view.eye.position;
+            // A departure by default: v belongs to the cell. The paper has "the current viewing direction"
+            // (Figure 6), and a single one says nothing near the rim of a wide view.
+            let toward = match self.params.how.sight {
+                Sight::Frame => self.forward,
+                Sight::Cell => {
+                    let way = self.cells.center(cell) - eye;
+                    way * (1.0 / way.length().max(f32::MIN_POSITIVE))
+                }
+            };
+            // The way from the center to the Eye decides about the penalty, whichever neighbor asks later.
+            let exit = self.cells.exit(cell, eye);
+            let old = self.aspects[cell.at()];
+            self.aspects[cell.at()] = Aspect { is_known: true, exit, toward, ..old };
+        }
+        self.aspects[cell.at()]
     }
 
     /// |A| / ρ_max, or the part of it that faces the Eye (Section 6).
@@ -476,18 +528,26 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Figure 5: hands the solidity of cell A on to its neighbor B. `None` if B keeps what it has.
     fn update_solidity(&mut self, b: &Neighbor<S::Vector>, a: &Source) -> Option<(f32, bool)> {
-        let seen = self.aspects[b.cell.at()];
+        let seen = self.look(b.cell);
+        if self.params.occupancy == Occupancy::FrontFacing {
+            self.line(line::COUNT);
+        }
         // Line 1. As printed: through a face that the front crosses toward the Eye, solidity is taken away.
-        let how = &self.params.how;
+        let how = self.params.how;
         let along = match how.transfer {
             Transfer::Whole => 1.0,
             Transfer::Aligned => seen.toward.dot(b.normal),
         };
+        self.line(either(line::SUM, self.params.how.transfer == Transfer::Aligned));
         let sum = a.share + along * a.solidity;
+        self.line(line::IF_STAR);
         // Line 2, Section 3.2: the center of B is seen from the Eye along a ray through the shared face.
         let star_shaped = seen.exit == Exit::Ends || seen.exit == Exit::Into(a.cell);
         // Line 3. The paper does not say what the factor is; adding is a departure by default (see `rules`).
         let solidity = if star_shaped { sum } else { how.penalized(sum) };
+        if !star_shaped {
+            self.line(either(line::PENALTY, how.penalizing == Penalizing::Factor));
+        }
         // `enqueue` of Figure 4 reinserts with the latest value. A departure by default: a value that came
         // through the face the Eye sees B through is about what is in front of B; others are detours, and the
         // least of these stands until that one comes.
@@ -499,6 +559,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let (held, most) = (self.index.assignment.held(a.cell), self.index.assignment.most());
         let (cell, normal, sight) = (b.cell, b.normal, seen.toward);
         let (a, share, of_a) = (a.cell, a.share, a.solidity);
+        self.line(line::RETURN);
         self.watch.note(|| {
             Evidence::Transferred(Transferred {
                 a,
@@ -518,9 +579,6 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 keeps,
             })
         });
-        if !star_shaped {
-            self.watch.event(Event::Line(line::PENALTY));
-        }
         (!keeps).then_some((solidity, star_shaped))
     }
 
@@ -532,14 +590,15 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Draws what is in a cell and not drawn yet, as far as the budget goes.
     fn project(&mut self, cell: CellId, solidity: f32) {
         let (index, node) = (self.index, node_of(cell));
-        self.watch.event(Event::Line(line::PROJECT));
         self.watch.event(Event::Entered(node));
-        let in_view = self.look(cell).in_view;
+        self.line(line::IN_VIEW);
+        let in_view = self.in_view(cell);
         let (first, rank) = (self.out.prims.len(), self.rank);
         let mut own_end = first;
         // What the cell holds alone, then what it shares if no cell before it drew that: once a frame
         // (Section 4.1).
         if let InView::Cut(cutting) = in_view {
+            self.line(line::PRIMS);
             for &prim in index.assignment.own(cell) {
                 self.draw(prim, cutting);
             }
@@ -550,6 +609,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                     self.draw(index.assignment.all_shared()[number as usize], cutting);
                 }
             }
+            self.line(line::DRAW);
         }
         self.report_drawn();
         self.rank += 1;
@@ -557,26 +617,45 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             ((self.out.prims.len() - first) as u32, index.assignment.held(cell), self.budget_left());
         let (cut_off, is_in_view) = (self.cut_off.len() as u32, in_view != InView::Outside);
         self.front.project(cell);
+        let next = self.front.least().map(|(_, solidity)| solidity);
         self.watch.note(|| {
-            Evidence::Projected(Projected { cell, rank, solidity, held, drawn, cut_off, left, is_in_view })
+            Evidence::Projected(Projected {
+                cell,
+                rank,
+                solidity,
+                next,
+                held,
+                drawn,
+                cut_off,
+                left,
+                is_in_view,
+            })
         });
-        // What the cell holds alone is decided with it, unless the budget ended in it: then some is left out.
-        let is_whole = self.cut_off.is_empty();
-        self.report_visible(if is_whole { own_end } else { first });
         // One that is out of view was decided when it was looked at.
         if is_in_view {
-            let verdict = if is_whole { Verdict::Visible } else { Verdict::Partial };
-            self.watch.event(Event::DecidedNode(node, verdict));
+            self.report_projected(cell, first, own_end);
         }
         self.watch.event(Event::Left(node));
     }
-    /// Says of the primitives drawn since the first `from` that they are.
-    fn report_visible(&mut self, from: usize) {
-        if O::LISTENS {
-            for &prim in &self.out.prims[from..] {
+    /// Says of a cell, and of what was drawn with it since the first `first`, what was decided; the first
+    /// `own_end` are its own.
+    fn report_projected(&mut self, cell: CellId, first: usize, own_end: usize) {
+        if !O::LISTENS {
+            return;
+        }
+        for &prim in &self.out.prims[own_end..] {
+            self.watch.note(|| Evidence::Drawn(Drawn { prim, cell: Some(cell) }));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+        }
+        // What the cell holds alone is decided with it, unless the budget ended in it: then some is left out.
+        let is_whole = self.cut_off.is_empty();
+        if !is_whole {
+            for &prim in &self.out.prims[first..own_end] {
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
             }
         }
+        let verdict = if is_whole { Verdict::Visible } else { Verdict::Partial };
+        self.watch.event(Event::DecidedNode(node_of(cell), verdict));
     }
 
     /// Reports newly drawn primitives to the limit, which may end the frame.
@@ -592,7 +671,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// is drawn in part where the budget ends in it (Section 4.1), but whole where queries or the quality
     /// decide about the rest: those look at whole cells.
     fn draw(&mut self, prim: PrimId, cutting: u8) {
-        if let Some(verdict) = self.outside(prim, cutting) {
+        if let Some(verdict) = self.outside(prim, cutting, [line::OUTSIDE, line::FACING]) {
             self.watch.event(Event::DecidedPrim(prim, verdict));
         } else if self.left == 0 && self.rest.is_none() {
             self.cut_off.push(prim);
@@ -604,8 +683,8 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             }
         }
     }
-    /// Whether a primitive lies beyond one of these planes or faces away.
-    fn outside(&mut self, prim: PrimId, cutting: u8) -> Option<Verdict> {
+    /// Whether a primitive lies beyond one of these planes or faces away, which is said at these lines.
+    fn outside(&mut self, prim: PrimId, cutting: u8, at: [u8; 2]) -> Option<Verdict> {
         let (scene, view) = (self.scene, self.view);
         // A departure: the paper culls by the view frustum without saying at what; here cells, and primitives
         // one by one where a cell is cut.
@@ -613,12 +692,14 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let bounds: Aabb<S::Vector> = scene.prim_bounds(prim);
             let test = self.frustum.test(&bounds, cutting);
             if matches!(test, FrustumTest::Outside(_)) {
+                self.line(at[0]);
                 self.watch
                     .note(move || Evidence::Tested(Tested::of(Subject::Prim(prim), &bounds, cutting, test)));
                 return Some(Verdict::Outside);
             }
         }
         if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+            self.line(at[1]);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             return Some(Verdict::FacesAway);
         }
@@ -692,7 +773,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.event(Event::DecidedPrim(prim, Verdict::OverBudget));
         } else if self.params.backface_culling && prim_faces_away(self.scene, self.view.eye.position, prim) {
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            self.watch.event(Event::DecidedPrim(prim, Verdict::Outside));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
         } else {
             // Its box may reach into view, but none of its cells does, or one of them would have drawn it.
             self.watch.note(|| Evidence::Unreached(Unreached { prim }));

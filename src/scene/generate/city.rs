@@ -11,7 +11,7 @@ use rand_pcg::Pcg32;
 use super::blocks::{CURB, Cell, City, House, Roof, STOREY};
 use super::furniture::{self as piece, Piece};
 use super::plan::signed;
-use super::shapes::{Frame, Sink, block};
+use super::shapes::{Frame, Sink, block, circle};
 use super::stand::{Inside, Spot};
 use super::walk::{EYE, Manner, figure_8};
 use super::{
@@ -49,6 +49,14 @@ pub(super) const GENERATOR: Generator = Generator {
             meaning: "blocks of about ten houses, at least 2; 0 chooses them by the number of polygons (12 \
                       for 109,000)",
         },
+        GeneratorParam {
+            name: "flight",
+            default: 0,
+            min: 0,
+            max: 1,
+            meaning: "1: its path is a flight around it, high enough to see all of it, as in Klosowski and \
+                      Silva 2000, Figure 10, not a walk",
+        },
     ],
     make,
 };
@@ -83,7 +91,9 @@ fn make(
     furnish(&mut sink, &city, seed, detail, polygons);
     let rest = Part { whole: progress, start: 0.5, length: 0.5 };
     let mut parts = assemble(sink.into_mesh(), "city", source, options, Report::default(), &rest)?;
-    parts.paths.push(walk(&city, parts.origin));
+    let path =
+        if values.get("flight") == 1 { flight(&city, parts.origin) } else { walk(&city, parts.origin) };
+    parts.paths.push(path);
     Ok(parts)
 }
 
@@ -295,6 +305,27 @@ fn walk(city: &City, origin: DVec3) -> ViewPath<Solid> {
     figure_8(&stops, &Manner { round: 3.0, ahead: 5.0, far: city.diagonal() }, origin)
 }
 
+/// Around the city and above it, its middle in sight: over the nearest roofs all others are seen, so what is
+/// nearest is mostly the furniture of the nearest houses, which nobody sees.
+fn flight(city: &City, origin: DVec3) -> ViewPath<Solid> {
+    /// Height above the ground and distance from the middle, as shares of the city's diagonal.
+    const HEIGHT: f64 = 0.3;
+    const AWAY: f64 = 0.43;
+    const STOPS: u32 = 16;
+    /// The paper's.
+    const VIEWS: u32 = 160;
+    let [wide, deep] = city.blocks;
+    let middle = (city.node(0, 0) + city.node(wide + 2, deep + 2)) * 0.5;
+    let diagonal = city.diagonal();
+    let stop = |k: u32| {
+        let (cosine, sine) = circle(k, STOPS);
+        let from = middle + DVec3::new(cosine, 0.0, sine) * (AWAY * diagonal);
+        (from.with_y(HEIGHT * diagonal), middle.with_y(0.0))
+    };
+    let stops: Vec<(DVec3, DVec3)> = (0..=STOPS).map(stop).collect();
+    super::walk::flight(&stops, VIEWS, 2.0 * diagonal, origin)
+}
+
 fn step(from: usize, to: usize) -> usize {
     if from < to { from + 1 } else { from - usize::from(from > to) }
 }
@@ -349,6 +380,27 @@ mod tests {
             let scene = city(&format!("city?polygons=30000&seed={seed}&blocks={blocks}"));
             assert_eq!(touched(&scene), None, "seed {seed}");
         }
+    }
+
+    #[test]
+    fn a_flight_sees_all_of_the_city_from_outside() {
+        let scene = city("city?polygons=20000&flight=1");
+        assert_eq!(hash_of(&scene), hash_of(&city("city?polygons=20000")), "the same city");
+        for view in &scene.paths()[0].views {
+            assert!(view.eye.fault().is_none() && view.eye.position.y > scene.bounds().max.y);
+            let seen = scene.live().iter().filter(|p| {
+                let planes = crate::geometry::Frustum::<glam::Vec3>::ALL;
+                let test = view.frustum().test(&scene.prim_bounds(**p), planes);
+                !matches!(test, crate::geometry::FrustumTest::Outside(_))
+            });
+            assert!(seen.count() * 10 > scene.live().len() * 8, "{view:?}");
+        }
+    }
+
+    /// What is in a scene, without its paths.
+    fn hash_of(scene: &Scene<Solid>) -> (usize, u64) {
+        let bits = scene.points().iter().flat_map(|p| p.to_array()).map(|v| u64::from(v.to_bits()));
+        (scene.prim_count(), bits.fold(0, |sum, v| sum.rotate_left(5) ^ v))
     }
 
     /// Upright edges of walls that meet, in streets and between houses of different heights, are the same
