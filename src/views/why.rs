@@ -80,12 +80,10 @@ fn reason(state: &State, because: &Because, ui: &mut egui::Ui, answers: &mut Ans
                 Some(_) if is_here => {
                     ui.weak("This is the present step.");
                 }
-                Some(step) => {
-                    if ui.link(format!("Go to step {step}")).clicked() {
-                        answers.push(Command::GoTo(step));
-                    }
+                Some(step) if ui.link(format!("Go to step {step}")).clicked() => {
+                    answers.push(Command::GoTo(step));
                 }
-                None => {}
+                _ => {}
             }
             if let Some((subject, name)) = &because.by
                 && ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked()

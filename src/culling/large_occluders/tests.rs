@@ -9,6 +9,7 @@ use rand_pcg::rand_core::Rng;
 use super::parts::{Blockers, Occlusion, outline_seen_from, tangent_corners};
 use super::space::Shape;
 use crate::culling::Methods;
+use crate::drawing::Subject;
 use crate::geometry::{Aabb, Flat, Solid, Space, Vector, View, orient2d, orient3d};
 use crate::method::{Run, Settings};
 use crate::scene::{
