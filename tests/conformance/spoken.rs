@@ -252,11 +252,16 @@ fn behind_a_bent_wall() -> Arc<Scene<Solid>> {
     Arc::new(Scene::new(parts).expect("a valid scene"))
 }
 
-/// A scene that no occluder can hide any of, since there is nothing else.
+/// A scene that no occluder hides any of: there is nothing else, and the eye sees it from its edge.
 fn alone<S: Space>(prim: S::Corners) -> Arc<Scene<S>> {
     let corner = |k: usize| S::Vector::from_fn(|a| if a == k { 1.0 } else { 0.25 });
-    let points = (0..S::CORNERS).map(corner).collect();
-    Arc::new(Scene::new(Parts::simple("alone", points, vec![prim])).expect("a valid scene"))
+    let points: Vec<_> = (0..S::CORNERS).map(corner).collect();
+    let mut parts = Parts::simple("alone", points.clone(), vec![prim]);
+    let mut view = framing_view(&Aabb::of(points.iter().copied()), 96, 96);
+    (view.eye.position, view.eye.target) = (points[0] + (points[0] - points[1]) * 4.0, points[0]);
+    (view.eye.near, view.eye.far) = (0.1, 100.0);
+    parts.paths = vec![ViewPath::single(view)];
+    Arc::new(Scene::new(parts).expect("a valid scene"))
 }
 
 #[test]
