@@ -80,17 +80,47 @@ fn fragments<S: Drawable>(
     found
 }
 
+/// Kendall's rank correlation of layers and places, over the pairs of different layers: 1 if all lower layers
+/// come first. `layers` is by place; 0 are left out. 1 where no two layers differ.
+pub fn layer_correlation(layers: &[u32]) -> f64 {
+    // A tree of counts by layer (Fenwick): for each triangle how many of a lower and how many of a higher
+    // layer came before it. O(n log layers).
+    let most = layers.iter().copied().max().unwrap_or(0) as usize;
+    let (mut counts, mut seen) = (vec![0u64; most + 1], 0);
+    let (mut right, mut wrong) = (0u64, 0u64);
+    for &layer in layers.iter().filter(|layer| **layer > 0) {
+        let up_to = |mut at: usize| {
+            let mut sum = 0;
+            while at > 0 {
+                sum += counts[at];
+                at &= at - 1;
+            }
+            sum
+        };
+        right += up_to(layer as usize - 1);
+        wrong += seen - up_to(layer as usize);
+        let mut at = layer as usize;
+        while at <= most {
+            counts[at] += 1;
+            at += at & at.wrapping_neg();
+        }
+        seen += 1;
+    }
+    if right + wrong == 0 { 1.0 } else { (right as f64 - wrong as f64) / (right + wrong) as f64 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::{Flat, Solid};
     use crate::raster::{render, visible};
-    use crate::scene::{random_views, samples};
+    use crate::scene::{framing_view, random_views, samples};
 
     fn is_the_least_rank<S: Drawable>(seed: u64) {
         let scene = samples::soup::<S>(seed, 200);
         let mut deepest = 0;
-        for mut view in random_views(&*scene, 6, 5) {
+        let outside = framing_view(&scene.bounds(), 48, 48);
+        for mut view in random_views(&*scene, 3, 5).into_iter().chain([outside]) {
             (view.width, view.height) = (48, view.height.min(48));
             let numbers = layering_numbers(&scene, &view, false);
             let seen = visible(&render(&*scene, &view, scene.live()));
@@ -122,5 +152,21 @@ mod tests {
     fn it_is_the_least_rank_over_all_pixels() {
         is_the_least_rank::<Flat>(3);
         is_the_least_rank::<Solid>(4);
+    }
+
+    #[test]
+    fn a_correlation_is_that_of_all_pairs() {
+        assert_eq!(layer_correlation(&[1, 1, 2, 0, 2, 3]), 1.0, "by layers, ties either way");
+        assert_eq!(layer_correlation(&[3, 2, 1]), -1.0);
+        // Pairs of different layers: (2, 1) wrong, (2, 3), (1, 2), (1, 3), (2, 3) right, (3, 2) wrong.
+        let layers = [2, 1, 3, 0, 2];
+        let (mut right, mut wrong) = (0.0, 0.0);
+        for (i, a) in layers.iter().enumerate().filter(|(_, a)| **a > 0) {
+            for b in layers[i + 1..].iter().filter(|b| **b > 0 && *b != a) {
+                if a < b { right += 1.0 } else { wrong += 1.0 }
+            }
+        }
+        assert_eq!(layer_correlation(&layers), (right - wrong) / (right + wrong));
+        assert_eq!(layer_correlation(&[1, 1]), 1.0);
     }
 }

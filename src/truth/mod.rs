@@ -9,7 +9,7 @@ mod hidden;
 mod layering;
 
 pub use flip::flip_mean;
-pub use layering::layering_numbers;
+pub use layering::{layer_correlation, layering_numbers};
 
 use glam::DVec3;
 

@@ -514,7 +514,8 @@ fn has_evidence<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, verdicts: &
                 assert!(is_about(&*film, film.subject(evidence), film.subject(at)), "{place}");
                 let claim = film.claim(evidence).map(|c| c.word());
                 match verdict {
-                    Verdict::Outside => assert!(matches!(claim, Some("outside" | "faces-away")), "{place}"),
+                    Verdict::Outside => assert_eq!(claim, Some("outside"), "{place}"),
+                    Verdict::FacesAway => assert_eq!(claim, Some("faces-away"), "{place}"),
                     // Without queries only what no cell in view holds.
                     Verdict::Hidden => assert!(
                         claim == Some("hidden") || film.kind(evidence) == "PrimUnreached",

@@ -1,8 +1,9 @@
 //! The figures of Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set
 //! Estimation", IEEE TVCG 6(2), 2000, made anew by running the method: Figures 2, 3, 6, 7, 9, 13 and 14, in
-//! flatland where that shows it better.
+//! flatland where that shows it better. They follow the paper's rules (`rules=paper`) unless they say otherwise.
 
 mod cells;
+mod layering;
 mod missed;
 mod model;
 mod notes;
@@ -55,5 +56,11 @@ pub const FIGURES: &[Figure] = &[
         former: Some("layered-projection-14"),
         summary: "Images and missed pixels with a budget: centroid, octree, Delaunay",
         make: missed::images,
+    },
+    Figure {
+        name: "klosowski-silva-layering",
+        former: None,
+        summary: "Layers of primitives beside the order of their projection",
+        make: layering::layers,
     },
 ];

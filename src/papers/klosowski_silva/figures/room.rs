@@ -219,8 +219,7 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
             &scene,
             &sight,
             LAYERED_PROJECTION,
-            &[&cells[..], &[("budget", "25%"), ("transfer", "aligned"), ("penalty", "100"), ("seed", "1")]]
-                .concat(),
+            &[&cells[..], &[("budget", "25%"), ("rules", "paper"), ("seed", "1")]].concat(),
         )
     };
     let content = panels(
@@ -244,7 +243,7 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
          occupied cells that still wait, as far as no drawn triangle hides them (leaf-size 14 %). Below: all \
          cells in view where a horizontal plane cuts them (leaf-size 7 %). Cells near the Eye and empty ones \
          come first; among the chairs many wait. Cells that reach far out of the room are not shown. Frame \
-         {FRAME} of the flight.",
+         {FRAME} of the flight, rules=paper, budget=25%, seed=1.",
         scene.live().len()
     );
     Ok(page(Paper::TwoColumns, "What was projected, seen from outside", legend, caption, &content))

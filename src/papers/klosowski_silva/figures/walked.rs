@@ -58,8 +58,9 @@ fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
         ("tessellation", "delaunay"),
         ("leaf-size", "13"),
         ("budget", "70"),
-        ("transfer", "aligned"),
-        ("penalty", "100"),
+        ("rules", "paper"),
+        // As in the paper's figure, which has no star-shape test.
+        ("penalty", "0"),
         ("seed", "1"),
     ];
     Ok(film(&scene, &eye(&scene, 0), LAYERED_PROJECTION, &pairs))
@@ -176,9 +177,10 @@ pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
     let caption = "The front grows from the cell of the Eye (a), always over its cell of least solidity (b). \
                    Between two thickets is a bottleneck: cells in and behind the thickets have gathered \
                    solidity and wait (c), while the front goes on through the gap and spreads behind it (d). \
-                   So what is seen through the gap is drawn before what lies deep in the thickets. Cells \
-                   that are reached sideways, not through the face that the Eye sees them by, pay a penalty. \
-                   Scene bottleneck, Delaunay cells, leaf-size 13 %, budget 70 segments.";
+                   So what is seen through the gap is drawn before what lies deep in the thickets. As in \
+                   the paper's figure there is no penalty for cells that are not star-shaped. Scene \
+                   bottleneck, rules=paper, penalty=0, tessellation=delaunay, leaf-size=13, budget=70, \
+                   seed=1.";
     Ok(page(Paper::TwoColumns, "The traversal, past a bottleneck", legend, caption, &content))
 }
 

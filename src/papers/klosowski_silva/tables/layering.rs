@@ -13,7 +13,7 @@ use crate::measure::harness::path::{about, path};
 use crate::measure::harness::{checkpoint, mean, part};
 use crate::measure::{Setup, Table};
 use crate::scene::{Progress, Scene};
-use crate::truth::layering_numbers;
+use crate::truth::{layer_correlation, layering_numbers};
 
 pub const SWEEP: Sweep = Sweep {
     columns: &[
@@ -59,7 +59,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
                 let layers = order.iter().take(count).filter(|layer| **layer > 0);
                 mean(layers.map(|layer| f64::from(*layer)))
             });
-            found.push([correlation(&order), first, tenth, all]);
+            found.push([layer_correlation(&order), first, tenth, all]);
         }
     }
     let about = about(scene, &path);
@@ -70,35 +70,6 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         measured(&about.name, WAYS[w].cells(), numbers)
     };
     Ok(((0..WAYS.len()).map(row).collect(), about))
-}
-
-/// Kendall's rank correlation of layers and places, over the pairs of different layers: 1 if all lower layers
-/// come first. `layers` is by place; 0 are left out. 1 where no two layers differ.
-fn correlation(layers: &[u32]) -> f64 {
-    // A tree of counts by layer (Fenwick): for each triangle how many of a lower and how many of a higher
-    // layer came before it. O(n log layers).
-    let most = layers.iter().copied().max().unwrap_or(0) as usize;
-    let (mut counts, mut seen) = (vec![0u64; most + 1], 0);
-    let (mut right, mut wrong) = (0u64, 0u64);
-    for &layer in layers.iter().filter(|layer| **layer > 0) {
-        let up_to = |mut at: usize| {
-            let mut sum = 0;
-            while at > 0 {
-                sum += counts[at];
-                at &= at - 1;
-            }
-            sum
-        };
-        right += up_to(layer as usize - 1);
-        wrong += seen - up_to(layer as usize);
-        let mut at = layer as usize;
-        while at <= most {
-            counts[at] += 1;
-            at += at & at.wrapping_neg();
-        }
-        seen += 1;
-    }
-    if right + wrong == 0 { 1.0 } else { (right as f64 - wrong as f64) / (right + wrong) as f64 }
 }
 
 fn plots(table: &Table) -> Vec<Plot> {
@@ -114,25 +85,4 @@ fn plots(table: &Table) -> Vec<Plot> {
         }
     };
     by_scene(table).into_iter().map(bars).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_correlation_is_that_of_all_pairs() {
-        assert_eq!(correlation(&[1, 1, 2, 0, 2, 3]), 1.0, "by layers, ties either way");
-        assert_eq!(correlation(&[3, 2, 1]), -1.0);
-        // Pairs of different layers: (2, 1) wrong, (2, 3), (1, 2), (1, 3), (2, 3) right, (3, 2) wrong.
-        let layers = [2, 1, 3, 0, 2];
-        let (mut right, mut wrong) = (0.0, 0.0);
-        for (i, a) in layers.iter().enumerate().filter(|(_, a)| **a > 0) {
-            for b in layers[i + 1..].iter().filter(|b| **b > 0 && *b != a) {
-                if a < b { right += 1.0 } else { wrong += 1.0 }
-            }
-        }
-        assert_eq!(correlation(&layers), (right - wrong) / (right + wrong));
-        assert_eq!(correlation(&[1, 1]), 1.0);
-    }
 }
