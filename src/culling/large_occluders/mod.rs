@@ -339,8 +339,10 @@ impl<S: Shape> Method<S> for LargeOccluders {
             line::CROSSING => params.cells && params.tree_height != 1,
             // The root holds the occluders themselves, so none can hide it.
             line::OCCLUDED => params.tree_height != 1,
-            line::JOINTLY | line::JOINT if params.tree_height == 1 && !params.detail_objects => false,
-            line::JOINTLY | line::JOINT => params.occluders > 1,
+            // An object may have one of the active occluders and another of those near it.
+            line::JOINTLY | line::JOINT => {
+                params.detail_objects || params.occluders > 1 && params.tree_height != 1
+            }
             line::DRAW_ALL => !params.detail_objects,
             line::OBJECT..=line::DRAW_OBJECT => params.detail_objects,
             line::POLYGON..=line::DRAW => params.backface_culling,
