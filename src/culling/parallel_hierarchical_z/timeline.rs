@@ -11,7 +11,7 @@ use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics}
 /// Left end of the bars, width of the column of shares at their right, and the rows.
 const LEFT_PT: f32 = 78.0;
 const SHARES_PT: f32 = 36.0;
-const ROW_PT: f32 = 15.0;
+const ROW_PT: f32 = 12.0;
 const TOP_PT: f32 = 16.0;
 
 /// A row a unit, time to the right.
@@ -52,7 +52,7 @@ fn place(tick: u32, end: u32) -> f32 {
 
 /// What a unit did, and the share of the frame in which it worked.
 fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
-    to.text(Layer::Labels, Role::Ink, vec2(0.0, y + 9.0), 8.0, Anchor::Start, unit.name());
+    to.text(Layer::Labels, Role::Ink, vec2(0.0, y + 7.0), 8.0, Anchor::Start, unit.name());
     let mut busy = 0;
     for w in work.iter().filter(|w| w.unit == unit) {
         let role = match w.job {
@@ -69,11 +69,11 @@ fn row(unit: Unit, work: &[Worked], y: f32, end: u32, to: &mut Drawing) {
         busy += if w.job == Job::Wait { 0 } else { w.to - w.from };
         // The shortest job is still to be seen.
         let (from, till) = (place(w.from, end), place(w.to, end).max(place(w.from, end) + 0.3));
-        let (a, b) = (vec2(from, y), vec2(till, y + ROW_PT - 4.0));
+        let (a, b) = (vec2(from, y), vec2(till, y + ROW_PT - 3.0));
         to.push(Layer::Areas, role, w.subject(), Mark::Area(rectangle(a, b)));
     }
     let share = format!("{} %", (100.0 * busy as f32 / end.max(1) as f32).round());
-    to.text(Layer::Labels, Role::Faint, vec2(WIDTH_PT, y + 9.0), 8.0, Anchor::End, share);
+    to.text(Layer::Labels, Role::Faint, vec2(WIDTH_PT, y + 7.0), 8.0, Anchor::End, share);
 }
 
 /// What the bars mean, from `top` on; returns where it ends.

@@ -6,7 +6,7 @@ use glam::vec2;
 
 use super::pyramid::office;
 use crate::culling::Methods;
-use crate::drawing::{Anchor, Drawing, Item, Layer, Mark, Role};
+use crate::drawing::{Anchor, Drawing, Item, Layer, Mark, Role, words};
 use crate::figure::page::{below, legend};
 use crate::figure::tools::{Tint, WIDTH_PT, eye, flat_panel, page, ready};
 use crate::figure::{Look, Paper, panels};
@@ -124,7 +124,7 @@ pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
          them; hybrid, cubes are dealt out in turn and a processor asks for several of its own at once; by \
          subtree, which is not in the paper, whole parts of the scene go to one processor. At the right the \
          share of the frame in which a unit works. Of the processors, and the time of the frame: {}.",
-        scene.live().len(),
+        words::count(scene.live().len()),
         measured.join("; ")
     );
     Ok(page(
