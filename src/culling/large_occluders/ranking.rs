@@ -13,8 +13,8 @@ use super::space::{Point, Shape};
 use crate::geometry::{Aabb, NodeId, PrimId, Vector};
 use crate::index::{Hierarchy, KdTree};
 
-/// Occluders in a leaf: an area-angle costs about as much as opening a node.
-const LEAF: usize = 4;
+/// Occluders in a leaf: an area-angle costs less than a place in the queue, which most are too small to get.
+const LEAF: usize = 16;
 /// What rounding may add to an area-angle in f64, generously.
 const ROUNDING: f64 = 1.0 + 1e-12;
 

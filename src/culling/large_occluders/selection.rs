@@ -215,7 +215,7 @@ impl Selection {
     ) {
         let way = &self.ways[direction as usize];
         let (mut search, mut places) = (ranking.from(occluders, from, 0.0), Vec::new());
-        while let Some((id, score)) = search.next(|bounds| reaches::<S>(bounds, from, way)) {
+        while let Some((id, score)) = search.next(|bounds| Ball::of::<S>(bounds, from).reaches::<S>(way)) {
             places_of(occluders, id, from, &mut places);
             if is_toward::<S>(&places, way) && !take(id, score) {
                 return;
@@ -367,7 +367,8 @@ impl<S: Shape> Ranker<'_, S> {
         // nothing more, so most of the scene is never looked at.
         while growing.iter().any(|g| !g.is_done) {
             let next = search.next(|bounds| {
-                self.ways.iter().zip(&growing).any(|(way, g)| !g.is_done && reaches::<S>(bounds, from, way))
+                let ball = Ball::of::<S>(bounds, from);
+                self.ways.iter().zip(&growing).any(|(way, g)| !g.is_done && ball.reaches::<S>(way))
             });
             let Some((id, score)) = next else { break };
             if !self.can_hide(id, cell, from) {
@@ -440,10 +441,23 @@ fn is_toward<S: Shape>(places: &[(S::Point, f64)], way: &Way) -> bool {
     places.iter().any(|(v, length)| along::<S>(*v, way) >= way.cone * length)
 }
 
-/// Whether some point of a box may lie within a cone.
-fn reaches<S: Shape>(bounds: &Aabb<S::Vector>, from: S::Point, way: &Way) -> bool {
-    let v = S::widened(bounds.center()) - from;
-    // What `is_toward` compares changes by no more than 1 + |cosine| a unit of way.
-    let radius = f64::from(bounds.diagonal()) * 0.5 * (1.0 + 1e-6);
-    along::<S>(v, way) - way.cone * v.length() >= -radius * (1.0 + way.cone.abs())
+/// A ball about a box, as seen from a point.
+struct Ball<P> {
+    center: P,
+    distance: f64,
+    radius: f64,
+}
+
+impl<P: Point> Ball<P> {
+    fn of<S: Shape<Point = P>>(bounds: &Aabb<S::Vector>, from: P) -> Self {
+        let center = S::widened(bounds.center()) - from;
+        // The center and the diagonal were rounded to 32 bits.
+        let radius = f64::from(bounds.diagonal()) * 0.5 * (1.0 + 1e-6);
+        Self { center, distance: center.length(), radius }
+    }
+    /// Whether some point of it may lie within a cone.
+    fn reaches<S: Shape<Point = P>>(&self, way: &Way) -> bool {
+        // What `is_toward` compares changes by no more than 1 + |cosine| a unit of way.
+        along::<S>(self.center, way) - way.cone * self.distance >= -self.radius * (1.0 + way.cone.abs())
+    }
 }
