@@ -28,7 +28,6 @@ impl State {
     /// What is open, as a session.
     pub fn session(&self) -> Session {
         let stage = self.staged();
-        let moved = stage.is_some_and(|s| s.is_eye_moved());
         let s = &self.shown;
         Session {
             cullscope_session: VERSION,
@@ -37,7 +36,8 @@ impl State {
             method: self.method.clone(),
             settings: self.settings.0.clone(),
             place: stage.map_or((0, 0), |s| s.place()),
-            eye: self.stage.as_ref().filter(|_| moved).map(|s| ViewRecord::from(&s.view())),
+            // Also where it was not moved: its path may be a flight, or a file that is not named here.
+            eye: self.stage.as_ref().map(|s| ViewRecord::from(&s.view())),
             step: self.step,
             coarse: self.detail == Detail::Coarse,
             selected: picked(self.selection),

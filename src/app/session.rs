@@ -120,7 +120,7 @@ pub struct Session {
     /// View path and view in it.
     #[serde(default)]
     pub place: (usize, usize),
-    /// The Eye, if it was moved away from its path.
+    /// The Eye.
     #[serde(default)]
     pub eye: Option<ViewRecord>,
     /// The step.

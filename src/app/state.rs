@@ -203,16 +203,10 @@ impl State {
         let film = self.film()?;
         film.moves.line(film.reel.events(), self.step)
     }
-    /// What the current event, or the evidence around it, is about.
+    /// What the current event is about; nothing if it is about no single thing.
     pub fn current_subject(&self) -> Subject {
         let (Some(film), Some(at)) = (self.film(), self.current()) else { return Subject::None };
-        match film.reel.subject(at) {
-            Subject::None => {
-                let open = film.moves.stack(film.reel.events(), self.step);
-                open.last().map_or(Subject::None, |&node| Subject::Node(node))
-            }
-            subject => subject,
-        }
+        film.reel.subject(at)
     }
     /// What is on screen in a picture of this state.
     pub fn look(&self) -> Look {

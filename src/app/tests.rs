@@ -343,6 +343,25 @@ fn folder_with_a_box(name: &str) -> std::path::PathBuf {
     folder
 }
 
+#[test]
+fn a_session_keeps_the_eye_of_a_flight() {
+    let mut state = opened(FLAT);
+    state.folder = std::env::temp_dir();
+    state.apply(Action::Flight);
+    let Some(Either::Flat(mut view)) = state.stage.as_ref().map(|s| s.view()) else { panic!("flatland") };
+    view.eye.position.x += 1.0;
+    state.apply(Command::Eye(Either::Flat(view), 0));
+    state.apply(Action::Flight);
+    let path = state.staged().map_or(0, |s| s.place().0);
+    state.apply(Command::Frame(path, 1));
+    state.block_until_idle();
+    let _ = std::fs::remove_file(state.folder.join(format!("{FLAT}-flight.views.json")));
+    let mut other = State::new();
+    other.restore(state.session(), None);
+    other.block_until_idle();
+    assert_eq!(other.stage.as_ref().map(|s| s.view()), state.stage.as_ref().map(|s| s.view()));
+}
+
 fn solid_view(state: &State) -> View<Solid> {
     let Some(Either::Solid(stage)) = &state.stage else { panic!("a stage of space") };
     stage.view

@@ -68,7 +68,7 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
         (way.0, way.1) = (way.0 + 1, way.1.min(at));
     }
     for (&(verdict, ground), (_, first)) in &ways {
-        if let Some(told) = by_verdict.get_mut(&verdict).filter(|_| *first <= step) {
+        if let Some(told) = by_verdict.get_mut(&verdict).filter(|_| *first <= step && is_hidden(verdict)) {
             told.1.extend(hider(scene, film, ground).map(|(_, name)| name));
         }
     }
@@ -101,12 +101,18 @@ fn reasons(scene: &dyn SceneFacts, film: Reading<'_>, ways: Ways, lines: &mut Ve
         };
         let reason = if *ground < events.len() { film.reel.sentence(*ground) } else { String::new() };
         let text = format!("{} {}{place}, at step {at}. {reason}", count(*n), spoken(*verdict));
-        lines.push(Because { by: hider(scene, film, *ground), ..because(text.trim_end(), Some(*at)) });
+        let by = is_hidden(*verdict).then(|| hider(scene, film, *ground)).flatten();
+        lines.push(Because { by, ..because(text.trim_end(), Some(*at)) });
     }
     let more: usize = ways.iter().skip(WAYS).map(|(_, (n, _))| n).sum();
     if more > 0 {
         lines.push(because(format!("{} more for {} other reasons.", count(more), ways.len() - WAYS), None));
     }
+}
+
+/// Whether something hides what has this verdict.
+fn is_hidden(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Hidden | Verdict::Presumed)
 }
 
 /// What the evidence `at` says hides the thing, if it names one.
@@ -252,7 +258,11 @@ fn why_node(stage: &dyn Staged, film: Reading<'_>, node: NodeId, step: usize) ->
 fn evidence(scene: &dyn SceneFacts, film: Reading<'_>, at: usize) -> Vec<Because> {
     let decision = at - 1;
     let noted = film.reel.evidence_of(decision);
-    let told = |i| Because { by: hider(scene, film, i), ..because(film.reel.sentence(i), Some(i + 1)) };
+    let hides = film.reel.events()[decision].verdict().is_some_and(is_hidden);
+    let told = |i| {
+        let by = hides.then(|| hider(scene, film, i)).flatten();
+        Because { by, ..because(film.reel.sentence(i), Some(i + 1)) }
+    };
     noted.into_iter().chain([decision]).map(told).collect()
 }
 

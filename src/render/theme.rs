@@ -222,7 +222,7 @@ impl Theme {
                 dot: b.paper,
                 ..plain(mix(BROWN, b.ink, 0.2), 0.9)
             },
-            Role::Occluder => Style { fill: Some((b.ink, 0.62)), ..plain(b.ink, 2.4) },
+            Role::Occluder => Style { fill: Some((b.ink, 0.62)), ..plain(b.ink, 3.2) },
             Role::Approximated => Style {
                 dash: DASH_DOTS,
                 hatch: Hatch::Cross,

@@ -13,7 +13,7 @@ use crate::trace::Counts;
 pub type Reached = (u64, Vec<bool>);
 
 /// Least sizes of type: on a desk, and on a wall.
-const LEAST: f32 = 10.0;
+const LEAST: f32 = 11.0;
 const LEAST_IN_A_ROOM: f32 = 15.0;
 /// Indent of what stands below a line.
 const INDENT: f32 = 48.0;
@@ -34,7 +34,7 @@ pub fn show(state: &State, kept: &mut Option<Reached>, ui: &mut egui::Ui, answer
         d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)
     }) != Some(state.step);
     let width = ui.available_width() - ui.spacing().scroll.bar_width;
-    ScrollArea::both().auto_shrink(false).id_salt("code").show(ui, |ui| {
+    ScrollArea::vertical().auto_shrink(false).id_salt("code").show(ui, |ui| {
         let right = ui.cursor().left() + width;
         let least = if state.shown.layout == Layout::Lecture { LEAST_IN_A_ROOM } else { LEAST };
         let size = fitting_size(ui, card.code, width, least);
@@ -55,7 +55,8 @@ pub fn show(state: &State, kept: &mut Option<Reached>, ui: &mut egui::Ui, answer
                 aside(ui, right, &format!("paper: {}", line.paper.trim()));
             }
             if row.is_lit && is_new {
-                ui.scroll_to_rect(shown, None);
+                // With the lines around it.
+                ui.scroll_to_rect(shown.expand2(egui::vec2(0.0, 2.0 * size)), None);
             }
         }
         departures(card, ui, right);
@@ -130,7 +131,6 @@ struct Row<'a> {
 impl Row<'_> {
     /// Its breakpoint, a mark at the current one, its text; faint where this film never comes.
     fn show(&self, state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
-        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
         ui.spacing_mut().item_spacing.x = 4.0;
         let stops = state.breakpoints.contains(&Breakpoint::Line(self.number));
         let (icon, color) = match (stops, self.is_reached) {
@@ -157,6 +157,7 @@ impl Row<'_> {
             text = text.weak();
         }
         let click = if self.is_reached { "Click: to the next time that it runs" } else { never };
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Wrap);
         let response = ui.selectable_label(false, text).on_hover_text(format!("{label}\n{click}"));
         if response.clicked()
             && let Some(step) = next_time(state, self.number)
@@ -212,10 +213,16 @@ fn values(state: &State) -> String {
     let (Some(film), Some(at)) = (state.film(), state.current()) else { return String::new() };
     let event = film.reel.events()[at];
     let found = film.reel.evidence_at(state.step);
+    let is_line = matches!(event, Event::Line(_) | Event::FrameBegan);
+    // A line that leads to a test says nothing yet: what was found before is another test's.
+    let events = film.reel.events();
+    let next = events[at..].iter().find(|e| !matches!(e, Event::Line(_)));
+    if is_line && matches!(next, Some(Event::Noted(_))) {
+        return String::new();
+    }
     if let Some(compared) = found.and_then(|i| film.reel.compared(i)) {
         return compared.to_string();
     }
-    let is_line = matches!(event, Event::Line(_) | Event::FrameBegan);
     let shown = if is_line { found } else { Some(at) };
     let Some(i) = shown else { return String::new() };
     let fields = film.reel.fields(i).1;

@@ -53,7 +53,8 @@ pub fn show(
     paint_columns(state, stage, image, &painter, rect);
     painter.rect_stroke(layout(rect).1, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
     let distinct: std::collections::BTreeSet<_> = image.iter().flatten().map(|(p, _)| *p).collect();
-    let text = format!("{} pixels, {} segments seen", image.len(), distinct.len());
+    let plural = if distinct.len() == 1 { "" } else { "s" };
+    let text = format!("{} pixels, {} segment{plural} seen", image.len(), distinct.len());
     painter.text(
         pos2(rect.left() + 6.0, rect.top() + 4.0),
         Align2::LEFT_TOP,
