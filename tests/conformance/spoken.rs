@@ -10,10 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use cullscope::drawing::Subject;
-use cullscope::geometry::{Aabb, NodeId, ObjectId, Solid, Space, Vector, View, ViewPath};
+use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, Solid, Space, Vector, View, ViewPath};
 use cullscope::method::{Card, Claim, Event, Film, Verdict};
 use cullscope::scene::{Parts, Scene, framing_view};
-use glam::{Vec3, vec3};
+use glam::{vec2, vec3};
 
 use super::{World, flat_scenes, ready, settings, solid_scenes, views};
 
@@ -230,9 +230,10 @@ fn what_is_said_is_true<S: World>(scenes: &[Arc<Scene<S>>]) {
 }
 
 /// A wall of two polygons, bent along a vertical edge, that hides a small object only as a whole, and what
-/// makes the scene large; seen from in front of the wall.
+/// makes the scene large; seen from in front of the wall. From there the left polygon looks larger, from the
+/// object the right one.
 fn behind_a_bent_wall() -> Arc<Scene<Solid>> {
-    let mut points = [[-10.0, 0.0], [0.0, 2.0], [10.0, 0.0]]
+    let mut points = [[-30.0, 0.0], [0.0, 2.0], [10.0, 0.0]]
         .into_iter()
         .flat_map(|[x, z]| [-10.0, 10.0].map(|y| vec3(x, y, z)))
         .collect::<Vec<_>>();
@@ -242,11 +243,32 @@ fn behind_a_bent_wall() -> Arc<Scene<Solid>> {
     prims.extend([[6, 7, 8], [6, 7, 9], [6, 8, 9], [7, 8, 9]]);
     points.extend([vec3(-30.0, -30.0, -60.0), vec3(30.0, -30.0, -60.0), vec3(0.0, 40.0, -60.0)]);
     prims.push([10, 11, 12]);
+    bent_wall(points, prims, [2, 2, 4, 1], vec3(0.0, 0.0, 20.0))
+}
+
+/// The same in flatland.
+fn behind_a_bent_line() -> Arc<Scene<Flat>> {
+    let mut points = vec![vec2(-30.0, 0.0), vec2(0.0, 2.0), vec2(10.0, 0.0)];
+    points.extend([[-0.5, 0.0], [0.0, 0.5], [0.5, 0.0], [0.0, -0.5]].map(|[x, y]| vec2(x, y - 5.0)));
+    points.extend([vec2(-30.0, -60.0), vec2(30.0, -60.0)]);
+    let prims = vec![[0, 1], [1, 2], [3, 4], [4, 5], [5, 6], [6, 3], [7, 8]];
+    bent_wall(points, prims, [1, 1, 4, 1], vec2(0.0, 20.0))
+}
+
+/// The halves of the wall, the object and the rest, so many primitives of each, from an eye that looks at the
+/// origin.
+fn bent_wall<S: Space>(
+    points: Vec<S::Vector>,
+    prims: Vec<S::Corners>,
+    [left, right, object, rest]: [usize; 4],
+    eye: S::Vector,
+) -> Arc<Scene<S>> {
     let mut parts = Parts::simple("behind a bent wall", points, prims);
-    parts.prim_object = [0, 0, 0, 0, 1, 1, 1, 1, 2].map(ObjectId).to_vec();
-    parts.objects = vec![parts.objects[0].clone(); 3];
-    let mut view = framing_view(&Aabb { min: vec3(-10.0, -10.0, -9.0), max: vec3(10.0, 10.0, 3.0) }, 96, 96);
-    (view.eye.position, view.eye.target) = (vec3(0.0, 0.0, 20.0), Vec3::ZERO);
+    let objects = [(0, left + right), (1, object), (2, rest)];
+    parts.prim_object = objects.into_iter().flat_map(|(id, n)| vec![ObjectId(id); n]).collect();
+    parts.objects = vec![parts.objects[0].clone(); objects.len()];
+    let mut view = framing_view(&Aabb::of(parts.points.iter().copied()), 96, 96);
+    (view.eye.position, view.eye.target) = (eye, S::Vector::default());
     (view.eye.near, view.eye.far) = (0.1, 200.0);
     parts.paths = vec![ViewPath::single(view)];
     Arc::new(Scene::new(parts).expect("a valid scene"))
@@ -267,7 +289,7 @@ fn alone<S: Space>(prim: S::Corners) -> Arc<Scene<S>> {
 #[test]
 fn what_is_said_is_true_in_flatland() {
     let mut scenes = flat_scenes();
-    scenes.push(alone([0, 1]));
+    scenes.extend([behind_a_bent_line(), alone([0, 1])]);
     what_is_said_is_true(&scenes);
 }
 #[test]
