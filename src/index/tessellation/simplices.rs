@@ -19,6 +19,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// A center is moved by at most this share of its cell's size along each axis. The paper gives no amount; at
 /// an eighth it stays well inside its leaf.
 const JITTER: f32 = 0.125;
+/// A primitive that meets more cells than this is large beside them.
+const MANY: usize = 64;
 /// The vertices of the face opposite each vertex, so that the cell's inside is in front of the face.
 const FACES: [[[usize; 3]; 4]; 2] =
     [[[1, 2, 0], [2, 0, 0], [0, 1, 0], [0, 0, 0]], [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]]];
@@ -209,20 +211,26 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
         let mut seen = start;
         while seen < to.len() {
             let at = to[seen];
-            seen += 1;
-            let simplex = self.cells[at.at()];
-            for face in (0..Self::CORNERS).filter(|f| simplex.neighbors[*f] != NONE) {
-                let next = CellId(simplex.neighbors[face]);
+            // Read once for all faces: with many cells most of the time goes into fetching corners.
+            let (corners, neighbors) = (self.corners(at), self.cells[at.at()].neighbors);
+            for face in (0..Self::CORNERS).filter(|f| neighbors[*f] != NONE) {
+                let next = CellId(neighbors[face]);
                 // In the order of cost: tried already, some corner at or beyond the face, the separating axes.
-                // Those say the same whichever face a cell is reached by, so it is tried once, met or not.
-                let reaches = || prim.iter().any(|p| self.side(&simplex, face, *p) <= 0.0);
-                if !tried.has(next) && reaches() {
+                // Those say the same whichever face a cell is reached by, so it is tried once, met or not. Of
+                // a primitive that meets many cells some corner is beyond nearly every face.
+                if tried.has(next) {
+                    continue;
+                }
+                let sides = FACES[S::Vector::AXES - 2][face].map(|k| corners[k]);
+                let reaches = |p: &S::Vector| S::side(&sides[..S::CORNERS], *p) <= 0.0;
+                if seen - start >= MANY || prim.iter().any(reaches) {
                     tried.add(next);
                     if S::meets_simplex(prim, &self.corners(next)) {
                         to.push(next);
                     }
                 }
             }
+            seen += 1;
         }
     }
     fn edges(&self, cell: CellId) -> Vec<[S::Vector; 2]> {

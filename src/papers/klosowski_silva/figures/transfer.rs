@@ -139,9 +139,9 @@ fn draw_transfer(plan: &mut Plan, film: &dyn Film<Flat>, transfer: &Transfer, na
         plan.plate(label, LABEL_PT, Font::Bold, &text);
     }
     plan.dot(Role::Ink, center, 2.5);
-    // The name on the side away from the arrows.
+    // The name on the side away from the normal.
     let aside = (center - from).perp().normalize() * 11.0 * plan.unit;
-    let away = aside.dot((normal[0] + sight[0]) * 0.5 - center) < 0.0;
+    let away = aside.dot(normal[0] - center) < 0.0;
     plan.plate(center + if away { aside } else { -aside }, NAME_PT, Font::Bold, &name.to_string());
 }
 
