@@ -242,8 +242,8 @@ const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "3.1",
-        what: "only occluders that can hide something from where the eye is are active: of one-sided ones those \
-               that face it",
+        what: "only occluders that can hide something from where the eye is are active: of one-sided ones \
+               those that face it",
         why: "the others would take the places of those that hide something",
     },
     Departure {

@@ -75,7 +75,8 @@ pub struct Wanted {
     pub directions: u32,
     /// How many occluders are active at most.
     pub most: u32,
-    /// An occluder whose area-angle is below this share of the sum of those before it ends the list; 0: never.
+    /// An occluder whose area-angle is below this share of the sum of those before it ends the list; 0:
+    /// never.
     pub gain: f64,
     /// Whether occluders hide from their front only.
     pub one_sided: bool,
@@ -156,8 +157,8 @@ fn ways<S: Shape>(directions: u32) -> Vec<Way> {
         Way { along: if S::Vector::AXES == 2 { [x, y, 0.0] } else { [x, 0.0, -y] }, cone: cone(directions) }
     };
     let mut all: Vec<Way> = (0..directions).map(level).collect();
-    // "All possible viewing directions" (Section 3.1). With one, everything counts for it already; their share
-    // reaches as far as halfway to the ground plane, an eighth of a circle, as that of one of four.
+    // "All possible viewing directions" (Section 3.1). With one, everything counts for it already; their
+    // share reaches as far as halfway to the ground plane, an eighth of a circle, as that of one of four.
     if S::Vector::AXES == 3 && directions > 1 {
         all.extend([1.0, -1.0].map(|y| Way { along: [0.0, y, 0.0], cone: cone(4) }));
     }

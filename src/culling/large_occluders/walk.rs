@@ -386,9 +386,9 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Step 3: draws the primitives at and below a node that the planes `cutting` cut and the occluders `left`
-    /// partially occlude, but for detail objects that are out of view or that those or the occluders near them
-    /// hide.
+    /// Step 3: draws the primitives at and below a node that the planes `cutting` cut and the occluders
+    /// `left` partially occlude, but for detail objects that are out of view or that those or the occluders
+    /// near them hide.
     fn gather(&mut self, id: NodeId, cutting: u8, left: Range<usize>) {
         let index = self.index;
         self.line(line::GATHER);
@@ -478,8 +478,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// more than the margin of [`PARTS_DEPTH`].
     ///
     /// The rasterizer's depth is `z + dx·X + dy·Y` in 32 bits, X and Y from the farthest corner. The sum of
-    /// the terms' amounts exceeds the depth itself, along the plane's horizon, by at most `(1 + t)·L/H`: H the
-    /// distance of the eye from the plane, L the longest edge, t the tangent of the angle from the line of
+    /// the terms' amounts exceeds the depth itself, along the plane's horizon, by at most `(1 + t)·L/H`: H
+    /// the distance of the eye from the plane, L the longest edge, t the tangent of the angle from the line of
     /// sight to a corner of the image. Each term is rounded a few times by 2⁻²⁴. In flatland there is but one
     /// term.
     fn is_edge_on(&self, prim: PrimId) -> bool {
@@ -549,8 +549,8 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
         let (most, one_sided) = (self.params.occluders as usize, self.params.backface_culling);
         let (occluders, center) = (&index.occluders, S::widened(center));
-        // What cuts or touches the object's box, as its own primitives do, cannot hide all of it; of one-sided
-        // ones those can that show it their back.
+        // What cuts or touches the object's box, as its own primitives do, cannot hide all of it; of
+        // one-sided ones those can that show it their back.
         let can_hide = |id: &u32| {
             !occluders.cuts(*id, bounds) && (!one_sided || occluders.heights(*id, bounds)[1] < 0.0)
         };
