@@ -90,9 +90,10 @@ fn make(
     let mut sink = Sink::keeping(&[piece::MATERIALS, paint::MATERIALS].concat());
     furnish(&mut sink, &city, seed, detail, polygons);
     let rest = Part { whole: progress, start: 0.5, length: 0.5 };
-    let mut parts = assemble(sink.into_mesh(), "city", source, options, Report::default(), &rest)?;
-    let path =
-        if values.get("flight") == 1 { flight(&city, parts.origin) } else { walk(&city, parts.origin) };
+    let is_flight = values.get("flight") == 1;
+    let name = if is_flight { "city from above" } else { "city" };
+    let mut parts = assemble(sink.into_mesh(), name, source, options, Report::default(), &rest)?;
+    let path = if is_flight { flight(&city, parts.origin) } else { walk(&city, parts.origin) };
     parts.paths.push(path);
     Ok(parts)
 }
