@@ -111,13 +111,24 @@ pub fn layer_correlation(layers: &[u32]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::geometry::{Flat, Solid};
     use crate::raster::{render, visible};
     use crate::scene::{framing_view, random_views, samples};
 
     fn is_the_least_rank<S: Drawable>(seed: u64) {
-        let scene = samples::soup::<S>(seed, 200);
+        // Primitives so large that some lie behind others.
+        let mut parts = Arc::unwrap_or_clone(samples::soup::<S>(seed, 200)).into_parts();
+        for prim in parts.prims.iter().flatten() {
+            let corners = prim.as_ref();
+            let first = parts.points[corners[0] as usize];
+            for &corner in corners {
+                parts.points[corner as usize] = first + (parts.points[corner as usize] - first) * 6.0;
+            }
+        }
+        let scene = Scene::new(parts).expect("a scene");
         let mut deepest = 0;
         let outside = framing_view(&scene.bounds(), 48, 48);
         for mut view in random_views(&*scene, 3, 5).into_iter().chain([outside]) {

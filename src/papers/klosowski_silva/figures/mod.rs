@@ -58,7 +58,7 @@ pub const FIGURES: &[Figure] = &[
         make: missed::images,
     },
     Figure {
-        name: "klosowski-silva-layering",
+        name: "klosowski-silva-layers",
         former: None,
         summary: "Layers of primitives beside the order of their projection",
         make: layering::layers,
