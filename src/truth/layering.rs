@@ -131,10 +131,10 @@ mod tests {
         let scene = Scene::new(parts).expect("a scene");
         let mut deepest = 0;
         let outside = framing_view(&scene.bounds(), 48, 48);
-        for mut view in random_views(&*scene, 3, 5).into_iter().chain([outside]) {
+        for mut view in random_views(&scene, 3, 5).into_iter().chain([outside]) {
             (view.width, view.height) = (48, view.height.min(48));
             let numbers = layering_numbers(&scene, &view, false);
-            let seen = visible(&render(&*scene, &view, scene.live()));
+            let seen = visible(&render(&scene, &view, scene.live()));
             let first: Vec<PrimId> = scene.live().iter().copied().filter(|p| numbers[p.at()] == 1).collect();
             assert_eq!(first, seen, "ζ is 1 if and only if it is visible");
             deepest = deepest.max(numbers.iter().copied().max().unwrap_or(0));
