@@ -179,3 +179,14 @@ impl<S: Shape> Occluders<S> {
         [low, high]
     }
 }
+
+/// The area-angle of an occluder from a point: an estimate of the solid angle (in flatland: the angle) that
+/// it subtends.
+pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
+    let toward = occluder.center - from;
+    let distance = toward.length();
+    // The amount without the sign of the paper, which makes only the front count: here occluders hide from
+    // both sides. At the very center no angle is defined, and 0 keeps the occluder out.
+    let power = if S::Vector::AXES == 2 { distance } else { distance * distance };
+    if power > 0.0 { occluder.area * (occluder.normal.dot(toward) / distance).abs() / power } else { 0.0 }
+}

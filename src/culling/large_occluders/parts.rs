@@ -2,9 +2,8 @@
 //! tests, which all use the very functions that the method runs.
 
 use super::joint::{Candidate, Scratch, jointly};
-use super::occluders::Occluders;
+use super::occluders::{Occluders, area_angle};
 use super::relation::{EyeSide, Margin, Planes, Relation};
-use super::selection;
 use super::space::{Edge, Point as _, Shape, corner};
 use crate::geometry::{Aabb, Vector, View};
 use crate::scene::Face;
@@ -127,7 +126,7 @@ impl<S: Shape> Blockers<S> {
     }
     /// The area-angle of an occluder from a point (Section 3.1).
     pub fn area_angle(&self, id: usize, from: S::Vector) -> f64 {
-        selection::area_angle(self.occluders.get(id as u32), S::widened(from))
+        area_angle(self.occluders.get(id as u32), S::widened(from))
     }
     /// The relation of every occluder to a box, made anew, for timing; `naive`: without the table. Returns a
     /// number that depends on all of them.

@@ -7,8 +7,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::occluders::Occluders;
-use super::selection::area_angle;
+use super::occluders::{Occluders, area_angle};
 use super::space::{Point, Shape};
 use crate::geometry::{Aabb, NodeId, PrimId, Vector};
 use crate::index::{Hierarchy, KdTree};

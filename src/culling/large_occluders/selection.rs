@@ -18,7 +18,7 @@
 
 use rayon::prelude::*;
 
-use super::occluders::{Occluder, Occluders};
+use super::occluders::{Occluders, area_angle};
 use super::ranking::Ranking;
 use super::space::{Point, Shape};
 use crate::geometry::{Aabb, NodeId, Vector};
@@ -90,17 +90,6 @@ fn stride(ways: usize) -> usize {
 /// The least area-angle worth having in a space.
 pub fn least_angle<S: Shape>() -> f32 {
     LEAST_ANGLE[usize::from(S::Vector::AXES == 2)]
-}
-
-/// The area-angle of an occluder from a point: an estimate of the solid angle (in flatland: the angle) that
-/// it subtends.
-pub fn area_angle<S: Shape>(occluder: &Occluder<S>, from: S::Point) -> f64 {
-    let toward = occluder.center - from;
-    let distance = toward.length();
-    // The amount without the sign of the paper, which makes only the front count: here occluders hide from
-    // both sides. At the very center no angle is defined, and 0 keeps the occluder out.
-    let power = if S::Vector::AXES == 2 { distance } else { distance * distance };
-    if power > 0.0 { occluder.area * (occluder.normal.dot(toward) / distance).abs() / power } else { 0.0 }
 }
 
 /// Cosine of the widest angle off a direction at which an occluder counts for it: 60° to the side of an eye

@@ -182,7 +182,8 @@ pub(super) const DEPARTURES: &[Departure] = &[
     ),
     departure(
         "3.2",
-        "v is the direction from the eye to the center of the cell, but with view-direction=frame or rules=paper",
+        "v is the direction from the eye to the center of the cell, but with view-direction=frame or \
+         rules=paper",
         "one direction for the whole frame says nothing near the rim of a wide view",
     ),
     departure(
@@ -204,8 +205,8 @@ pub(super) const DEPARTURES: &[Departure] = &[
     ),
     departure(
         "4.2",
-        "where the eye is outside of all cells, the front begins at the cell in view that holds something and \
-         whose box is nearest, but with front=everywhere or rules=paper at the closest one",
+        "where the eye is outside of all cells, the front begins at the cell in view that holds something \
+         and whose box is nearest, but with front=everywhere or rules=paper at the closest one",
         "from a cell out of view the front would not grow",
     ),
     departure(

@@ -362,24 +362,7 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             ],
             Self::Tested(n) => n.fields(context),
             Self::Facing(n) => n.fields(context),
-            Self::Transferred(n) => vec![
-                // By their nodes, the numbers by which every view and trace names cells.
-                integer("from_node", node_of(n.a).0),
-                integer("node", node_of(n.b).0),
-                integer("held", n.held),
-                integer("rho_max", n.most),
-                number("share", n.share.into()),
-                Field { name: "view_direction", value: axes(n.sight) },
-                Field { name: "normal", value: axes(n.normal) },
-                number("alignment", n.along.into()),
-                number("from_solidity", n.of_a.into()),
-                // Before the penalty; `solidity` is after it.
-                number("transferred", n.sum().into()),
-                switch("star_shaped", n.star_shaped),
-                word("penalty_as", n.penalizing.word()),
-                number("solidity", n.solidity.into()),
-                switch("keeps", n.keeps),
-            ],
+            Self::Transferred(n) => transfer_fields(n),
             Self::Projected(n) => vec![
                 integer("node", node_of(n.cell).0),
                 integer("rank", n.rank),
@@ -441,8 +424,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
                 node_of(*cell)
             ),
             Self::Drawn(Drawn { prim, cell: None }) => format!(
-                "The {prims} {prim} may reach through the near plane, so nothing bounds what it could change: \
-                 it is drawn."
+                "The {prims} {prim} may reach through the near plane, so nothing bounds what it could \
+                 change: it is drawn."
             ),
             Self::Queried(n) => query_sentence(n, 1.0 / context.view.eye.far),
             Self::Compared(n) => comparison_sentence::<S>(n),
@@ -515,6 +498,30 @@ fn projection_sentence<S: Cellular>(n: &Projected) -> String {
     }
 }
 
+/// The operands of a transfer.
+fn transfer_fields<V: Vector>(n: &Transferred<V>) -> Vec<Field> {
+    let word = |name, v: &str| Field { name, value: Value::Word(v.into()) };
+    let switch = |name, v| Field { name, value: Value::Switch(v) };
+    vec![
+        // By their nodes, the numbers by which every view and trace names cells.
+        integer("from_node", node_of(n.a).0),
+        integer("node", node_of(n.b).0),
+        integer("held", n.held),
+        integer("rho_max", n.most),
+        number("share", n.share.into()),
+        Field { name: "view_direction", value: axes(n.sight) },
+        Field { name: "normal", value: axes(n.normal) },
+        number("alignment", n.along.into()),
+        number("from_solidity", n.of_a.into()),
+        // Before the penalty; `solidity` is after it.
+        number("transferred", n.sum().into()),
+        switch("star_shaped", n.star_shaped),
+        word("penalty_as", n.penalizing.word()),
+        number("solidity", n.solidity.into()),
+        switch("keeps", n.keeps),
+    ]
+}
+
 fn left_out_fields(n: &LeftOut) -> Vec<Field> {
     let mut fields: Vec<Field> = n.prim.map(|prim| integer("prim", prim.0)).into_iter().collect();
     fields.push(integer("node", node_of(n.cell).0));
@@ -551,8 +558,8 @@ fn left_out_sentence<S: Cellular>(n: &LeftOut) -> String {
     };
     match n.prim {
         Some(prim) => format!(
-            "Of the cells that the {} {prim} meets node {node} would draw it first. It {waits}. {larger} the {} \
-             would be drawn.",
+            "Of the cells that the {} {prim} meets node {node} would draw it first. It {waits}. {larger} the \
+             {} would be drawn.",
             S::PRIM,
             S::PRIM
         ),
@@ -581,7 +588,8 @@ fn seed_sentence(n: &Seeded) -> String {
         Origin::Again => {
             format!(
                 "The front is empty and budget is left. Of the cells in view that hold something and were \
-                 not reached node {node} has the nearest box, {distance} units away: a new front begins there."
+                 not reached node {node} has the nearest box, {distance} units away: a new front begins \
+                 there."
             )
         }
     }
@@ -620,8 +628,8 @@ fn query_sentence(n: &Queried, empty: f32) -> String {
         }
         (false, Some((_, held))) => {
             format!(
-                "Node {node} begins at depth {}, and somewhere where it would show the farthest thing drawn is \
-                 at {}, not before it: it is projected.",
+                "Node {node} begins at depth {}, and somewhere where it would show the farthest thing drawn \
+                 is at {}, not before it: it is projected.",
                 depth(n.answer.nearest),
                 depth(held)
             )

@@ -5,19 +5,21 @@
 //! budget was too small for it. Only for people who ask why; it costs about a frame without a budget.
 
 use super::explain::{Evidence, LeftOut};
-use super::index::node_of;
-use super::walk::{Source, Walk};
-use crate::culling::depth::Faces;
+use super::front::Queued;
+use super::index::Index;
 use crate::geometry::{CellId, PrimId};
 use crate::index::tessellation::Cellular;
-use crate::method::{DrawList, Event, Observer, Verdict};
+use crate::method::{Event, Observer};
+use crate::scene::Scene;
 
 /// Not drawn, however large the budget.
 const NEVER: u32 = u32::MAX;
 
 /// What a larger budget would have drawn.
 pub(super) struct Later {
-    last: Source,
+    /// The cell with which the budget was spent, and its solidity.
+    last: CellId,
+    of_last: f32,
     /// For each cell after how many more primitives all of it is drawn.
     of_cell: Vec<u32>,
     /// For each primitive the cell that draws it, and how many more primitives are drawn up to it.
@@ -28,7 +30,7 @@ pub(super) struct Later {
 
 /// Hears which cells are projected.
 #[derive(Default)]
-struct Projections(Vec<(CellId, u32)>);
+pub(super) struct Projections(Vec<(CellId, u32)>);
 
 impl<S: Cellular> Observer<Evidence<S>> for Projections {
     // What only reports is not done.
@@ -42,30 +44,32 @@ impl<S: Cellular> Observer<Evidence<S>> for Projections {
 }
 
 impl Later {
-    /// Goes on from the cell with which the budget was spent.
-    pub fn of<S: Cellular + Faces, O: Observer<Evidence<S>>>(walk: &Walk<'_, S, O>, last: Source) -> Self {
-        let cells = walk.index.count();
+    /// From the cell with which the budget was spent, its solidity and how many of its primitives were left
+    /// out; the front as it was then; and what a traversal that went on projected and drew, those first.
+    pub fn of<S: Cellular>(
+        index: &Index<S>,
+        scene: &Scene<S>,
+        (last, of_last, cut_off): (CellId, f32, usize),
+        waiting: Vec<Queued>,
+        seen: Projections,
+        drawn: &[PrimId],
+    ) -> Self {
+        let cells = index.count();
         let mut queued = vec![None; cells];
-        for (at, waiting) in walk.front.first(usize::MAX).into_iter().enumerate() {
+        for (at, waiting) in waiting.into_iter().enumerate() {
             queued[waiting.cell.at()] = Some((waiting.solidity, at as u32 + 1));
         }
-        let (mut front, mut seen) = (walk.front.clone(), Projections::default());
-        // The rest of the cell in which the budget ended comes first.
-        let mut list = DrawList { prims: walk.cut_off.clone(), stand_ins: Vec::new() };
-        let mut further = walk.unlimited(&mut front, &mut list, &mut seen);
-        further.hand_on(&last);
-        while further.spread().is_none() && further.begin_again().is_some() {}
         let mut of_cell = vec![NEVER; cells];
-        let mut of_prim = vec![(last.cell, NEVER); walk.scene.prim_count()];
+        let mut of_prim = vec![(last, NEVER); scene.prim_count()];
         let mut more = 0;
-        for (cell, drawn) in std::iter::once((last.cell, walk.cut_off.len() as u32)).chain(seen.0) {
-            for _ in 0..drawn {
-                of_prim[list.prims[more as usize].at()] = (cell, more + 1);
+        for (cell, count) in std::iter::once((last, cut_off as u32)).chain(seen.0) {
+            for _ in 0..count {
+                of_prim[drawn[more as usize].at()] = (cell, more + 1);
                 more += 1;
             }
             of_cell[cell.at()] = more;
         }
-        Self { last, of_cell, of_prim, queued }
+        Self { last, of_last, of_cell, of_prim, queued }
     }
     /// Why a primitive was left out; `None` if no budget would have drawn it.
     pub fn of_prim(&self, prim: PrimId) -> Option<LeftOut> {
@@ -73,35 +77,11 @@ impl Later {
         (more != NEVER).then(|| self.left_out(cell, Some(prim), more))
     }
     /// Why a cell was left out; `None` if no budget would have reached it.
-    fn of_cell(&self, cell: CellId) -> Option<LeftOut> {
+    pub fn of_cell(&self, cell: CellId) -> Option<LeftOut> {
         let more = self.of_cell[cell.at()];
         (more != NEVER).then(|| self.left_out(cell, None, more))
     }
     fn left_out(&self, cell: CellId, prim: Option<PrimId>, more: u32) -> LeftOut {
-        let (last, of_last) = (self.last.cell, self.last.solidity);
-        LeftOut { cell, prim, queued: self.queued[cell.at()], last, of_last, more }
-    }
-}
-
-impl<S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'_, S, O> {
-    /// Says of what the budget left out of the cell in which it ended, and of each cell that was not reached,
-    /// how much more it would have taken.
-    pub(super) fn report_left_out(&mut self, later: &Later) {
-        for prim in std::mem::take(&mut self.cut_off) {
-            if let Some(left_out) = later.of_prim(prim) {
-                self.watch.note(|| Evidence::LeftOut(left_out));
-            }
-            self.watch.event(Event::DecidedPrim(prim, Verdict::OverBudget));
-        }
-        for cell in (0..self.index.count() as u32).map(CellId).filter(|c| *c != later.last.cell) {
-            if self.front.is_projected(cell) || !self.is_in_view(cell) {
-                continue;
-            }
-            // Of what no budget reaches all in view is empty.
-            if let Some(left_out) = later.of_cell(cell) {
-                self.watch.note(|| Evidence::LeftOut(left_out));
-                self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
-            }
-        }
+        LeftOut { cell, prim, queued: self.queued[cell.at()], last: self.last, of_last: self.of_last, more }
     }
 }

@@ -167,8 +167,8 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     }
     fn is_conservative(params: &Params) -> bool {
         // Queries decide about all that the budget leaves; a budget of everything leaves nothing. A time may
-        // leave something even with queries: it ends them too. A wanted quality of all pixels lets the budget grow
-        // until none can change.
+        // leave something even with queries: it ends them too. A wanted quality of all pixels lets the budget
+        // grow until none can change.
         !matches!(params.budget, Budget::Milliseconds(_))
             && (params.queries || params.quality == 100 || params.budget == Budget::Percent(100.0))
     }

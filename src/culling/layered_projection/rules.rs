@@ -130,8 +130,8 @@ const FIGURE_5: &str = "Klosowski and Silva 2000, Figure 5";
 
 /// Declares the rules and the parameters that follow them.
 pub(super) fn knobs(rules: &mut Rules, how: &mut Traversal, knobs: &mut dyn Knobs) {
-    let meaning = "sets the six parameters from `front` to `update` that are not set themselves: to Figures 4 \
-                   and 5 as printed, or to what finds more";
+    let meaning = "sets the six parameters from `front` to `update` that are not set themselves: to Figures \
+                   4 and 5 as printed, or to what finds more";
     let before = *rules;
     knobs.words(Knob::new("rules", "", meaning, "Klosowski and Silva 2000, Section 3.2"), rules);
     // The visitor set other rules: what it sets after this stands on top of theirs.
@@ -150,8 +150,8 @@ pub(super) fn knobs(rules: &mut Rules, how: &mut Traversal, knobs: &mut dyn Knob
     let meaning = "how a cell that the eye does not see through the face it is reached by is penalized: its \
                    solidity is multiplied, as in the paper, or a sum is added; follows `rules`";
     knobs.words(Knob::new("penalty-as", "", meaning, FIGURE_5), &mut how.penalizing);
-    let meaning = "that penalty: by how much of itself the solidity grows, 100 doubling it, or what is added, \
-                   100 being a full cell; 0: none; follows `rules`";
+    let meaning = "that penalty: by how much of itself the solidity grows, 100 doubling it, or what is \
+                   added, 100 being a full cell; 0: none; follows `rules`";
     knobs.real(Knob::new("penalty", "%", meaning, FIGURE_5), 0.0..=1000.0, &mut how.penalty);
     let meaning = "what a cell in the front keeps: the latest solidity, as in the paper, or that from the \
                    face the eye sees it through; follows `rules`";

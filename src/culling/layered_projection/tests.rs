@@ -1,5 +1,6 @@
 //! The properties that the paper's algorithm promises, and its arithmetic.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::explain::Evidence;
@@ -158,82 +159,100 @@ fn hands_on_solidity<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
 
 fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, pairs: &[(&str, &str)]) {
     let view = views(scene)[4];
-    let (mut settled, mut front, mut kept) =
-        (std::collections::BTreeSet::new(), std::collections::BTreeMap::<u32, f64>::new(), 0);
     let fixed = [("tessellation", kind), ("penalty", "50"), ("budget", "100%")];
-    let run = run(scene, &[&fixed, pairs].concat());
+    let mut run = run(scene, &[&fixed, pairs].concat());
+    let knobs = run.knobs();
     let knob = |name: &str| {
-        run.knobs()
-            .into_iter()
-            .find(|(k, _)| k.name == name)
-            .map(|(_, v)| v.to_string())
-            .expect("a parameter")
+        let found = knobs.iter().find(|(k, _)| k.name == name);
+        found.map(|(_, v)| v.to_string()).expect("a parameter")
     };
-    let [transfer, update, penalty_as, direction] =
-        ["transfer", "update", "penalty-as", "view-direction"].map(knob);
-    let mut run = run;
     let film = run.record(&view, usize::MAX).film;
-    let (mut solidity, mut penalties, mut count, mut ahead) = (std::collections::BTreeMap::new(), 0, 0, 0);
+    let mut told = Told {
+        film: &*film,
+        ways: ["transfer", "update", "penalty-as"].map(knob),
+        solidity: BTreeMap::new(),
+        settled: BTreeSet::new(),
+        front: BTreeMap::new(),
+        counts: [0; 4],
+    };
     for at in 0..film.events().len() {
-        let (what, fields) = film.fields(at);
-        let v = |name| value(&fields, name);
-        match what {
-            "CellProjected" => _ = solidity.insert(v("node") as u32, v("solidity")),
-            "SolidityTransferred" => {
-                assert_eq!(solidity[&(v("from_node") as u32)], v("from_solidity"));
-                let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
-                assert!((sum - v("transferred")).abs() <= 1e-5 && v("alignment").abs() <= 1.00001);
-                assert!(transfer == "aligned" || v("alignment") == 1.0);
-                let list = |name: &str| match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
-                    Some(Value::List(list)) => list.clone(),
-                    other => panic!("{name}: {other:?}"),
-                };
-                let (sight, normal) = (list("view_direction"), list("normal"));
-                let product: f64 = sight.iter().zip(&normal).map(|(a, b)| a * b).sum();
-                assert!(transfer == "whole" || (product - v("alignment")).abs() < 1e-5);
-                let forward = view.eye.forward();
-                let looks = (0..S::Vector::AXES).all(|a| sight[a] == f64::from(forward.get(a)));
-                ahead += usize::from(looks);
-                // The sentence says the formula that ran.
-                assert_eq!(
-                    film.sentence(at).contains("v · n"),
-                    transfer == "aligned",
-                    "{}",
-                    film.sentence(at)
-                );
-                let is_factor = film.sentence(at).contains("times the penalty factor");
-                assert_eq!(is_factor, penalty_as == "factor" && v("star_shaped") == 0.0);
-                let (node, star) = (v("node") as u32, v("star_shaped") == 1.0);
-                let want = match penalty_as.as_str() {
-                    _ if star => v("transferred"),
-                    "factor" => 1.5 * v("transferred"),
-                    _ => v("transferred") + 0.5,
-                };
-                assert!((want - v("solidity")).abs() <= 1e-6 * want.abs(), "{want}");
-                let stays = update == "star-shaped"
-                    && !star
-                    && (settled.contains(&node) || front.get(&node).is_some_and(|s| *s <= v("solidity")));
-                assert_eq!(v("keeps") == 1.0, stays, "{kind}");
-                if star {
-                    settled.insert(node);
-                }
-                kept += usize::from(stays);
-                if !stays {
-                    front.insert(node, v("solidity"));
-                    let queued = film.events()[at..]
-                        .iter()
-                        .find_map(|e| if let Event::Queued(n, s) = e { Some((n.0, *s)) } else { None });
-                    assert_eq!(queued, Some((node, v("solidity") as f32)));
-                }
-                penalties += usize::from(v("star_shaped") == 0.0);
-                count += 1;
-            }
-            _ => {}
-        }
+        told.hear(at, view.eye.forward());
     }
+    let [count, penalties, kept, ahead] = told.counts;
     assert!(penalties > 5 && penalties < count, "{kind}: {penalties} of {count}");
-    assert_eq!(kept > 5, update == "star-shaped", "{kind}: {kept} of {count}");
-    assert!(if direction == "frame" { ahead == count } else { ahead < count / 2 }, "{ahead} of {count}");
+    assert_eq!(kept > 5, knob("update") == "star-shaped", "{kind}: {kept} of {count}");
+    let is_frame = knob("view-direction") == "frame";
+    assert!(if is_frame { ahead == count } else { ahead < count / 2 }, "{ahead} of {count}");
+}
+
+/// What transfers and projections of a film say, followed from event to event.
+struct Told<'a, S: World> {
+    film: &'a dyn Film<S>,
+    /// Transfer, update and penalty-as.
+    ways: [String; 3],
+    /// Of projected cells, by node.
+    solidity: BTreeMap<u32, f64>,
+    /// Nodes that were reached through the face the Eye sees them by.
+    settled: BTreeSet<u32>,
+    /// What waits, with its solidity.
+    front: BTreeMap<u32, f64>,
+    /// Transfers; those with a penalty, those that change nothing, those along the Eye's own direction.
+    counts: [usize; 4],
+}
+
+impl<S: World> Told<'_, S> {
+    fn hear(&mut self, at: usize, forward: S::Vector) {
+        let (what, fields) = self.film.fields(at);
+        let v = |name| value(&fields, name);
+        if what == "CellProjected" {
+            self.solidity.insert(v("node") as u32, v("solidity"));
+        }
+        if what != "SolidityTransferred" {
+            return;
+        }
+        let [transfer, update, penalty_as] = self.ways.each_ref().map(String::as_str);
+        assert_eq!(self.solidity[&(v("from_node") as u32)], v("from_solidity"));
+        let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
+        assert!((sum - v("transferred")).abs() <= 1e-5 && v("alignment").abs() <= 1.00001);
+        assert!(transfer == "aligned" || v("alignment") == 1.0);
+        let list = |name: &str| match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
+            Some(Value::List(list)) => list.clone(),
+            other => panic!("{name}: {other:?}"),
+        };
+        let (sight, normal) = (list("view_direction"), list("normal"));
+        let product: f64 = sight.iter().zip(&normal).map(|(a, b)| a * b).sum();
+        assert!(transfer == "whole" || (product - v("alignment")).abs() < 1e-5);
+        self.counts[3] += usize::from((0..S::Vector::AXES).all(|a| sight[a] == f64::from(forward.get(a))));
+        // The sentence says the formula that ran.
+        let sentence = self.film.sentence(at);
+        assert_eq!(sentence.contains("v · n"), transfer == "aligned", "{sentence}");
+        let (node, star) = (v("node") as u32, v("star_shaped") == 1.0);
+        assert_eq!(sentence.contains("times the penalty factor"), penalty_as == "factor" && !star);
+        let want = match penalty_as {
+            _ if star => v("transferred"),
+            "factor" => 1.5 * v("transferred"),
+            _ => v("transferred") + 0.5,
+        };
+        assert!((want - v("solidity")).abs() <= 1e-6 * want.abs(), "{want}");
+        let waits = self.front.get(&node).is_some_and(|s| *s <= v("solidity"));
+        let stays = update == "star-shaped" && !star && (self.settled.contains(&node) || waits);
+        assert_eq!(v("keeps") == 1.0, stays, "{sentence}");
+        if star {
+            self.settled.insert(node);
+        }
+        if !stays {
+            self.front.insert(node, v("solidity"));
+            let later = self.film.events()[at..].iter();
+            let mut queued = later.filter_map(|e| match e {
+                Event::Queued(n, s) => Some((n.0, *s)),
+                _ => None,
+            });
+            assert_eq!(queued.next(), Some((node, v("solidity") as f32)));
+        }
+        self.counts[0] += 1;
+        self.counts[1] += usize::from(!star);
+        self.counts[2] += usize::from(stays);
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use super::explain::{
 };
 use super::front::Front;
 use super::index::{Index, node_of};
-use super::later::Later;
+use super::later::{Later, Projections};
 use super::rest::Rest;
 use super::rules::{Entering, Occupancy, Penalizing, Sight, Transfer, Update};
 use super::{LayeredProjection, Params};
@@ -69,7 +69,7 @@ struct Aspect<V> {
 
 /// A cell that was just projected.
 #[derive(Clone, Copy)]
-pub(super) struct Source {
+struct Source {
     pub cell: CellId,
     pub solidity: f32,
     /// What it adds, of ρ_max.
@@ -189,7 +189,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
 
     /// Projects cells until the front is empty, or until the budget is spent with the cell that is returned.
-    pub(super) fn spread(&mut self) -> Option<Source> {
+    fn spread(&mut self) -> Option<Source> {
         // Lines 1 and 2: the cell leaves the front where it is projected or found hidden, below.
         self.line(line::WHILE);
         while let Some((cell, solidity)) = self.front.least() {
@@ -216,7 +216,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// Lines 6 to 10. A departure where the front keeps to the view: what is out of it is skipped like what
     /// was projected, for nothing of it is drawn, and what is in view beyond it is reached by other ways.
-    pub(super) fn hand_on(&mut self, source: &Source) {
+    fn hand_on(&mut self, source: &Source) {
         let (cells, everywhere) = (self.cells, self.grows_everywhere());
         for there in cells.neighbors(source.cell) {
             self.line(line::EACH);
@@ -749,15 +749,47 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if !O::LISTENS {
             return;
         }
-        let later = last.map(|last| Later::of(self, last));
-        if let Some(later) = &later {
-            self.report_left_out(later);
+        let later = last.map(|last| self.later(last));
+        if let (Some(later), Some(last)) = (&later, last) {
+            self.report_left_out(later, last.cell);
         }
         // Cells are decided for what they hold alone; what they share is still open.
         let index = self.index;
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
             if !self.marks[number] {
                 self.report_shared(prim, later.as_ref());
+            }
+        }
+    }
+    /// What a larger budget would have drawn: goes on from the cell with which this one was spent.
+    fn later(&self, last: Source) -> Later {
+        let waiting = self.front.first(usize::MAX);
+        let (mut front, mut seen) = (self.front.clone(), Projections::default());
+        // The rest of the cell in which the budget ended comes first.
+        let mut list = DrawList { prims: self.cut_off.clone(), stand_ins: Vec::new() };
+        let mut further = self.unlimited(&mut front, &mut list, &mut seen);
+        further.hand_on(&last);
+        while further.spread().is_none() && further.begin_again().is_some() {}
+        let spent = (last.cell, last.solidity, self.cut_off.len());
+        Later::of(self.index, self.scene, spent, waiting, seen, &list.prims)
+    }
+    /// Says of what the budget left out of the cell in which it ended, and of each cell that was not reached,
+    /// how much more it would have taken.
+    fn report_left_out(&mut self, later: &Later, last: CellId) {
+        for prim in std::mem::take(&mut self.cut_off) {
+            if let Some(left_out) = later.of_prim(prim) {
+                self.watch.note(|| Evidence::LeftOut(left_out));
+            }
+            self.watch.event(Event::DecidedPrim(prim, Verdict::OverBudget));
+        }
+        for cell in (0..self.index.count() as u32).map(CellId).filter(|c| *c != last) {
+            if self.front.is_projected(cell) || !self.is_in_view(cell) {
+                continue;
+            }
+            // Of what no budget reaches all in view is empty.
+            if let Some(left_out) = later.of_cell(cell) {
+                self.watch.note(|| Evidence::LeftOut(left_out));
+                self.watch.event(Event::DecidedNode(node_of(cell), Verdict::OverBudget));
             }
         }
     }

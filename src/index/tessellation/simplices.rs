@@ -215,9 +215,9 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
             let (corners, neighbors) = (self.corners(at), self.cells[at.at()].neighbors);
             for face in (0..Self::CORNERS).filter(|f| neighbors[*f] != NONE) {
                 let next = CellId(neighbors[face]);
-                // In the order of cost: tried already, some corner at or beyond the face, the separating axes.
-                // Those say the same whichever face a cell is reached by, so it is tried once, met or not. Of
-                // a primitive that meets many cells some corner is beyond nearly every face.
+                // In the order of cost: tried already, some corner at or beyond the face, the separating
+                // axes. Those say the same whichever face a cell is reached by, so it is tried once, met or
+                // not. Of a primitive that meets many cells some corner is beyond nearly every face.
                 if tried.has(next) {
                     continue;
                 }

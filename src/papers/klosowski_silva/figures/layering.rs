@@ -125,11 +125,11 @@ pub fn layers(tint: Tint) -> Result<Drawing, SceneError> {
     legend.push(entry(Role::Eye, Swatch::Line, "the Eye and its view"));
     let caption = format!(
         "The layering number ζ of a primitive is the smallest rank, by distance, that it has at any pixel: 1 \
-         if it is visible (Section 3). On the left it is counted at every pixel; beside it as many primitives \
-         as there are of each layer have its color in the order of projection, so an order by layers would \
-         give the same picture. Numbers: Kendall's rank correlation of both over pairs of different layers, 1 \
-         by layers, 0 at random. Scenes bottleneck and seminar-room (frame {FRAME} of the flight), \
-         tessellation=delaunay, leaf-size=5, budget=100%, rules=paper and rules=ours."
+         if it is visible (Section 3). On the left it is counted at every pixel; beside it as many \
+         primitives as there are of each layer have its color in the order of projection, so an order by \
+         layers would give the same picture. Numbers: Kendall's rank correlation of both over pairs of \
+         different layers, 1 by layers, 0 at random. Scenes bottleneck and seminar-room (frame {FRAME} of \
+         the flight), tessellation=delaunay, leaf-size=5, budget=100%, rules=paper and rules=ours."
     );
     Ok(page(Paper::TwoColumns, "Layers, and the order of projection", legend, &caption, &content))
 }

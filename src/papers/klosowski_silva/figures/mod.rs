@@ -1,6 +1,7 @@
 //! The figures of Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set
 //! Estimation", IEEE TVCG 6(2), 2000, made anew by running the method: Figures 2, 3, 6, 7, 9, 13 and 14, in
-//! flatland where that shows it better. They follow the paper's rules (`rules=paper`) unless they say otherwise.
+//! flatland where that shows it better. They follow the paper's rules (`rules=paper`) unless they say
+//! otherwise.
 
 mod cells;
 mod layering;

@@ -207,10 +207,11 @@ pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
     ];
     let caption = format!(
         "After A has been projected, its solidity ρ(A) is handed on, the more the better the shared side's \
-         normal n agrees with the view direction v, in which the Eye looks; |A| counts the segments that meet \
-         A, ρ_max is the most of any cell. B lies straight behind A; C is reached sideways, so it gets less of \
-         ρ(A), but is multiplied by the penalty factor, here 2, which the paper does not give. Numbers of step \
-         {} of the run on scene bottleneck with rules=paper, tessellation=delaunay, leaf-size=10, seed=1.",
+         normal n agrees with the view direction v, in which the Eye looks; |A| counts the segments that \
+         meet A, ρ_max is the most of any cell. B lies straight behind A; C is reached sideways, so it gets \
+         less of ρ(A), but is multiplied by the penalty factor, here 2, which the paper does not give. \
+         Numbers of step {} of the run on scene bottleneck with rules=paper, tessellation=delaunay, \
+         leaf-size=10, seed=1.",
         pair[1].step
     );
     Ok(page(Paper::TwoColumns, "Solidity is handed on", legend, caption, &content))

@@ -58,8 +58,8 @@ const TIMES: [(&str, &str, Role); 5] = [
 /// The rules that are compared.
 const BOTH: [&str; 2] = [PAPERS, OURS];
 
-/// View-frustum culling, then the method at each budget, by the paper's rules and by ours, with the cells that
-/// the settings name.
+/// View-frustum culling, then the method at each budget, by the paper's rules and by ours, with the cells
+/// that the settings name.
 fn runs<S: World>(
     scene: &Arc<Scene<S>>,
     setup: &Setup,

@@ -25,9 +25,9 @@ const LARGE: &[&str] = &[FROM_ABOVE, "generate:city?polygons=500000", "generate:
 /// A flight as in Figure 10 c, on which ordering by centroids fails as it did there.
 const FROM_ABOVE: &str = "generate:city?polygons=500000&flight=1";
 /// What the two ways through the city show.
-const TWO_WAYS: &str = "Walking in the city's streets, centroids order about as well as cells do: what is nearest \
-                        is what one sees. Flying around the city they fail as in the paper: the nearest \
-                        triangles are furniture that roofs and walls hide.";
+const TWO_WAYS: &str = "Walking in the city's streets, centroids order about as well as cells do: what is \
+                        nearest is what one sees. Flying around the city they fail as in the paper: the \
+                        nearest triangles are furniture that roofs and walls hide.";
 /// How what is found was measured.
 const COVERED: &str = "Along the scene's own path. Visible is what owns a pixel of the item buffer; of each \
                        frame the share of it that was drawn, then the mean over the frames. A pixel is wrong \
