@@ -299,6 +299,30 @@ fn both_pictures_of_space_are_drawn() {
     }
 }
 
+#[test]
+fn the_pseudocode_is_that_of_the_parameters_and_tells_what_was_compared() {
+    let mut h = window("scenes2d/street.json");
+    let faces = "faces away from the eye";
+    h.state_mut().state.apply(Command::Method("frustum".into()));
+    settle(&mut h);
+    assert!(h.query_all_by_label_contains(faces).next().is_none(), "both sides of a segment are drawn");
+    h.state_mut().state.apply(Command::Set("backface-culling".into(), "true".into(), 0));
+    settle(&mut h);
+    h.get_by_label_contains(faces);
+    let state = &h.state().state;
+    let film = state.film().expect("a film");
+    let test = (0..state.len()).find(|&i| film.reel.compared(i).is_some()).expect("a test");
+    let compared = film.reel.compared(test).expect("two numbers").to_string();
+    h.state_mut().state.apply(Command::GoTo(test + 1));
+    settle(&mut h);
+    h.get_by_label(&compared);
+    // Where the method departs from its paper, the line says so, and a list says why.
+    h.state_mut().state.apply(Command::Method("large-occluders".into()));
+    settle(&mut h);
+    assert!(h.query_all_by_label_contains("paper: ").next().is_some());
+    h.get_by_label_contains("Departures from the paper (");
+}
+
 /// The pixels of the part of a picture.
 fn part(rgba: &[u8], width: usize, rect: egui::Rect) -> Vec<u8> {
     let inside = |i: usize| rect.contains(pos2((i % width) as f32, (i / width) as f32));

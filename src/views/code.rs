@@ -29,10 +29,12 @@ pub fn show(state: &State, kept: &mut Option<Reached>, ui: &mut egui::Ui, answer
     let lit = state.line();
     let values = values(state);
     stops(state, film, ui, answers);
-    // A step scrolls to its line; in between the person may scroll away.
+    // A step, a film or another size of the panel scrolls to the line; in between one may scroll away.
+    let shown = (state.step, film.serial, ui.available_height() as u32);
     let is_new = ui.data_mut(|d| {
-        d.get_temp_mut_or_default::<Option<usize>>(ui.scope_id().with("shown step")).replace(state.step)
-    }) != Some(state.step);
+        let id = ui.scope_id().with("shown step");
+        d.get_temp_mut_or_default::<Option<(usize, u64, u32)>>(id).replace(shown)
+    }) != Some(shown);
     let width = ui.available_width() - ui.spacing().scroll.bar_width;
     ScrollArea::vertical().auto_shrink(false).id_salt("code").show(ui, |ui| {
         let right = ui.cursor().left() + width;
