@@ -102,7 +102,7 @@ fn lines_name_the_current_pseudocode() {
     while let Some(entry) = reader.next_entry().expect("valid") {
         assert_ne!(entry.event, "LineReached", "coarse");
         if entry.event == "OrientationTested" {
-            assert_eq!(entry.line.as_deref(), Some("Gather:2"));
+            assert_eq!(entry.line.as_deref(), Some("Gather:4"));
             seen += 1;
         }
     }

@@ -201,6 +201,13 @@ struct Told<'a, S: World> {
 }
 
 impl<S: World> Told<'_, S> {
+    /// The node that is put into the front next, and with which solidity.
+    fn queued_after(&self, at: usize) -> Option<(u32, f32)> {
+        self.film.events()[at..].iter().find_map(|e| match e {
+            Event::Queued(n, s) => Some((n.0, *s)),
+            _ => None,
+        })
+    }
     fn hear(&mut self, at: usize, forward: S::Vector) {
         let (what, fields) = self.film.fields(at);
         let v = |name| value(&fields, name);
@@ -242,12 +249,7 @@ impl<S: World> Told<'_, S> {
         }
         if !stays {
             self.front.insert(node, v("solidity"));
-            let later = self.film.events()[at..].iter();
-            let mut queued = later.filter_map(|e| match e {
-                Event::Queued(n, s) => Some((n.0, *s)),
-                _ => None,
-            });
-            assert_eq!(queued.next(), Some((node, v("solidity") as f32)));
+            assert_eq!(self.queued_after(at), Some((node, v("solidity") as f32)));
         }
         self.counts[0] += 1;
         self.counts[1] += usize::from(!star);
