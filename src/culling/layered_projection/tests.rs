@@ -185,6 +185,14 @@ fn hands_it_on<S: World>(scene: &Arc<Scene<S>>, kind: &'static str, pairs: &[(&s
     assert!(if is_frame { ahead == count } else { ahead < count / 2 }, "{ahead} of {count}");
 }
 
+/// The numbers of a field.
+fn list(fields: &[Field], name: &str) -> Vec<f64> {
+    match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
+        Some(Value::List(list)) => list.clone(),
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
 /// What transfers and projections of a film say, followed from event to event.
 struct Told<'a, S: World> {
     film: &'a dyn Film<S>,
@@ -222,11 +230,7 @@ impl<S: World> Told<'_, S> {
         let sum = v("held") / v("rho_max") + v("alignment") * v("from_solidity");
         assert!((sum - v("transferred")).abs() <= 1e-5 && v("alignment").abs() <= 1.00001);
         assert!(transfer == "aligned" || v("alignment") == 1.0);
-        let list = |name: &str| match fields.iter().find(|f| f.name == name).map(|f| &f.value) {
-            Some(Value::List(list)) => list.clone(),
-            other => panic!("{name}: {other:?}"),
-        };
-        let (sight, normal) = (list("view_direction"), list("normal"));
+        let [sight, normal] = ["view_direction", "normal"].map(|name| list(&fields, name));
         let product: f64 = sight.iter().zip(&normal).map(|(a, b)| a * b).sum();
         assert!(transfer == "whole" || (product - v("alignment")).abs() < 1e-5);
         self.counts[3] += usize::from((0..S::Vector::AXES).all(|a| sight[a] == f64::from(forward.get(a))));

@@ -4,19 +4,24 @@
 
 use glam::{DVec3, Vec2, Vec3, vec2};
 
-use crate::culling::Methods;
 use crate::culling::anatomy::Blockers;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::figure::axis::{Axis, axes};
-use crate::figure::tools::{COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, page};
+use crate::figure::tools::{
+    COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page,
+};
 use crate::figure::{Paper, Sheet, Swatch, clip};
-use crate::geometry::{Aabb, Flat, Solid};
+use crate::geometry::{Aabb, Solid};
 use crate::method::CodeLine;
 use crate::papers::keys::LARGE_OCCLUDERS;
-use crate::scene::SceneError;
+use crate::scene::{SceneError, example};
 
-fn code() -> &'static [CodeLine] {
-    Flat::method(LARGE_OCCLUDERS).map_or(&[], |m| m.card().code)
+/// The lines that belong to the default parameters.
+fn code() -> Result<Vec<CodeLine>, SceneError> {
+    let scene = example("street")?;
+    let film = film(&scene, &eye(&scene, 0), LARGE_OCCLUDERS, &[]);
+    let lines = film.card().code.iter().zip(0..).filter(|(_, line)| film.has_line(*line));
+    Ok(lines.map(|(line, _)| *line).collect())
 }
 
 /// Figure 9: the algorithm. Below a line that differs from the paper's stands the paper's.
@@ -27,11 +32,12 @@ pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
         format!("{}paper: {}", " ".repeat(indent), line.paper)
     };
     let width = |text: &str| metrics::width_pt(text, Font::Mono, 1.0);
-    let widest = code().iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
+    let code = code()?;
+    let widest = code.iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
     let size_pt = ((COLUMN_PT - GUTTER_PT) / widest).min(LABEL_PT);
     let (line_pt, mut y) = (size_pt * 1.4, 2.0);
     let mut paper = Drawing::default();
-    for line in code() {
+    for line in &code {
         let number = line.label.rsplit(':').next().unwrap_or_default();
         // A rule above each procedure.
         if number == "1" {
