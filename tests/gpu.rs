@@ -50,7 +50,7 @@ fn boxes(list: &[(Vec3, Vec3, [f32; 3])]) -> Arc<Scene<Solid>> {
             prim_material.extend([MaterialId(i as u32); 2]);
         }
         objects.push(Object { name: format!("box {i}"), group: String::new(), motion: None });
-        materials.push(Material { name: format!("color {i}"), color });
+        materials.push(Material::new(format!("color {i}"), color));
     }
     let (name, source) = ("boxes".into(), "boxes".into());
     let (origin, paths, report) = (DVec3::ZERO, vec![], Report::default());

@@ -234,7 +234,7 @@ impl Reader<'_> {
         file: &File,
         objects: &[Object],
     ) -> Result<(Vec<Material>, Vec<MaterialId>), SceneError> {
-        let mut materials = vec![Material { name: "default".into(), color: GRAY }];
+        let mut materials = vec![Material::new("default", GRAY)];
         let mut of_object = vec![MaterialId(0); objects.len()];
         for (name, color) in &file.colors {
             let here = [Step::Key("colors"), Step::Key(name.as_str())];
@@ -242,7 +242,7 @@ impl Reader<'_> {
                 return self.fail(&here, format!("the color of `{name}` must be three numbers from 0 to 1"));
             }
             let id = MaterialId(materials.len() as u32);
-            materials.push(Material { name: name.clone(), color: *color });
+            materials.push(Material::new(name.clone(), *color));
             let mut found = false;
             for (_, of) in objects.iter().zip(&mut of_object).filter(|(o, _)| o.name == *name) {
                 (*of, found) = (id, true);

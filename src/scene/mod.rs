@@ -64,13 +64,25 @@ pub struct Pose {
     pub translation: [f32; 3],
 }
 
-/// How a primitive is colored.
+/// How a primitive is colored, and what it lets through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// Its name.
     pub name: String,
     /// Diffuse color (Kd), linear 0..1.
     pub color: [f32; 3],
+    /// Whether light comes through, if only in places: blended, cut out by a mask, or transmissive. Such a
+    /// primitive is drawn and hides nothing.
+    pub see_through: bool,
+    /// Whether it is seen from behind as well, so that back-face culling leaves it alone.
+    pub two_sided: bool,
+}
+
+impl Material {
+    /// An opaque material with a front only.
+    pub fn new(name: impl Into<String>, color: [f32; 3]) -> Self {
+        Self { name: name.into(), color, see_through: false, two_sided: false }
+    }
 }
 
 /// A planar convex polygon (in flatland: a segment) made of one or more primitives. What occluders are.
@@ -125,7 +137,7 @@ impl<S: Space> Parts<S> {
             prim_material: vec![MaterialId(0); n],
             faces: Vec::new(),
             objects: vec![Object { name: name.to_owned(), group: String::new(), motion: None }],
-            materials: vec![Material { name: "default".into(), color: mtl::GRAY }],
+            materials: vec![Material::new("default", mtl::GRAY)],
             origin: DVec3::ZERO,
             paths: Vec::new(),
             report: Report::default(),

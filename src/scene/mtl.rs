@@ -35,14 +35,14 @@ pub(super) fn resolve(
     }
     let mut missing = 0;
     let materials = names.iter().map(|name| match colors.get(name) {
-        Some(color) => Material { name: name.clone(), color: *color },
-        None if name.is_empty() => Material { name: "default".into(), color: GRAY },
+        Some(color) => Material::new(name.clone(), *color),
+        None if name.is_empty() => Material::new("default", GRAY),
         None => {
             missing += 1;
             if missing <= 8 {
                 report.note(format!("material `{name}` is in no material file; it is gray"));
             }
-            Material { name: name.clone(), color: GRAY }
+            Material::new(name.clone(), GRAY)
         }
     });
     let materials = materials.collect();

@@ -23,10 +23,7 @@ impl Sink {
         Self { mesh: None, triangles: 0, object: 0, material: 0 }
     }
     pub(super) fn keeping(materials: &[(&str, [f32; 3])]) -> Self {
-        let materials = materials
-            .iter()
-            .map(|(name, color)| Material { name: (*name).to_owned(), color: *color })
-            .collect();
+        let materials = materials.iter().map(|(name, color)| Material::new(*name, *color)).collect();
         Self { mesh: Some(Mesh { materials, ..Mesh::default() }), triangles: 0, object: 0, material: 0 }
     }
     pub(super) fn into_mesh(self) -> Mesh {

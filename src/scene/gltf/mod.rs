@@ -300,7 +300,7 @@ impl<'a> Reader<'a> {
                 }
             };
             let color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { GRAY[0] });
-            self.mesh.materials.push(Material { name, color });
+            self.mesh.materials.push(Material::new(name, color));
         }
         id
     }
