@@ -23,7 +23,9 @@ use cullscope::drawing::Drawing;
 use cullscope::geometry::{Flat, PrimId, Solid, Space, Vector, View};
 use cullscope::method::{Entry, Event, Film, Run, Settings, Verdict};
 use cullscope::raster::{Drawable, Options, Target};
-use cullscope::scene::{AnyScene, LoadOptions, Parts, Quiet, Scene, framing_view, load, random_views};
+use cullscope::scene::{
+    AnyScene, LoadOptions, Material, Parts, Quiet, Scene, framing_view, load, random_views,
+};
 use cullscope::trace::{Stamp, Stamps};
 use cullscope::truth::Truth;
 use cullscope::truth::certificate::check_film;
@@ -60,6 +62,22 @@ fn soup<S: Space>(seed: u64, n: u32, make: fn([u32; 3]) -> S::Corners) -> Arc<Sc
     Arc::new(Scene::new(Parts::simple(&format!("soup {seed}"), points, prims)).expect("a valid scene"))
 }
 
+/// The same with every third primitive or object see-through, and every fourth with two sides.
+fn glazed<S: Space>(scene: &Scene<S>, by_object: bool) -> Arc<Scene<S>> {
+    let mut parts = scene.clone().into_parts();
+    let first = parts.materials.len() as u32;
+    for kind in 0..4 {
+        let (see_through, two_sided) = (kind & 1 == 1, kind & 2 == 2);
+        parts.materials.push(Material { see_through, two_sided, ..parts.materials[0].clone() });
+    }
+    for (at, material) in parts.prim_material.iter_mut().enumerate() {
+        let which = if by_object { parts.prim_object[at].0 } else { at as u32 };
+        material.0 = first + u32::from(which % 3 == 0) + 2 * u32::from(which % 4 == 0);
+    }
+    parts.name += ", glazed";
+    Arc::new(Scene::new(parts).expect("a valid scene"))
+}
+
 fn file(path: &str) -> AnyScene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     load(&path.display().to_string(), &LoadOptions::default(), &Quiet).expect("a committed scene loads")
@@ -67,6 +85,7 @@ fn file(path: &str) -> AnyScene {
 
 fn flat_scenes() -> Vec<Arc<Scene<Flat>>> {
     let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Flat>(s, 60, |[a, b, _]| [a, b])).collect();
+    scenes[2] = glazed(&scenes[2], false);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes2d");
     let mut files: Vec<_> =
         std::fs::read_dir(folder).expect("scenes2d").map(|e| e.expect("an entry").path()).collect();
@@ -85,9 +104,15 @@ fn flat_scenes() -> Vec<Arc<Scene<Flat>>> {
 
 fn solid_scenes() -> Vec<Arc<Scene<Solid>>> {
     let mut scenes: Vec<_> = SEEDS.iter().map(|&s| soup::<Solid>(s, 80, |c| c)).collect();
-    let building =
-        load("generate:building?polygons=2000&seed=5", &LoadOptions::default(), &Quiet).expect("a building");
-    for scene in [building, file("scenes3d/freedoom_e1m1/freedoom_e1m1.obj")] {
+    scenes[2] = glazed(&scenes[2], false);
+    let generated = |call: &str| load(call, &LoadOptions::default(), &Quiet).expect("a building");
+    if let AnyScene::Solid(scene) = generated("generate:building?polygons=1000&seed=7") {
+        scenes.push(glazed(&scene, true));
+    }
+    for scene in [
+        generated("generate:building?polygons=2000&seed=5"),
+        file("scenes3d/freedoom_e1m1/freedoom_e1m1.obj"),
+    ] {
         match scene {
             AnyScene::Solid(scene) => scenes.push(scene),
             AnyScene::Flat(_) => panic!("a model in space"),
@@ -324,9 +349,9 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         let (mut unseen, mut culled) = (0, 0);
         for scene in scenes {
             for settings in [Settings::default(), Settings::of(&[("backface-culling", "true")])] {
-                let one_sided = !settings.0.is_empty();
+                let surfaces = settings.surfaces();
                 let mut run = ready(*entry, scene, &settings);
-                let mut truth = Truth::new(scene, one_sided, 1, [1.0; 3]);
+                let mut truth = Truth::new(scene, surfaces, 1, [1.0; 3]);
                 for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
                     let list = run.cull(&view);
                     let mut target = Target::new(&view);
@@ -336,7 +361,8 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());
                         assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0), "{key}");
                     }
-                    if !one_sided {
+                    // The floors are of opaque scenes.
+                    if !surfaces.one_sided && !scene.has_see_through() {
                         let seen_and_drawn = judged.visible.len() - judged.missed.len();
                         unseen += scene.live().len() - judged.visible.len();
                         culled += scene.live().len() - judged.visible.len() - (judged.drawn - seen_and_drawn);

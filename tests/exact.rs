@@ -54,7 +54,7 @@ fn look<S: Methods + Drawable>(
     let entry = S::method(method).expect("a method");
     let settings = Settings::of(pairs);
     let mut run = entry.ready(scene, &settings, &Quiet).expect("settings").expect("not cancelled");
-    let mut truth = Truth::new(scene, false, 1, WHITE);
+    let mut truth = Truth::new(scene, settings.surfaces(), 1, WHITE);
     let mut target = Target::default();
     let mut sum = Sum { views: views.len(), ..Sum::default() };
     for view in views {

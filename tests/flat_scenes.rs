@@ -55,14 +55,13 @@ fn look(scene: &Scene<Flat>, view: &View<Flat>) -> Seen {
     let (mut visible, mut hit) = (BTreeSet::new(), BTreeSet::new());
     for w in angles.windows(2).filter(|w| w[1] - w[0] > LEAST_ANGLE) {
         let ray = DVec2::from_angle((w[0] + w[1]) * 0.5).rotate(forward.normalize());
-        let mut nearest = (f64::INFINITY, None);
-        for &(id, a, b) in &segments {
-            if let Some(t) = distance(eye, ray, a, b) {
-                hit.insert(id);
-                nearest = if t < nearest.0 { (t, Some(id)) } else { nearest };
-            }
-        }
-        visible.extend(nearest.1);
+        let mut met: Vec<(f64, PrimId)> =
+            segments.iter().filter_map(|&(id, a, b)| Some((distance(eye, ray, a, b)?, id))).collect();
+        met.sort_by(|a, b| a.0.total_cmp(&b.0));
+        hit.extend(met.iter().map(|m| m.1));
+        // Up to the first that is opaque, and with it.
+        let through = met.iter().take_while(|m| scene.is_see_through(m.1)).count();
+        visible.extend(met.iter().take(through + 1).map(|m| m.1));
     }
     Seen { hidden: hit.difference(&visible).copied().collect(), visible }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use cullscope::culling::Methods;
 use cullscope::geometry::{Flat, PrimId, Solid};
 use cullscope::method::Settings;
-use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, Surfaces, load};
 use cullscope::truth::Truth;
 
 fn home() -> &'static Path {
@@ -69,7 +69,7 @@ fn scenes_of_figures_show_what_the_figures_show() {
         let of_box = |prims: &[PrimId]| {
             prims.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "T").count()
         };
-        let mut truth = Truth::new(&scene, false, 1, [1.0; 3]);
+        let mut truth = Truth::new(&scene, Surfaces::default(), 1, [1.0; 3]);
         let method = <Solid as Methods>::method("large-occluders").expect("a method");
         let mut run =
             method.ready(&scene, &Settings::default(), &Quiet).expect("settings").expect("not cancelled");

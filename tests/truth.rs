@@ -7,7 +7,7 @@ use cullscope::drawing::Subject;
 use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
 use cullscope::method::{self, Film, Settings};
 use cullscope::raster::{Drawable, render};
-use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
+use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, Surfaces, load, random_views};
 use cullscope::truth::Truth;
 use cullscope::truth::certificate::{Certificate, Checker, Claim, certificates, check_film};
 
@@ -32,7 +32,7 @@ fn street() -> Arc<Scene<Flat>> {
 #[test]
 fn leaving_out_something_visible_is_seen() {
     let scene = building();
-    let mut truth = Truth::new(&scene, false, 1, WHITE);
+    let mut truth = Truth::new(&scene, Surfaces::default(), 1, WHITE);
     for view in random_views(&scene, 6, 4) {
         let visible = truth.look(&scene, &view);
         let Some(&missing) = visible.get(visible.len() / 2) else { continue };
@@ -58,7 +58,12 @@ fn an_eye_that_sees_nothing_is_no_division_by_zero() {
     let mut view = random_views(&*scene, 1, 1)[0];
     view.eye.position = scene.bounds().max + scene.bounds().size();
     view.eye.target = view.eye.position + scene.bounds().size();
-    let judged = Truth::new(&scene, false, 1, WHITE).judge(&scene, &view, &[], &render(&scene, &view, &[]));
+    let judged = Truth::new(&scene, Surfaces::default(), 1, WHITE).judge(
+        &scene,
+        &view,
+        &[],
+        &render(&scene, &view, &[]),
+    );
     assert_eq!(
         (judged.visible.len(), judged.coverage_ratio(), judged.overdraw(), judged.flip_mean),
         (0, 1.0, None, 0.0)
@@ -189,7 +194,7 @@ fn hidden_is_hidden<S: Methods + Drawable>(
     settings: &[(&str, &str)],
 ) -> [usize; 2] {
     let mut claims = [0, 0];
-    let one_sided = settings.contains(&("backface-culling", "true"));
+    let surfaces = Settings::of(settings).surfaces();
     for view in views {
         let film = film(scene, view, "large-occluders", settings);
         let shown = certificates(&*film);
@@ -197,7 +202,7 @@ fn hidden_is_hidden<S: Methods + Drawable>(
         claims[0] += shown.iter().filter(|c| matches!(c.claim, Claim::Behind(_))).count();
         claims[1] += shown.iter().filter(|c| c.claim == Claim::Unseen).count();
         let (checker, hierarchy) = (Checker::of(&*film), film.hierarchy());
-        let visible = Truth::new(scene, one_sided, 1, WHITE).look(scene, view);
+        let visible = Truth::new(scene, surfaces, 1, WHITE).look(scene, view);
         for &prim in &visible {
             let certificate = Certificate { step: 1, subject: Subject::Prim(prim), claim: Claim::Unseen };
             assert!(checker.check(&certificate).is_err(), "{}: {prim} is seen", scene.name());
@@ -255,7 +260,7 @@ fn the_body_of_the_machine_room_is_hidden_on_the_first_half_of_the_flight() {
     else {
         panic!("a room")
     };
-    let mut truth = Truth::new(&scene, false, 1, WHITE);
+    let mut truth = Truth::new(&scene, Surfaces::default(), 1, WHITE);
     let body = |view: &View<Solid>, truth: &mut Truth| {
         let visible = truth.look(&scene, &View { width: 256, height: 256, ..*view });
         visible.iter().filter(|p| scene.objects()[scene.object_of(**p).at()].name == "torpedo").count()

@@ -163,6 +163,8 @@ pub trait SceneFacts {
     fn live_count(&self) -> usize;
     /// Whether there is such a live primitive.
     fn has_prim(&self, prim: PrimId) -> bool;
+    /// Whether light comes through a primitive.
+    fn is_see_through(&self, prim: PrimId) -> bool;
     /// Object of a primitive.
     fn object_of(&self, prim: PrimId) -> ObjectId;
     /// Live primitives of an object.
@@ -194,6 +196,9 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
     fn has_prim(&self, prim: PrimId) -> bool {
         prim.at() < self.prim_count() && self.corners(prim).is_some()
+    }
+    fn is_see_through(&self, prim: PrimId) -> bool {
+        self.is_see_through(prim)
     }
     fn object_of(&self, prim: PrimId) -> ObjectId {
         self.object_of(prim)
@@ -345,6 +350,12 @@ impl<S: Methods> Stage<S> {
         let mut facts =
             vec![("id", prim.to_string()), ("object", scene.object_name(scene.object_of(prim)).to_owned())];
         facts.push(("material", scene.materials()[scene.material_of(prim).at()].name.clone()));
+        match (scene.is_see_through(prim), scene.is_two_sided(prim)) {
+            (false, false) => {}
+            (true, false) => facts.push(("surface", "see-through".into())),
+            (false, true) => facts.push(("surface", "two-sided".into())),
+            (true, true) => facts.push(("surface", "see-through, two-sided".into())),
+        }
         facts.extend(
             scene
                 .prim_points(prim)

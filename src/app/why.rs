@@ -7,7 +7,7 @@ use super::stage::{Reading, SceneFacts, Staged};
 use crate::drawing::Subject;
 use crate::drawing::words::count;
 use crate::geometry::{NodeId, ObjectId, PrimId};
-use crate::method::{Event, Value, Verdict};
+use crate::method::{Event, Value, Verdict, surfaces_of};
 
 /// A sentence of an explanation, with the step that shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -82,7 +82,24 @@ fn why_object(stage: &dyn Staged, film: Reading<'_>, object: ObjectId, step: usi
     let mut lines =
         vec![because(format!("{} holds {holds}: {}.", called(scene, object), states.join(", ")), None)];
     reasons(scene, film, ways, &mut lines);
+    lines.extend(see_through(scene, film, &prims));
     lines
+}
+
+/// What it means that some of these primitives are see-through.
+fn see_through(scene: &dyn SceneFacts, film: Reading<'_>, prims: &[PrimId]) -> Option<Because> {
+    let n = prims.iter().filter(|p| scene.is_see_through(**p)).count();
+    let who = match (n, prims.len()) {
+        (0, _) => return None,
+        (n, all) if n == all => "It is".to_owned(),
+        (n, _) => format!("{} of it {}", counted(n, scene.prim_name()), if n == 1 { "is" } else { "are" }),
+    };
+    let what = if surfaces_of(film.reel.knobs()).solid {
+        "taken as opaque in this run (see-through=solid)"
+    } else {
+        "drawn over what is behind, hidden by what is opaque alone, and hiding nothing"
+    };
+    Some(because(format!("{who} see-through: {what}."), None))
 }
 
 /// How many primitives of an object ended with a verdict for a reason, and the first step of it; by verdict
@@ -191,6 +208,7 @@ fn why_prim(stage: &dyn Staged, film: Reading<'_>, prim: PrimId, step: usize) ->
                 }
                 _ => lines.extend(evidence(stage.scene(), film, at)),
             }
+            lines.extend(see_through(stage.scene(), film, &[prim]));
             lines
         }
     }

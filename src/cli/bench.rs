@@ -15,7 +15,7 @@ use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::method::Settings;
 use crate::raster::{Drawable, Options, Target};
-use crate::scene::{AnyScene, LoadOptions, Quiet, Scene};
+use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, Surfaces};
 
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
@@ -201,7 +201,11 @@ fn wrongly_hidden(
         mesh,
         &fine,
         mesh.live(),
-        &Options { backface_culling: true, threads: 0, ..Options::default() },
+        &Options {
+            surfaces: Surfaces { one_sided: true, ..Surfaces::default() },
+            threads: 0,
+            ..Options::default()
+        },
     );
     let hidden = boxes.iter().zip(answers).filter(|(_, a)| **a == Some(true)).map(|(b, _)| b);
     hidden.filter(|b| shows(&fine, b, &image)).count()

@@ -16,9 +16,10 @@ use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, View, each};
 use crate::measure::deadline::Paced;
 use crate::measure::timed;
+use crate::method::surfaces_of;
 use crate::raster::{Options, Target, shade};
 use crate::render::{Theme, png_pixels};
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 use crate::truth::Truth;
 
 #[derive(clap::Args)]
@@ -124,13 +125,15 @@ fn frames<S: World>(
     views: &[View<S>],
     bar: &Bar,
 ) -> Result<Vec<Frame>, CliError> {
-    let backface_culling =
-        run.knobs().iter().any(|(k, v)| k.name == "backface-culling" && v.to_string() == "true");
+    let surfaces = surfaces_of(&run.knobs());
     let background = Theme::Print.flat_linear(Role::Paper);
-    let mut truth =
-        args.truth.then(|| Truth::new(scene, backface_culling, args.threads as usize, background));
+    let mut truth = args.truth.then(|| Truth::new(scene, surfaces, args.threads as usize, background));
     let mut target = Target::default();
-    let options = Options { threads: args.threads as usize, ..Options::default() };
+    let options = Options {
+        threads: args.threads as usize,
+        surfaces: Surfaces { one_sided: false, ..surfaces },
+        ..Options::default()
+    };
     let mut frames = Vec::with_capacity(views.len());
     run.forget();
     for (i, view) in views.iter().enumerate() {

@@ -160,6 +160,8 @@ struct Info {
     materials: usize,
     bounds: [Vec<f64>; 2],
     origin: [f64; 3],
+    see_through: usize,
+    two_sided: usize,
     moving_objects: usize,
     paths: Vec<PathInfo>,
     memory_bytes: usize,
@@ -195,6 +197,8 @@ fn info<S: World>(scene: &Arc<Scene<S>>, json: bool) -> Result<(), CliError> {
         materials: scene.materials().len(),
         bounds: [corner(scene.bounds().min), corner(scene.bounds().max)],
         origin: scene.origin().to_array(),
+        see_through: scene.live().iter().filter(|p| scene.is_see_through(**p)).count(),
+        two_sided: scene.live().iter().filter(|p| scene.is_two_sided(**p)).count(),
         moving_objects: scene.objects().iter().filter(|o| o.motion.is_some()).count(),
         paths: scene
             .paths()
@@ -241,6 +245,14 @@ fn table<S: World>(info: &Info) -> String {
         },
     );
     row("materials", info.materials.to_string());
+    for (count, what) in [
+        (info.see_through, "see-through: drawn, and hiding nothing"),
+        (info.two_sided, "two-sided: they have no back"),
+    ] {
+        if count > 0 {
+            row("surfaces", format!("{count} {}s {what}", S::PRIM));
+        }
+    }
     row("bounds", format!("[{}] to [{}]", joined(&info.bounds[0]), joined(&info.bounds[1])));
     if info.origin != [0.0; 3] {
         row("origin", format!("[{}] was subtracted", joined(&info.origin)));

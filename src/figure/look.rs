@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::drawing::{Drawing, Item, Layer, Mark, Role, Subject};
-use crate::geometry::{Frustum, NodeId, Solid, Space, Vector, View};
+use crate::geometry::{Frustum, NodeId, PrimId, Solid, Space, Vector, View};
 use crate::index::Hierarchy;
 use crate::method::{Film, Verdict};
 use crate::scene::{Scene, framing_view};
@@ -63,9 +63,13 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
         for &prim in scene.live() {
             let points: Vec<_> = scene.prim_points(prim).collect();
             let role = role_of(stamps.prim(prim, step));
-            let mark =
-                if points.len() == 2 { Mark::Line { points, closed: false } } else { Mark::Area(points) };
-            to.push(Layer::Scene, role, Subject::Prim(prim), mark);
+            if points.len() > 2 {
+                to.push(Layer::Scene, role, Subject::Prim(prim), Mark::Area(points));
+                continue;
+            }
+            for points in strokes(scene, prim, points) {
+                to.push(Layer::Scene, role, Subject::Prim(prim), Mark::Line { points, closed: false });
+            }
         }
     }
     if look.nodes && film.hierarchy().node_count() > 1 {
@@ -91,6 +95,20 @@ pub fn world<S: Space>(film: &dyn Film<S>, stamps: &Stamps, step: usize, look: &
     emphasized(film, look.selected, Role::Selected, &mut to);
     to
 }
+
+/// A segment as it is drawn: glass, as in floor plans, by two lines on both sides of it.
+fn strokes<S: Space>(scene: &Scene<S>, prim: PrimId, ends: Vec<S::Vector>) -> Vec<Vec<S::Vector>> {
+    if !scene.is_see_through(prim) {
+        return vec![ends];
+    }
+    let along = ends[1] - ends[0];
+    let off = GLASS * scene.bounds().diagonal() / along.length().max(f32::MIN_POSITIVE);
+    let aside = S::Vector::from_fn(|a| if a == 0 { -along.get(1) } else { along.get(0) }) * off;
+    [1.0, -1.0].map(|side| ends.iter().map(|end| *end + aside * side).collect()).to_vec()
+}
+
+/// Distance of the two lines of a pane from its middle, of the scene's diagonal.
+const GLASS: f32 = 0.0025;
 
 /// Boxes of the nodes entered so far. In flatland a node decided as a whole is filled; the boxes of
 /// its parents are outlines.

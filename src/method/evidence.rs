@@ -4,7 +4,7 @@
 use super::{Claim, Compared, Context, Field, Tally, Value};
 use crate::drawing::words::{self, Room};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
-use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View, faces_away};
+use crate::geometry::{Aabb, Frustum, FrustumTest, PlaneTest, PrimId, Space, Vector, View};
 use crate::scene::Scene;
 
 /// Size of labels beside evidence.
@@ -337,14 +337,4 @@ pub(crate) fn axes<V: Vector>(v: V) -> Value {
 /// Mean of a live primitive's corners.
 pub(crate) fn middle<S: Space>(scene: &Scene<S>, prim: PrimId) -> S::Vector {
     scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32)
-}
-
-/// Whether a live primitive turns its back to the eye.
-#[inline]
-pub(crate) fn prim_faces_away<S: Space>(scene: &Scene<S>, eye: S::Vector, prim: PrimId) -> bool {
-    let mut corners = [S::Vector::default(); 3];
-    for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
-        *to = from;
-    }
-    faces_away::<S>(eye, &corners[..S::CORNERS])
 }

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use super::Words;
+use crate::scene::Surfaces;
 
 /// What a parameter is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +137,14 @@ impl Settings {
             }
             _ => Err(SettingError::NotAPair(text.to_owned())),
         }
+    }
+}
+
+impl Settings {
+    /// How a run with these settings takes the surfaces of its scene.
+    pub fn surfaces(&self) -> Surfaces {
+        let is = |name: &str, word: &str| self.0.get(name).is_some_and(|v| v == word);
+        Surfaces { one_sided: is(BACKFACES, "true"), solid: is(SEE_THROUGH, "solid") }
     }
 }
 
@@ -291,14 +300,33 @@ impl Knobs for Apply<'_> {
     }
 }
 
-/// The parameter that every method has.
-pub(crate) fn backface_knob(knobs: &mut dyn Knobs, value: &mut bool) {
+/// The parameters that every method has.
+pub(crate) fn surface_knobs(knobs: &mut dyn Knobs, surfaces: &mut Surfaces) {
     let knob = Knob {
-        name: "backface-culling",
+        name: BACKFACES,
         unit: "",
-        meaning: "primitives have one side: those that face away from the eye are neither drawn nor part of \
-                  the truth",
+        meaning: "primitives have one side, but for those of a two-sided material: those that face away from \
+                  the eye are neither drawn nor part of the truth",
         source: "Klosowski and Silva 2000, Section 5",
     };
-    knobs.switch(knob, value);
+    knobs.switch(knob, &mut surfaces.one_sided);
+    let knob = Knob {
+        name: SEE_THROUGH,
+        unit: "",
+        meaning: "clear: glass and what has holes is drawn and hides nothing; solid: it hides what is behind \
+                  it, as if it were opaque",
+        source: "our own: the papers know opaque polygons only",
+    };
+    let mut at = usize::from(surfaces.solid);
+    knobs.choice(knob, &["clear", "solid"], &mut at);
+    surfaces.solid = at == 1;
 }
+
+/// How a run takes the surfaces of its scene, from the values of its parameters.
+pub fn surfaces_of(knobs: &[(Knob, KnobValue)]) -> Surfaces {
+    let words = knobs.iter().map(|(knob, value)| (knob.name.to_owned(), value.to_string()));
+    Settings(words.collect()).surfaces()
+}
+
+const BACKFACES: &str = "backface-culling";
+const SEE_THROUGH: &str = "see-through";

@@ -22,7 +22,7 @@ use super::simd::{self, Lanes, Work};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
 use super::{Extent, Options, Sieve, Target, check_size};
 use crate::geometry::{PixelRect, PrimId, Solid, View, orient3d};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// Buffers kept from draw to draw, so that drawing again takes no memory.
 #[derive(Default)]
@@ -39,6 +39,8 @@ struct Chunk {
     bands: Vec<Vec<u32>>,
     /// What the pyramid hides.
     hidden: Vec<PrimId>,
+    /// What may show, and lets light through.
+    through: Vec<PrimId>,
 }
 
 /// Primitives in a chunk: enough that its work hides the cost of handing it to a thread.
@@ -85,7 +87,8 @@ pub(super) fn draw(
         view,
         camera,
         vertices: &scratch.vertices,
-        backface_culling: options.backface_culling,
+        surfaces: options.surfaces,
+        any_through: options.surfaces.any_through(scene),
         window,
     };
     if threads <= 1 {
@@ -95,7 +98,8 @@ pub(super) fn draw(
             first_row: 0,
             width: view.width as usize,
         };
-        simd::run(options.isa, DrawAll { frame: &frame, sieve, prims, setups: &mut scratch.setups, band });
+        let (setups, through) = (&mut scratch.setups, &mut target.through);
+        simd::run(options.isa, DrawAll { frame: &frame, sieve, prims, setups, through, band });
     } else {
         draw_in_bands(&mut scratch.chunks, &frame, sieve, prims, target, options);
     }
@@ -120,11 +124,13 @@ fn draw_in_bands(
     chunks.par_iter_mut().zip(prims.par_chunks(CHUNK_PRIMS)).for_each(|(chunk, prims)| {
         chunk.setups.clear();
         chunk.hidden.clear();
+        chunk.through.clear();
         chunk.bands.resize_with(bands, Vec::new);
         chunk.bands.iter_mut().for_each(Vec::clear);
         simd::run(options.isa, SetUp { frame, held, prims, chunk });
     });
     // In the order of the chunks, not of the threads that finished them.
+    chunks.iter().for_each(|chunk| target.through.extend_from_slice(&chunk.through));
     if let Some(sieve) = &mut sieve {
         for chunk in chunks.iter() {
             sieve.hidden.extend_from_slice(&chunk.hidden);
@@ -149,7 +155,9 @@ struct Frame<'a> {
     camera: Camera,
     /// All points projected, or none: then each triangle projects its own.
     vertices: &'a [Vertex],
-    backface_culling: bool,
+    surfaces: Surfaces,
+    /// Whether light comes through any primitive; else none is asked.
+    any_through: bool,
     /// Nothing is drawn outside.
     window: PixelRect,
 }
@@ -175,7 +183,7 @@ impl Frame<'_> {
             // All three corners beyond one plane: the cheap test, which drops most. The exact side of the eye
             // comes second, since it is slow.
             if a.outside & b.outside & c.outside & REJECTS != 0
-                || self.backface_culling && !self.shows_front(corners)
+                || self.surfaces.one_sided && !self.shows_front(prim, corners)
             {
                 continue;
             }
@@ -204,9 +212,19 @@ impl Frame<'_> {
         );
     }
 
-    /// Whether the eye lies strictly on the side from which the corners run counter-clockwise.
+    /// Whether a triangle is to be filled: what lets light through hides nothing.
+    #[inline(always)]
+    fn fills(&self, setup: &Setup) -> bool {
+        !(self.any_through && self.scene.is_see_through(PrimId(setup.id)))
+    }
+
+    /// Whether the eye lies strictly on the side from which the corners run counter-clockwise, or there are
+    /// two fronts.
     #[inline(never)]
-    fn shows_front(&self, corners: [u32; 3]) -> bool {
+    fn shows_front(&self, prim: PrimId, corners: [u32; 3]) -> bool {
+        if self.scene.is_two_sided(prim) {
+            return true;
+        }
         let [a, b, c] = corners.map(|c| self.scene.points()[c as usize].as_dvec3());
         orient3d(a, b, c, self.view.eye.position.as_dvec3()) > 0.0
     }
@@ -219,20 +237,45 @@ pub(super) fn extent(
     prim: PrimId,
     options: &Options,
 ) -> Option<Extent> {
-    let camera = Camera::new(view);
-    let frame = Frame {
-        scene,
-        view,
-        camera,
-        vertices: &[],
-        backface_culling: options.backface_culling,
-        window: options.window_of(view),
-    };
-    let mut setups = Vec::new();
-    frame.set_up(&[prim], &mut setups);
+    let setups = set_up_alone(scene, view, prim, options);
     // Clipping may leave several triangles, or one that is not the whole primitive.
     let [setup] = setups[..] else { return None };
     setup.whole.then(|| Extent { pixels: setup.rect(), nearest: setup.plane.high })
+}
+
+/// A primitive made ready by itself: the triangles that clipping leaves of it.
+fn set_up_alone(scene: &Scene<Solid>, view: &View<Solid>, prim: PrimId, options: &Options) -> Vec<Setup> {
+    let (camera, window) = (Camera::new(view), options.window_of(view));
+    let surfaces = options.surfaces;
+    let frame = Frame { scene, view, camera, vertices: &[], surfaces, any_through: false, window };
+    let mut setups = Vec::new();
+    frame.set_up(&[prim], &mut setups);
+    setups
+}
+
+/// The pixels that a primitive covers, with its depth there; see [`super::Drawable::fragments`].
+pub(super) fn fragments(
+    scene: &Scene<Solid>,
+    view: &View<Solid>,
+    prim: PrimId,
+    options: &Options,
+    visit: &mut dyn FnMut(usize, f32),
+) {
+    for s in set_up_alone(scene, view, prim, options) {
+        let inverse = s.edges.map(|e| e.inverse());
+        for y in s.y0..s.y1 {
+            let (mut begin, mut end) = ([0; 1], [s.x1 - s.x0; 1]);
+            for (edge, &inverse) in s.edges.iter().zip(&inverse) {
+                narrow(edge, inverse, y - s.y0, &mut begin, &mut end);
+            }
+            let row = y as usize * view.width as usize;
+            for x in s.x0 + begin[0]..s.x0 + end[0] {
+                // The formula that [`super::reference`] writes down.
+                let along = s.plane.dx * (center(x) - s.plane.x) as f32;
+                visit(row + x as usize, (s.plane.at_row(y) + along).max(s.plane.low).min(s.plane.high));
+            }
+        }
+    }
 }
 
 /// The triangles of what clipping leaves of a triangle, as a fan.
@@ -355,7 +398,13 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
 /// Takes from the spans of some rows, the first of them `skipped` rows below the triangle's first, what lies
 /// beyond an edge.
 #[inline(always)]
-fn narrow(edge: &Edge, inverse: f64, skipped: i32, begin: &mut [i32; SPAN_ROWS], end: &mut [i32; SPAN_ROWS]) {
+fn narrow<const ROWS: usize>(
+    edge: &Edge,
+    inverse: f64,
+    skipped: i32,
+    begin: &mut [i32; ROWS],
+    end: &mut [i32; ROWS],
+) {
     let (at, dy) = (edge.at + i64::from(edge.dy) * i64::from(skipped), i64::from(edge.dy));
     // The columns with `e + dx · x ≥ 0`. Rising: from ⌈−e / dx⌉ = −⌊e / dx⌋ on.
     if edge.dx > 0 {
@@ -410,6 +459,8 @@ struct DrawAll<'a> {
     sieve: Option<Sieve<'a>>,
     prims: &'a [PrimId],
     setups: &'a mut Vec<Setup>,
+    /// Receives the see-through primitives that may show.
+    through: &'a mut Vec<PrimId>,
     band: Band<'a>,
 }
 
@@ -428,11 +479,17 @@ impl DrawAll<'_> {
             self.setups.clear();
             self.frame.set_up(prims, self.setups);
             for setup in self.setups.iter() {
+                if let Some(sieve) = &mut self.sieve
+                    && hides(sieve.pyramid, self.band.depth, setup)
+                {
+                    sieve.hidden.push(PrimId(setup.id));
+                    continue;
+                }
+                if !self.frame.fills(setup) {
+                    self.through.push(PrimId(setup.id));
+                    continue;
+                }
                 if let Some(sieve) = &mut self.sieve {
-                    if hides(sieve.pyramid, self.band.depth, setup) {
-                        sieve.hidden.push(PrimId(setup.id));
-                        continue;
-                    }
                     // Values above it stay as they are until a refresh: too far, which is safe.
                     sieve.pyramid.touch(setup.rect());
                 }
@@ -460,7 +517,7 @@ struct SetUp<'a> {
 impl Work for SetUp<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        let Chunk { setups, bands, hidden } = self.chunk;
+        let Chunk { setups, bands, hidden, through } = self.chunk;
         self.frame.set_up(self.prims, setups);
         // 3. On several threads against the pyramid before the draw, so fewer may be hidden than on one.
         if let Some((pyramid, depth)) = self.held {
@@ -470,6 +527,15 @@ impl Work for SetUp<'_> {
                     hidden.push(PrimId(setup.id));
                 }
                 !is_hidden
+            });
+        }
+        if self.frame.any_through {
+            setups.retain(|setup| {
+                let fills = self.frame.fills(setup);
+                if !fills {
+                    through.push(PrimId(setup.id));
+                }
+                fills
             });
         }
         // Each band lists the triangles that reach into its rows, in order.

@@ -31,12 +31,17 @@ pub(super) fn draw(
                 sieve.hidden.push(prim);
                 continue;
             }
+        }
+        // What lets light through hides nothing.
+        if options.surfaces.show_through(scene, prim) {
+            target.through.push(prim);
+            continue;
+        }
+        if let Some(sieve) = &mut sieve {
             sieve.pyramid.touch(pixels);
         }
         for x in pixels.x0..pixels.x1 {
-            // The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`,
-            // which was tested.
-            let z = (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high);
+            let z = depth_at(&plane, x);
             // Without items ties change nothing: equal depths are equal.
             let (depth, item) = (&mut target.depth[x as usize], target.item.get_mut(x as usize));
             if z > *depth || z == *depth && item.as_ref().is_some_and(|item| prim.0 < **item) {
@@ -58,6 +63,25 @@ pub(super) fn extent(
 ) -> Option<Extent> {
     let Seen { pixels, plane, whole } = set_up(&Camera::new(view), scene, view, prim, options)?;
     whole.then_some(Extent { pixels, nearest: plane.high })
+}
+
+/// The pixels that a segment covers, with its depth there; see [`super::Drawable::fragments`].
+pub(super) fn fragments(
+    scene: &Scene<Flat>,
+    view: &View<Flat>,
+    prim: PrimId,
+    options: &Options,
+    visit: &mut dyn FnMut(usize, f32),
+) {
+    if let Some(Seen { pixels, plane, .. }) = set_up(&Camera::new(view), scene, view, prim, options) {
+        (pixels.x0..pixels.x1).for_each(|x| visit(x as usize, depth_at(&plane, x)));
+    }
+}
+
+/// The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`, which is
+/// tested.
+fn depth_at(plane: &Plane, x: u32) -> f32 {
+    (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high)
 }
 
 /// A segment ready to be drawn.
@@ -113,7 +137,10 @@ fn clipped(
         return None;
     }
     let [p, q] = points.map(|p| p.as_dvec2());
-    if options.backface_culling && orient2d(p, q, view.eye.position.as_dvec2()) <= 0.0 {
+    if options.surfaces.one_sided
+        && !scene.is_two_sided(prim)
+        && orient2d(p, q, view.eye.position.as_dvec2()) <= 0.0
+    {
         return None;
     }
     if (a.outside | b.outside) & NEEDS_CLIP == 0 {

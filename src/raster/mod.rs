@@ -6,6 +6,8 @@
 //! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
 //! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
 //! primitives that were hidden changes no byte. [`mod@reference`] does the same in the plainest code.
+//! See-through primitives are not drawn into the image, since they hide nothing: they are listed, and
+//! [`look_through`] says where they show before it.
 //!
 //! A primitive that [`crate::geometry::Frustum::test`] calls outside yields no fragment: its vertices lie
 //! beyond the plane by more than the rounding here, and pixel centers lie half a pixel inside the image.
@@ -23,6 +25,7 @@ mod srgb;
 mod stand_in;
 #[cfg(test)]
 mod tests;
+mod through;
 mod vertex;
 
 pub use pyramid::{Pyramid, PyramidCell};
@@ -30,9 +33,10 @@ pub use shade::{DepthScale, shade, shade_depth, shade_with};
 pub use simd::Isa;
 pub use srgb::{srgb, srgb_bytes};
 pub use stand_in::StandIn;
+pub use through::look_through;
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// A depth image and an item image of the same size; height 1 in flatland. Row 0 is the top.
 #[derive(Default)]
@@ -45,6 +49,9 @@ pub struct Target {
     pub depth: Vec<f32>,
     /// Its id, or [`Target::NONE`]; empty where only depths are drawn.
     pub item: Vec<u32>,
+    /// See-through primitives that were drawn, as far as they may cover a pixel; in the order of drawing, and
+    /// as often as they were. They leave depths and items as they are.
+    pub through: Vec<PrimId>,
     scratch: image::Scratch,
 }
 
@@ -72,18 +79,19 @@ impl Target {
         self.depth.clear();
         self.depth.resize(view.width as usize * view.height as usize, 1.0 / view.eye.far);
         self.item.clear();
+        self.through.clear();
     }
     /// Number of pixels that show another primitive, or the same at another depth, than in `other`;
     /// all of them if the sizes differ.
     pub fn wrong_pixels(&self, other: &Self) -> usize {
-        if (self.width, self.height) != (other.width, other.height) {
-            return self.item.len();
-        }
+        (0..self.item.len()).filter(|&at| self.differs(other, at)).count()
+    }
+    /// Whether one pixel does.
+    pub fn differs(&self, other: &Self, at: usize) -> bool {
         // Bits, not values: −0 and 0 would be equal, and an image is promised byte for byte.
-        let same = |i: &usize| {
-            self.item[*i] == other.item[*i] && self.depth[*i].to_bits() == other.depth[*i].to_bits()
-        };
-        self.item.len() - (0..self.item.len()).filter(same).count()
+        (self.width, self.height) != (other.width, other.height)
+            || self.item[at] != other.item[at]
+            || self.depth[at].to_bits() != other.depth[at].to_bits()
     }
 }
 
@@ -94,11 +102,13 @@ impl Clone for Target {
             height: self.height,
             depth: self.depth.clone(),
             item: self.item.clone(),
+            through: self.through.clone(),
             scratch: Default::default(),
         }
     }
 }
 
+/// Images of the same depths and items. Which see-through primitives were drawn over them is not compared.
 impl PartialEq for Target {
     fn eq(&self, other: &Self) -> bool {
         (self.width, self.height) == (other.width, other.height)
@@ -114,12 +124,12 @@ impl std::fmt::Debug for Target {
     }
 }
 
-/// How to draw. None of it but `backface_culling` and `window` changes the image.
+/// How to draw. None of it but `surfaces` and `window` changes the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Skip primitives whose front (counter-clockwise; the left of a segment) does not face the eye,
-    /// decided by the exact predicate. Otherwise both sides are drawn.
-    pub backface_culling: bool,
+    /// One-sided: skip primitives whose front (counter-clockwise; the left of a segment) does not face the
+    /// eye, decided by the exact predicate. Otherwise both sides are drawn.
+    pub surfaces: Surfaces,
     /// 1: on the calling thread alone. 0: on all threads of the rayon pool in scope. Any other
     /// number: likewise, split for that many.
     pub threads: usize,
@@ -141,7 +151,7 @@ pub struct Sieve<'a> {
     /// The pyramid of the target's depths. Drawing makes it stale where something was drawn; nothing is
     /// brought up to date.
     pub pyramid: &'a mut Pyramid,
-    /// Receives the primitives that were left out, in the order of drawing.
+    /// Receives the primitives that were left out, in the order of drawing; see-through ones too.
     pub hidden: &'a mut Vec<PrimId>,
 }
 
@@ -156,7 +166,7 @@ pub struct Extent {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { backface_culling: false, threads: 1, isa: Isa::best(), window: None }
+        Self { surfaces: Surfaces::default(), threads: 1, isa: Isa::best(), window: None }
     }
 }
 
@@ -182,6 +192,15 @@ pub trait Drawable: Space {
     /// What [`Drawable::sift`] tests against the pyramid; `None` if it tests nothing, since the primitive
     /// covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
+    /// Calls `visit` with the place of each pixel that a primitive covers, row by row, and its depth there:
+    /// what [`Drawable::draw`] would compare with the image, of a see-through primitive as well.
+    fn fragments(
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prim: PrimId,
+        options: &Options,
+        visit: &mut dyn FnMut(usize, f32),
+    );
     /// The same as [`Drawable::draw`] in the plainest code (and without a window); see [`mod@reference`].
     ///
     /// # Panics
@@ -218,6 +237,15 @@ impl Drawable for Flat {
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         line::extent(scene, view, prim, options)
     }
+    fn fragments(
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prim: PrimId,
+        options: &Options,
+        visit: &mut dyn FnMut(usize, f32),
+    ) {
+        line::fragments(scene, view, prim, options, visit);
+    }
     fn draw_reference(
         target: &mut Target,
         scene: &Scene<Self>,
@@ -252,6 +280,15 @@ impl Drawable for Solid {
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         image::extent(scene, view, prim, options)
     }
+    fn fragments(
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prim: PrimId,
+        options: &Options,
+        visit: &mut dyn FnMut(usize, f32),
+    ) {
+        image::fragments(scene, view, prim, options, visit);
+    }
     fn draw_reference(
         target: &mut Target,
         scene: &Scene<Self>,
@@ -270,7 +307,7 @@ pub fn render<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId]) -
     target
 }
 
-/// The primitives that show in the image, ascending.
+/// The primitives that show in the image, ascending; those that are see-through are not among them.
 pub fn visible(target: &Target) -> Vec<PrimId> {
     let ids = || target.item.iter().copied().filter(|&i| i != Target::NONE);
     // A bit for each id: the list comes out ascending and without repetition, with no sort.

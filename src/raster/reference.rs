@@ -25,7 +25,12 @@ pub(super) fn draw_image(
     for &prim in prims {
         let Some(corners) = scene.corners(prim) else { continue };
         let [a, b, c] = corners.map(|c| scene.points()[c as usize]);
-        if options.backface_culling
+        if options.surfaces.show_through(scene, prim) {
+            target.through.push(prim);
+            continue;
+        }
+        if options.surfaces.one_sided
+            && !scene.is_two_sided(prim)
             && orient3d(a.as_dvec3(), b.as_dvec3(), c.as_dvec3(), view.eye.position.as_dvec3()) <= 0.0
         {
             continue;
@@ -89,6 +94,10 @@ pub(super) fn draw_line(
     let camera = Camera::new(view);
     for &prim in prims {
         let Some([a, b]) = segment(&camera, scene, view, prim, options) else { continue };
+        if options.surfaces.show_through(scene, prim) {
+            target.through.push(prim);
+            continue;
+        }
         let (left, right) = (a.x.min(b.x), a.x.max(b.x));
         for x in 0..view.width as i32 {
             if left <= center(x) && center(x) < right {

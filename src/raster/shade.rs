@@ -1,11 +1,19 @@
 //! A color image of an item image: flat-shaded, one color a primitive.
+//!
+//! See-through primitives are laid over it. How much of what is behind shows through one is not asked: files
+//! say it by textures as often as by numbers. Each takes [`VEIL`] of a pixel, and their colors are averaged,
+//! so that their order does not matter (Bavoil and Myers 2008, "Order Independent Transparency with Dual
+//! Depth Peeling", Section 4: weighted average).
 
-use super::{Drawable, Target, srgb_bytes};
+use super::{Drawable, Options, Target, look_through, srgb_bytes};
 use crate::geometry::{PrimId, Vector, View};
 use crate::scene::Scene;
 
 /// Share of a material's color that faces seen edge-on keep; the rest grows with the cosine.
 const AMBIENT: f32 = 0.35;
+
+/// Share of a pixel that one see-through primitive covers.
+const VEIL: f32 = 0.4;
 
 /// The image in the scene's own colors under a light at the eye: material color times `0.35 + 0.65 |cos|` of
 /// the angle between the face's normal and the direction to the eye, both sides alike. `background` (linear)
@@ -27,23 +35,70 @@ pub fn shade_with<S: Drawable>(
     background: [f32; 3],
     mut color: impl FnMut(PrimId) -> [f32; 3],
 ) -> Vec<u8> {
-    let background = srgb_bytes(background);
+    let mut lit = |prim: PrimId| {
+        let light = headlight(scene, view, prim);
+        color(prim).map(|c| c * light)
+    };
+    let empty = srgb_bytes(background);
     // Each primitive is shaded once; alpha 0 marks those not met yet.
     let mut palette = vec![[0u8; 4]; scene.prim_count()];
     let mut pixels = Vec::with_capacity(target.item.len() * 4);
     for &item in &target.item {
         if item == Target::NONE {
-            pixels.extend_from_slice(&background);
+            pixels.extend_from_slice(&empty);
             continue;
         }
         let entry = &mut palette[item as usize];
         if entry[3] == 0 {
-            let light = headlight(scene, view, PrimId(item));
-            *entry = srgb_bytes(color(PrimId(item)).map(|c| c * light));
+            *entry = srgb_bytes(lit(PrimId(item)));
         }
         pixels.extend_from_slice(entry);
     }
+    for (at, veil) in veils(target, scene, view, &mut lit) {
+        let item = target.item[at];
+        let behind = if item == Target::NONE { background } else { lit(PrimId(item)) };
+        let through = (1.0 - VEIL).powi(veil.layers as i32);
+        let mean = veil.color.map(|sum| sum as f32 / (STEPS * veil.layers as f32));
+        let mixed = std::array::from_fn(|c| behind[c] * through + mean[c] * (1.0 - through));
+        pixels[4 * at..4 * at + 4].copy_from_slice(&srgb_bytes(mixed));
+    }
     pixels
+}
+
+/// The see-through primitives of a pixel: how many, and the sum of their linear colors in steps, whole
+/// numbers so that the order of adding leaves no trace.
+#[derive(Clone, Copy, Default)]
+struct Veil {
+    layers: u32,
+    color: [u64; 3],
+}
+
+/// Steps of a linear color from 0 to 1.
+const STEPS: f32 = 65_536.0;
+
+/// Pixels before which see-through primitives were drawn, with these.
+fn veils<S: Drawable>(
+    target: &Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    lit: &mut impl FnMut(PrimId) -> [f32; 3],
+) -> Vec<(usize, Veil)> {
+    // What was drawn several times, since clipping cut it up, is one layer.
+    let mut prims = target.through.clone();
+    prims.sort_unstable();
+    prims.dedup();
+    let mut veils = vec![Veil::default(); if prims.is_empty() { 0 } else { target.item.len() }];
+    let mut last: Option<(PrimId, [u64; 3])> = None;
+    look_through(target, scene, view, &prims, &Options::default(), |prim, at| {
+        let (_, color) = match &mut last {
+            Some(known) if known.0 == prim => *known,
+            other => *other.insert((prim, lit(prim).map(|c| (c.clamp(0.0, 1.0) * STEPS) as u64))),
+        };
+        let veil = &mut veils[at];
+        veil.layers += 1;
+        (0..3).for_each(|c| veil.color[c] += color[c]);
+    });
+    veils.into_iter().enumerate().filter(|(_, veil)| veil.layers > 0).collect()
 }
 
 /// Brightness of a face under a light at the eye.

@@ -38,6 +38,12 @@ struct File {
     /// Color of each object, linear red, green, blue in 0..=1.
     #[serde(default)]
     colors: BTreeMap<String, [f32; 3]>,
+    /// Names of objects that hide nothing.
+    #[serde(default)]
+    see_through: Vec<String>,
+    /// Names of objects without a back.
+    #[serde(default)]
+    two_sided: Vec<String>,
     #[serde(default)]
     eyes: Vec<[f64; 4]>,
     #[serde(default)]
@@ -228,30 +234,42 @@ impl Reader<'_> {
         Ok(objects)
     }
 
-    /// Materials, and which of them each object has.
+    /// Materials, and which of them each object has: the default, or one by the object's name.
     fn materials(
         &self,
         file: &File,
         objects: &[Object],
     ) -> Result<(Vec<Material>, Vec<MaterialId>), SceneError> {
-        let mut materials = vec![Material::new("default", GRAY)];
-        let mut of_object = vec![MaterialId(0); objects.len()];
+        use Step::{At, Key};
+        let mut named: BTreeMap<&str, Material> = BTreeMap::new();
+        let plain = |name: &str| Material::new(name, GRAY);
         for (name, color) in &file.colors {
-            let here = [Step::Key("colors"), Step::Key(name.as_str())];
+            let here = [Key("colors"), Key(name.as_str())];
             if !color.iter().all(|c| (0.0..=1.0).contains(c)) {
                 return self.fail(&here, format!("the color of `{name}` must be three numbers from 0 to 1"));
             }
-            let id = MaterialId(materials.len() as u32);
-            materials.push(Material::new(name.clone(), *color));
-            let mut found = false;
-            for (_, of) in objects.iter().zip(&mut of_object).filter(|(o, _)| o.name == *name) {
-                (*of, found) = (id, true);
-            }
-            if !found {
-                return self.fail(&here, format!("there is no object `{name}` to color"));
-            }
+            self.find(objects, name, &here, "color")?;
+            named.insert(name, Material::new(name.clone(), *color));
         }
-        Ok((materials, of_object))
+        for (i, name) in file.see_through.iter().enumerate() {
+            self.find(objects, name, &[Key("see_through"), At(i)], "see through")?;
+            named.entry(name).or_insert_with(|| plain(name)).see_through = true;
+        }
+        for (i, name) in file.two_sided.iter().enumerate() {
+            self.find(objects, name, &[Key("two_sided"), At(i)], "give two sides")?;
+            named.entry(name).or_insert_with(|| plain(name)).two_sided = true;
+        }
+        let place = |o: &Object| named.keys().position(|n| *n == o.name).map_or(0, |at| at + 1);
+        let of_object = objects.iter().map(|o| MaterialId(place(o) as u32)).collect();
+        let materials = [Material::new("default", GRAY)].into_iter().chain(named.into_values());
+        Ok((materials.collect(), of_object))
+    }
+
+    fn find(&self, objects: &[Object], name: &str, here: &[Step], what: &str) -> Result<(), SceneError> {
+        if objects.iter().any(|o| o.name == name) {
+            return Ok(());
+        }
+        self.fail(here, format!("there is no object `{name}` to {what}"))
     }
 
     fn segments(&self, file: &File, report: &mut Report) -> (Vec<Vec2>, Vec<Option<[u32; 2]>>) {

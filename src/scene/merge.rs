@@ -8,7 +8,7 @@
 use glam::{DVec3, Vec3};
 
 use super::polygon::{Cutter, Shape, newell};
-use super::{Face, Parts, Progress, Scene};
+use super::{Face, Parts, Progress, Scene, Surfaces};
 use crate::geometry::{Flat, PrimId, Solid, orient2d};
 
 /// Most corners of a merged polygon: more help no method, and bound the work.
@@ -30,7 +30,7 @@ struct Merger<'a> {
 
 /// Merges; see the module.
 pub(super) fn merge_coplanar(parts: &mut Parts<Solid>, progress: &dyn Progress) {
-    let mut merger = Merger::new(parts, false);
+    let mut merger = Merger::new(parts, false, |_| true);
     let before: Vec<usize> = merger.prims.iter().map(Vec::len).collect();
     if !merger.run(progress) {
         return;
@@ -45,23 +45,24 @@ pub(super) fn merge_coplanar(parts: &mut Parts<Solid>, progress: &dyn Progress) 
 
 impl Scene<Solid> {
     /// The live primitives as planar convex polygons, coplanar neighbors merged whatever their object and
-    /// material: what occluders are. Ordered by their first primitive. `None` when cancelled.
-    pub fn convex_polygons(&self, progress: &dyn Progress) -> Option<Vec<Face>> {
-        let mut merger = Merger::new(&self.parts, true);
+    /// material: what occluders are, so none that shows what is behind it. Ordered by their first primitive.
+    /// `None` when cancelled.
+    pub fn convex_polygons(&self, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>> {
+        let mut merger = Merger::new(&self.parts, true, |p| !surfaces.show_through(self, p));
         merger.run(progress).then(|| merger.into_faces())
     }
 }
 
 impl Scene<Flat> {
     /// The live segments, those merged that continue each other exactly straight on: what occluders are in
-    /// flatland. The first primitive gives the direction. Ordered by their first primitive. `None` when
-    /// cancelled.
-    pub fn convex_polygons(&self, progress: &dyn Progress) -> Option<Vec<Face>> {
+    /// flatland, so none that shows what is behind it. The first primitive gives the direction. Ordered by
+    /// their first primitive. `None` when cancelled.
+    pub fn convex_polygons(&self, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>> {
         progress.report(0.0, "merging collinear segments");
-        let mut next: Vec<(u32, PrimId)> =
-            self.live().iter().filter_map(|&p| Some((self.corners(p)?[0], p))).collect();
+        let taken = || self.live().iter().copied().filter(|p| !surfaces.show_through(self, *p));
+        let mut next: Vec<(u32, PrimId)> = taken().filter_map(|p| Some((self.corners(p)?[0], p))).collect();
         next.sort_unstable();
-        let mut ends: Vec<u32> = self.live().iter().filter_map(|&p| Some(self.corners(p)?[1])).collect();
+        let mut ends: Vec<u32> = taken().filter_map(|p| Some(self.corners(p)?[1])).collect();
         ends.sort_unstable();
         let times =
             |list: &[u32], c: u32| list.partition_point(|e| *e <= c) - list.partition_point(|e| *e < c);
@@ -82,8 +83,8 @@ impl Scene<Flat> {
             (after != p && goes_on(corners, self.corners(after)?[1])).then_some(after)
         };
         let mut continues = vec![false; self.prim_count()];
-        self.live().iter().filter_map(|&p| straight(p)).for_each(|p| continues[p.at()] = true);
-        let heads = self.live().iter().copied().filter(|p| !continues[p.at()]);
+        taken().filter_map(straight).for_each(|p| continues[p.at()] = true);
+        let heads = taken().filter(|p| !continues[p.at()]);
         let face = |head: PrimId| {
             let mut prims = vec![head];
             let mut last = head;
@@ -102,17 +103,22 @@ impl Scene<Flat> {
 }
 
 impl<'a> Merger<'a> {
-    /// All polygons of `parts`; `mixed`: those of different objects and materials merge too.
-    fn new(parts: &'a Parts<Solid>, mixed: bool) -> Self {
+    /// All polygons of `parts` that are taken; `mixed`: those of different objects and materials merge too.
+    fn new(parts: &'a Parts<Solid>, mixed: bool, takes: impl Fn(PrimId) -> bool) -> Self {
         let mut covered = vec![false; parts.prims.len()];
         let mut polygons: Vec<(Vec<u32>, Vec<PrimId>)> = Vec::new();
         for face in &parts.faces {
             face.prims.iter().for_each(|p| covered[p.at()] = true);
+            // A face has one material.
+            if !takes(face.prims[0]) {
+                continue;
+            }
             polygons.push((face.corners.clone(), face.prims.clone()));
         }
         for (p, corners) in parts.prims.iter().enumerate().filter(|(p, _)| !covered[*p]) {
-            if let Some(corners) = corners {
-                polygons.push((corners.to_vec(), vec![PrimId(p as u32)]));
+            let prim = PrimId(p as u32);
+            if let Some(corners) = corners.filter(|_| takes(prim)) {
+                polygons.push((corners.to_vec(), vec![prim]));
             }
         }
         polygons.sort_by_key(|(_, prims)| prims[0]);

@@ -22,6 +22,7 @@ mod report;
 #[cfg(test)]
 pub(crate) mod samples;
 mod source;
+mod surfaces;
 mod text;
 mod views;
 
@@ -34,6 +35,7 @@ pub use paths::{figure_eight_path, random_views};
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
 pub use source::{LoadOptions, Recenter};
+pub use surfaces::Surfaces;
 pub use views::{parse_views, read_views, write_views};
 
 use std::sync::Arc;
@@ -41,7 +43,9 @@ use std::sync::Arc;
 use glam::DVec3;
 use sha2::{Digest, Sha256};
 
-use crate::geometry::{Aabb, Either, Flat, MaterialId, ObjectId, PrimId, Solid, Space, View, ViewPath};
+use crate::geometry::{
+    Aabb, Either, Flat, MaterialId, ObjectId, PrimId, Solid, Space, View, ViewPath, faces_away,
+};
 
 /// A named part of a scene: an `o` or `g` of an OBJ file, a node of a glTF file, a flatland object.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,6 +156,7 @@ pub struct Scene<S: Space> {
     live: Vec<PrimId>,
     bounds: Aabb<S::Vector>,
     hash: [u8; 32],
+    has_see_through: bool,
     about: Arc<About>,
 }
 
@@ -186,7 +191,11 @@ impl<S: Space> Scene<S> {
             return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM });
         }
         let hash = digest(&parts);
-        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash, about: Arc::default() };
+        // Asked before each primitive's own material, which most scenes then need not look up.
+        let has_see_through =
+            live.iter().any(|p| parts.materials[parts.prim_material[p.at()].at()].see_through);
+        let about = Arc::default();
+        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash, has_see_through, about };
         scene.bounds = scene.live.iter().fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)));
         Ok(scene)
     }
@@ -239,6 +248,32 @@ impl<S: Space> Scene<S> {
     pub fn material_of(&self, prim: PrimId) -> MaterialId {
         self.parts.prim_material[prim.at()]
     }
+    /// Whether light comes through a primitive, so that it hides nothing.
+    #[inline]
+    pub fn is_see_through(&self, prim: PrimId) -> bool {
+        self.has_see_through && self.parts.materials[self.parts.prim_material[prim.at()].at()].see_through
+    }
+    /// Whether it does through any live primitive.
+    pub fn has_see_through(&self) -> bool {
+        self.has_see_through
+    }
+    /// Whether a primitive is seen from behind as from the front, where sides matter.
+    #[inline]
+    pub fn is_two_sided(&self, prim: PrimId) -> bool {
+        self.parts.materials[self.parts.prim_material[prim.at()].at()].two_sided
+    }
+    /// Whether a live primitive turns its back to an eye and has one: strictly, in exact arithmetic.
+    #[inline]
+    pub fn faces_away(&self, prim: PrimId, eye: S::Vector) -> bool {
+        if self.is_two_sided(prim) {
+            return false;
+        }
+        let mut corners = [S::Vector::default(); 3];
+        for (to, from) in corners.iter_mut().zip(self.prim_points(prim)) {
+            *to = from;
+        }
+        faces_away::<S>(eye, &corners[..S::CORNERS])
+    }
     /// All objects.
     pub fn objects(&self) -> &[Object] {
         &self.parts.objects
@@ -281,7 +316,7 @@ impl<S: Space> Scene<S> {
         self.about = Arc::new(about);
         self
     }
-    /// SHA-256 of the geometry (points, corners, objects, colors), lower-case hex.
+    /// SHA-256 of the geometry (points, corners, objects, materials), lower-case hex.
     pub fn hash_hex(&self) -> String {
         self.hash.iter().map(|b| format!("{b:02x}")).collect()
     }
@@ -339,7 +374,12 @@ fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
             None => hash.update(u32::MAX.to_le_bytes()),
         }
         hash.update(parts.prim_object[i].0.to_le_bytes());
-        parts.materials[parts.prim_material[i].at()].color.iter().for_each(|c| hash.update(c.to_le_bytes()));
+        let material = &parts.materials[parts.prim_material[i].at()];
+        material.color.iter().for_each(|c| hash.update(c.to_le_bytes()));
+        // Only what departs from the plain material, so that plain scenes keep the hash that old traces name.
+        if material.see_through || material.two_sided {
+            hash.update([u8::from(material.see_through), u8::from(material.two_sided)]);
+        }
     }
     hash.finalize().into()
 }

@@ -26,9 +26,9 @@ use super::widened;
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Vector, View, orient2d, orient3d};
 use crate::index::Hierarchy;
-use crate::method::{self, Event, Film, KnobValue, Verdict};
+use crate::method::{self, Event, Film, Verdict};
 use crate::raster::Drawable;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// Evidence that something cannot be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +134,7 @@ pub struct Checker<'a, S: Drawable> {
     scene: &'a Scene<S>,
     hierarchy: &'a dyn Hierarchy<S>,
     view: View<S>,
-    one_sided: bool,
+    surfaces: Surfaces,
     /// Drawn when it is first asked for.
     sight: OnceCell<Sight<'a, S>>,
     eye: DVec3,
@@ -157,11 +157,10 @@ const AXIS_HALF_ULPS: f64 = 8.0;
 impl<'a, S: Drawable> Checker<'a, S> {
     /// For the certificates of a film.
     pub fn of(film: &'a dyn Film<S>) -> Self {
-        let one_sided = film
-            .knobs()
-            .iter()
-            .any(|(knob, value)| knob.name == "backface-culling" && *value == KnobValue::Switch(true));
-        Self { one_sided, ..Self::new(film.scene(), film.hierarchy(), film.view()) }
+        Self {
+            surfaces: method::surfaces_of(film.knobs()),
+            ..Self::new(film.scene(), film.hierarchy(), film.view())
+        }
     }
 
     /// Derives the planes of the view volume from the Eye. Primitives have two sides.
@@ -197,7 +196,7 @@ impl<'a, S: Drawable> Checker<'a, S> {
             scene,
             hierarchy,
             view: *view,
-            one_sided: false,
+            surfaces: Surfaces::default(),
             sight: OnceCell::new(),
             eye: position,
             planes,
@@ -231,7 +230,7 @@ impl<'a, S: Drawable> Checker<'a, S> {
     }
 
     fn sight(&self) -> &Sight<'a, S> {
-        self.sight.get_or_init(|| Sight::new(self.scene, &self.view, self.one_sided))
+        self.sight.get_or_init(|| Sight::new(self.scene, &self.view, self.surfaces))
     }
 
     fn behind(

@@ -1,10 +1,11 @@
 //! Is what a method called hidden really hidden? Asked of an image and of rays, not of the method's own
 //! arithmetic.
 //!
-//! The image is that of the whole scene, drawn once a view by the plain reference of the rasterizer. Of a box
-//! it is asked at every pixel center whose ray meets the box: does the image show a surface that is nearer
-//! than where that ray enters the box? Rays come from the definition of the Eye and meet boxes slab by slab,
-//! all in f64. Of a primitive it is asked that it owns no pixel.
+//! The image is that of the whole scene, drawn once a view by the plain reference of the rasterizer, without
+//! what is see-through: that hides nothing, and is seen where it lies before all that the image shows. Of a
+//! box it is asked at every pixel center whose ray meets the box: does the image show a surface that is
+//! nearer than where that ray enters the box? Rays come from the definition of the Eye and meet boxes slab by
+//! slab, all in f64. Of a primitive it is asked that it owns no pixel, or shows in none.
 //!
 //! Allowances, all in favor of the claim: vertices are snapped to 1/256 pixel, so a surface counts as being
 //! as near as it is anywhere within [`SNAP_PX`] of the pixel's center, but no nearer than its nearest corner;
@@ -16,10 +17,10 @@
 
 use glam::DVec3;
 
-use super::{turns_away, widened};
+use super::{all_visible, widened};
 use crate::geometry::{PrimId, Vector, View};
-use crate::raster::{Drawable, Options, Target, visible};
-use crate::scene::Scene;
+use crate::raster::{Drawable, Options, Target};
+use crate::scene::{Scene, Surfaces};
 
 /// How far the snapping of its corners to 1/256 pixel can move a surface, pixels in each direction: half a
 /// step, and as much again for the rounding of the view's axes over 16384 pixels.
@@ -115,14 +116,15 @@ impl Rays {
 }
 
 impl<'a, S: Drawable> Sight<'a, S> {
-    /// Draws the whole scene, or where `one_sided` all that does not turn its back to the eye.
-    pub fn new(scene: &'a Scene<S>, view: &View<S>, one_sided: bool) -> Self {
-        let prims: Vec<PrimId> =
-            scene.live().iter().copied().filter(|&p| !one_sided || !turns_away(scene, view, p)).collect();
+    /// Draws the whole scene, its surfaces taken in some way.
+    pub fn new(scene: &'a Scene<S>, view: &View<S>, surfaces: Surfaces) -> Self {
+        let is_there = |p: &PrimId| !surfaces.leave_out(scene, *p, view.eye.position);
+        let prims: Vec<PrimId> = scene.live().iter().copied().filter(is_there).collect();
         let mut image = Target::new(view);
-        S::draw_reference(&mut image, scene, view, &prims, &Options::default());
+        let options = Options { surfaces: Surfaces { one_sided: false, ..surfaces }, ..Options::default() };
+        S::draw_reference(&mut image, scene, view, &prims, &options);
         let mut seen = vec![false; scene.prim_count()];
-        visible(&image).iter().for_each(|p| seen[p.at()] = true);
+        all_visible(&image, scene, view, &options).iter().for_each(|p| seen[p.at()] = true);
         Self {
             scene,
             image,
@@ -261,7 +263,10 @@ mod tests {
     #[test]
     fn boxes_are_hidden_where_every_ray_meets_the_wall_first() {
         let ((flat, flat_view), (solid, solid_view)) = (flatland(), space());
-        let (line, image) = (Sight::new(&flat, &flat_view, false), Sight::new(&solid, &solid_view, false));
+        let (line, image) = (
+            Sight::new(&flat, &flat_view, Surfaces::default()),
+            Sight::new(&solid, &solid_view, Surfaces::default()),
+        );
         for ([half, near, far, aside], hidden) in BOXES {
             let (low, high) = (DVec3::new(aside - half, near, 0.0), DVec3::new(aside + half, far, 0.0));
             assert_eq!(
@@ -286,13 +291,14 @@ mod tests {
 
     #[test]
     fn what_faces_away_hides_nothing_where_sides_matter() {
+        let one_sided = Surfaces { one_sided: true, ..Surfaces::default() };
         let (mut scene, view) = flatland();
         let (low, high) = (DVec3::new(-0.5, 6.0, 0.0), DVec3::new(0.5, 8.0, 0.0));
-        assert!(Sight::new(&scene, &view, true).behind(low, high, &[]).is_ok());
+        assert!(Sight::new(&scene, &view, one_sided).behind(low, high, &[]).is_ok());
         let mut parts = scene.clone().into_parts();
         parts.prims[0] = Some([0, 1]);
         scene = Scene::new(parts).expect("a scene");
-        assert!(Sight::new(&scene, &view, true).behind(low, high, &[]).is_err());
-        assert!(Sight::new(&scene, &view, false).behind(low, high, &[]).is_ok());
+        assert!(Sight::new(&scene, &view, one_sided).behind(low, high, &[]).is_err());
+        assert!(Sight::new(&scene, &view, Surfaces::default()).behind(low, high, &[]).is_ok());
     }
 }

@@ -4,27 +4,24 @@
 //! the layering number ζ of a primitive is the smallest rank that it has over all pixels to which it
 //! contributes. ζ is 1 if and only if the primitive is visible. By that definition and no other:
 //!
-//! 1. Each primitive is drawn alone, which gives its depth at each pixel that it covers.
+//! 1. Each primitive gives its depth at each pixel that it covers, as the rasterizer has it.
 //! 2. At each pixel these are ranked as the z-buffer would: the nearer first, at equal depth the lower id.
 //! 3. Of its ranks a primitive keeps the least.
 //!
-//! Cost: O(pixels covered, those behind others too); for each primitive that the view volume may clip the
-//! whole image.
+//! Cost: O(pixels covered, those behind others too).
 
-use super::turns_away;
-use crate::geometry::{Frustum, FrustumTest, PixelRect, PrimId, View};
-use crate::raster::{Drawable, Options, Target};
-use crate::scene::Scene;
+use crate::geometry::{PrimId, View};
+use crate::raster::{Drawable, Options};
+use crate::scene::{Scene, Surfaces};
 
 /// A primitive at a pixel: `1/w` and its id.
 type Fragment = (f32, u32);
 
-/// ζ of each primitive, by its number; 0 of those that cover no pixel. Primitives have two sides, or one if
-/// `backface_culling`: then those that turn away are none.
-pub fn layering_numbers<S: Drawable>(scene: &Scene<S>, view: &View<S>, backface_culling: bool) -> Vec<u32> {
-    let prims = scene.live().iter().copied();
-    let fragments =
-        fragments(scene, view, prims.filter(|p| !(backface_culling && turns_away(scene, view, *p))));
+/// ζ of each primitive, by its number; 0 of those that cover no pixel. Of `surfaces` it matters whether they
+/// have a back: then those that turn away are none. Every layer counts, what one can see through as well.
+pub fn layering_numbers<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces) -> Vec<u32> {
+    let is_there = |p: &PrimId| !surfaces.leave_out(scene, *p, view.eye.position);
+    let fragments = fragments(scene, view, scene.live().iter().copied().filter(is_there));
     // 2. A counting sort by pixel, then each pixel by itself.
     let mut starts = vec![0usize; view.width as usize * view.height as usize + 1];
     fragments.iter().for_each(|(pixel, _)| starts[*pixel as usize + 1] += 1);
@@ -53,29 +50,15 @@ fn fragments<S: Drawable>(
     view: &View<S>,
     prims: impl Iterator<Item = PrimId>,
 ) -> Vec<(u32, Fragment)> {
-    let (frustum, options, empty) = (view.frustum(), Options::default(), 1.0 / view.eye.far);
-    let image = PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height };
-    let (mut alone, mut found) = (Target::new(view), Vec::new());
-    for prim in prims {
-        // Where the rasterizer names no pixels for a primitive that needs no clipping, it covers none.
-        let may_be_clipped = match frustum.test(&scene.prim_bounds(prim), Frustum::<S::Vector>::ALL) {
-            FrustumTest::Outside(_) => continue,
-            FrustumTest::Partial(_) => true,
-            FrustumTest::Inside => false,
-        };
-        let extent = S::extent(scene, view, prim, &options).map(|extent| extent.pixels);
-        let Some(covered) = extent.or(may_be_clipped.then_some(image)) else { continue };
-        S::draw(&mut alone, scene, view, &[prim], &options);
-        for y in covered.y0..covered.y1 {
-            for x in covered.x0..covered.x1 {
-                let at = y * view.width + x;
-                let (depth, item) = (&mut alone.depth[at as usize], &mut alone.item[at as usize]);
-                if *item == prim.0 {
-                    found.push((at, (*depth, *item)));
-                    (*depth, *item) = (empty, Target::NONE);
-                }
+    let (frustum, options, farthest) = (view.frustum(), Options::default(), 1.0 / view.eye.far);
+    let mut found = Vec::new();
+    for prim in prims.filter(|p| !frustum.excludes(&scene.prim_bounds(*p))) {
+        // The far plane does not cut primitives: it is a depth that nothing shows beyond.
+        S::fragments(scene, view, prim, &options, &mut |at, depth| {
+            if depth >= farthest {
+                found.push((at as u32, (depth, prim.0)));
             }
-        }
+        });
     }
     found
 }
@@ -133,7 +116,7 @@ mod tests {
         let outside = framing_view(&scene.bounds(), 48, 48);
         for mut view in random_views(&scene, 3, 5).into_iter().chain([outside]) {
             (view.width, view.height) = (48, view.height.min(48));
-            let numbers = layering_numbers(&scene, &view, false);
+            let numbers = layering_numbers(&scene, &view, Surfaces::default());
             let seen = visible(&render(&scene, &view, scene.live()));
             let first: Vec<PrimId> = scene.live().iter().copied().filter(|p| numbers[p.at()] == 1).collect();
             assert_eq!(first, seen, "ζ is 1 if and only if it is visible");

@@ -1,7 +1,9 @@
 //! What is really visible, how wrong an answer is, and an independent checker of certificates.
 //!
 //! Truth is an item buffer: a primitive is visible if it owns at least one pixel of the whole scene's image
-//! at the view's resolution. An answer is right if its image is that of the whole scene, byte for byte.
+//! at the view's resolution; a see-through one if it covers a pixel that shows nothing nearer. An answer is
+//! right if its image is that of the whole scene, byte for byte, see-through primitives that are visible
+//! included.
 
 pub mod certificate;
 mod flip;
@@ -13,15 +15,15 @@ pub use layering::{layer_correlation, layering_numbers};
 
 use glam::DVec3;
 
-use crate::geometry::{PrimId, Vector, View, faces_away};
-use crate::raster::{Drawable, Options, Target, shade, visible};
-use crate::scene::Scene;
+use crate::geometry::{PrimId, Vector, View};
+use crate::raster::{Drawable, Options, Target, look_through, shade, visible};
+use crate::scene::{Scene, Surfaces};
 
 /// The exact answer of views of one scene; keeps its buffers from view to view.
 pub struct Truth {
     prims: Vec<PrimId>,
     facing: Vec<PrimId>,
-    backface_culling: bool,
+    surfaces: Surfaces,
     options: Options,
     all: Target,
     background: [f32; 3],
@@ -30,7 +32,7 @@ pub struct Truth {
 /// How an answer compares with the exact one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Judgement {
-    /// Primitives that own a pixel of the whole scene's image, ascending.
+    /// Primitives that own a pixel of the whole scene's image, or show before what does, ascending.
     pub visible: Vec<PrimId>,
     /// Those of them that were not drawn, ascending.
     pub missed: Vec<PrimId>,
@@ -40,7 +42,7 @@ pub struct Judgement {
     pub pixels: usize,
     /// Pixels whose color differs from the image of the whole scene.
     pub wrong_pixels: usize,
-    /// Pixels that show another primitive, or it at another depth.
+    /// Pixels that show another primitive, or it at another depth, or lack a see-through one.
     pub wrong_items: usize,
     /// Mean LDR-FLIP between the two images; exactly 0 if they are equal.
     pub flip_mean: f64,
@@ -70,21 +72,21 @@ impl Judgement {
 }
 
 impl Truth {
-    /// Truth of a scene whose primitives have two sides, or one if `backface_culling`; drawn by `threads`.
-    /// Images have a `background` (linear).
+    /// Truth of a scene whose surfaces are taken in some way; drawn by `threads`. Images have a `background`
+    /// (linear).
     pub fn new<S: Drawable>(
         scene: &Scene<S>,
-        backface_culling: bool,
+        surfaces: Surfaces,
         threads: usize,
         background: [f32; 3],
     ) -> Self {
         // Sides are told by the one rule that methods use, so the rasterizer draws both.
-        let options = Options { threads, ..Options::default() };
+        let surfaces_drawn = Surfaces { one_sided: false, ..surfaces };
         Self {
             prims: scene.live().to_vec(),
             facing: Vec::new(),
-            backface_culling,
-            options,
+            surfaces,
+            options: Options { threads, surfaces: surfaces_drawn, ..Options::default() },
             all: Target::default(),
             background,
         }
@@ -93,15 +95,16 @@ impl Truth {
     /// Draws the whole scene; what is visible, ascending.
     pub fn look<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>) -> Vec<PrimId> {
         self.all.clear(view);
-        let prims = if self.backface_culling {
+        let prims = if self.surfaces.one_sided {
+            let (eye, there) = (view.eye.position, self.prims.iter().copied());
             self.facing.clear();
-            self.facing.extend(self.prims.iter().copied().filter(|&p| !turns_away(scene, view, p)));
+            self.facing.extend(there.filter(|&p| !self.surfaces.leave_out(scene, p, eye)));
             &self.facing
         } else {
             &self.prims
         };
         S::draw(&mut self.all, scene, view, prims, &self.options);
-        visible(&self.all)
+        all_visible(&self.all, scene, view, &self.options)
     }
     /// The image that [`Truth::look`] drew last.
     pub fn image(&self) -> &Target {
@@ -118,7 +121,7 @@ impl Truth {
     ) -> Judgement {
         let visible = self.look(scene, view);
         let missed = missing(&visible, drawn, scene.prim_count());
-        let wrong_items = self.all.wrong_pixels(image);
+        let wrong_items = self.wrong_items(scene, view, &missed, image);
         let (mut wrong_pixels, mut flip) = (0, 0.0);
         if wrong_items > 0 {
             let [reference, test] = [&self.all, image].map(|t| shade(t, scene, view, self.background));
@@ -129,6 +132,41 @@ impl Truth {
         let pixels = view.width as usize * view.height as usize;
         Judgement { visible, missed, drawn: drawn.len(), pixels, wrong_pixels, wrong_items, flip_mean: flip }
     }
+    fn wrong_items<S: Drawable>(
+        &self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        missed: &[PrimId],
+        image: &Target,
+    ) -> usize {
+        let mut lacking = vec![false; self.all.item.len()];
+        look_through(&self.all, scene, view, missed, &self.options, |_, at| lacking[at] = true);
+        (0..lacking.len()).filter(|&at| lacking[at] || self.all.differs(image, at)).count()
+    }
+}
+
+/// The primitives that show in an image, see-through ones among them, ascending.
+fn all_visible<S: Drawable>(
+    image: &Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    options: &Options,
+) -> Vec<PrimId> {
+    let mut seen = visible(image);
+    let mut before = seen.len();
+    look_through(image, scene, view, &image.through, options, |prim, _| {
+        // A primitive's pixels come one after the other.
+        if seen[before..].last() != Some(&prim) {
+            seen.push(prim);
+        }
+    });
+    before = seen.len() - before;
+    if before > 0 {
+        seen.sort_unstable();
+        // What clipping cut up was drawn more than once.
+        seen.dedup();
+    }
+    seen
 }
 
 /// Those of the visible primitives of a scene of `prim_count` that were not drawn, in the order of `visible`.
@@ -136,14 +174,6 @@ pub fn missing(visible: &[PrimId], drawn: &[PrimId], prim_count: usize) -> Vec<P
     let mut kept = vec![false; prim_count];
     drawn.iter().for_each(|p| kept[p.at()] = true);
     visible.iter().copied().filter(|p| !kept[p.at()]).collect()
-}
-
-fn turns_away<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> bool {
-    let mut corners = [S::Vector::default(); 3];
-    for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
-        *to = from;
-    }
-    faces_away::<S>(view.eye.position, &corners[..S::CORNERS])
 }
 
 fn widened<V: Vector>(v: V) -> DVec3 {

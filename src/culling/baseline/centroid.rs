@@ -11,12 +11,12 @@ use super::explain::{Distance, Evidence};
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, PrimId, Space, Vector, View};
 use crate::index::Whole;
-use crate::method::evidence::{Facing, Tested, middle, prim_faces_away};
+use crate::method::evidence::{Facing, Tested, middle};
 use crate::method::{
     Budget, Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, Verdict,
-    backface_knob, keeps_nothing,
+    keeps_nothing, surface_knobs,
 };
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub struct Centroid;
@@ -25,13 +25,13 @@ pub struct Centroid;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     budget: Budget,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
     fn default() -> Self {
         // The budget at which the paper compares with it.
-        Self { budget: Budget::Percent(10.0), backface_culling: false }
+        Self { budget: Budget::Percent(10.0), surfaces: Surfaces::default() }
     }
 }
 
@@ -92,7 +92,7 @@ impl<S: Space> Method<S> for Centroid {
         let meaning = "how many primitives are drawn: a number, or a share of the scene such as 10%";
         let budget = Knob::new("budget", "primitives", meaning, "Klosowski and Silva 2000, Section 4.5");
         knobs.budget(budget, false, &mut params.budget);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,
@@ -141,7 +141,7 @@ impl<S: Space> Method<S> for Centroid {
     }
     fn has_line(params: &Params, line: u8) -> bool {
         match line {
-            line::FACING => params.backface_culling,
+            line::FACING => params.surfaces.one_sided,
             line::DRAW => params.budget.of(1) > 0,
             line::LEAVE_OUT => params.budget != Budget::Percent(100.0),
             _ => true,
@@ -179,10 +179,10 @@ fn in_view<S: Space, O: Observer<Evidence<S>>>(
             watch.event(Event::DecidedPrim(prim, Verdict::Outside));
             continue;
         }
-        if params.backface_culling {
+        if params.surfaces.one_sided {
             watch.event(Event::Line(line::FACING));
             watch.note(move || Evidence::Facing(Facing::of(prim)));
-            if prim_faces_away(scene, eye, prim) {
+            if scene.faces_away(prim, eye) {
                 watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
                 continue;
             }

@@ -13,12 +13,12 @@ use super::explain::Evidence;
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{self, FrustumTest, NodeId, Space, View};
 use crate::index::KdTree;
-use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::evidence::{Facing, Tested};
 use crate::method::{
     Card, CodeLine, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, Verdict,
-    backface_knob, keeps_nothing,
+    keeps_nothing, surface_knobs,
 };
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub struct Frustum;
@@ -27,13 +27,13 @@ pub struct Frustum;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Params {
     tree_height: u32,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
     fn default() -> Self {
         // The paper's height: about 250 nodes.
-        Self { tree_height: 8, backface_culling: false }
+        Self { tree_height: 8, surfaces: Surfaces::default() }
     }
 }
 
@@ -109,7 +109,7 @@ impl<S: Space> Method<S> for Frustum {
             ("levels of the kD-tree; 8 gives 255 nodes", "Coorg and Teller 1997, Section 4");
         let height = Knob::new("tree-height", "levels", meaning, source);
         knobs.integer(height, 1..=24, &mut params.tree_height);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,
@@ -136,7 +136,7 @@ impl<S: Space> Method<S> for Frustum {
         watch.stage("visit");
         let frustum = view.frustum();
         let mut walk =
-            Walk { index, scene, view, frustum, backface_culling: params.backface_culling, out, watch };
+            Walk { index, scene, view, frustum, backface_culling: params.surfaces.one_sided, out, watch };
         // All planes are open at the root. Each is closed for a whole subtree, where a node lies inside of
         // it.
         walk.visible(NodeId(0), geometry::Frustum::<S::Vector>::ALL);
@@ -144,8 +144,8 @@ impl<S: Space> Method<S> for Frustum {
     fn has_line(params: &Params, line: u8) -> bool {
         match line {
             line::CHILDREN | line::CHILD => params.tree_height > 1,
-            line::DRAW_ALL => !params.backface_culling,
-            line::EACH | line::FACING | line::SKIP | line::DRAW => params.backface_culling,
+            line::DRAW_ALL => !params.surfaces.one_sided,
+            line::EACH | line::FACING | line::SKIP | line::DRAW => params.surfaces.one_sided,
             _ => true,
         }
     }
@@ -233,7 +233,7 @@ impl<S: Space, O: Observer<Evidence<S>>> Walk<'_, S, O> {
             // Facing is a matter of each primitive and says nothing of a node, so it comes last. Each is
             // decided by name, since the verdict about the node would call all of them visible.
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            if prim_faces_away(scene, view.eye.position, prim) {
+            if scene.faces_away(prim, view.eye.position) {
                 self.line(line::SKIP);
                 self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {

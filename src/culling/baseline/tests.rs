@@ -197,7 +197,7 @@ fn a_wrong_setting_says_what_is_right() {
     let error = |k: &str, v: &str| entry.knobs(&settings(&[(k, v)])).expect_err("refused").to_string();
     assert_eq!(
         error("height", "3"),
-        "`frustum` has no parameter `height`; it has tree-height, backface-culling"
+        "`frustum` has no parameter `height`; it has tree-height, backface-culling, see-through"
     );
     assert_eq!(error("tree-height", "0"), "`tree-height=0`: expected a whole number from 1 to 24");
     assert_eq!(error("backface-culling", "yes"), "`backface-culling=yes`: expected true or false");

@@ -9,12 +9,12 @@ use super::explain::Evidence;
 use crate::drawing::Drawing;
 use crate::geometry::{NodeId, Space};
 use crate::index::Whole;
-use crate::method::evidence::{Facing, prim_faces_away};
+use crate::method::evidence::Facing;
 use crate::method::{
-    Card, CodeLine, DrawList, Event, Frame, Knobs, Method, Moment, Observer, Shown, Verdict, backface_knob,
-    keeps_nothing,
+    Card, CodeLine, DrawList, Event, Frame, Knobs, Method, Moment, Observer, Shown, Verdict, keeps_nothing,
+    surface_knobs,
 };
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub struct ZBuffer;
@@ -22,7 +22,7 @@ pub struct ZBuffer;
 /// Parameters of [`ZBuffer`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Params {
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 const CODE: &[CodeLine] = &[
@@ -68,7 +68,7 @@ impl<S: Space> Method<S> for ZBuffer {
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,
@@ -98,10 +98,10 @@ impl<S: Space> Method<S> for ZBuffer {
         for &prim in scene.live() {
             watch.event(Event::Line(line::EACH));
             let mut is_away = false;
-            if params.backface_culling {
+            if params.surfaces.one_sided {
                 watch.event(Event::Line(line::FACING));
                 watch.note(move || Evidence::Facing(Facing::of(prim)));
-                is_away = prim_faces_away(scene, view.eye.position, prim);
+                is_away = scene.faces_away(prim, view.eye.position);
             }
             if is_away {
                 // The truth leaves such primitives out too.
@@ -116,7 +116,7 @@ impl<S: Space> Method<S> for ZBuffer {
         watch.event(Event::Left(NodeId(0)));
     }
     fn has_line(params: &Params, line: u8) -> bool {
-        params.backface_culling || ![line::FACING, line::SKIP].contains(&line)
+        params.surfaces.one_sided || ![line::FACING, line::SKIP].contains(&line)
     }
 }
 

@@ -11,7 +11,7 @@ use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{axes, integer, label, number, outline, short};
 use crate::method::{Claim, Compared, Context, Event, Field, Note, Observer, Tallied, Tally, Value};
 use crate::raster::{Extent, Options, PyramidCell};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// What happened to a buffer, or was read of it.
 #[derive(Clone, Copy, Debug)]
@@ -84,8 +84,8 @@ pub struct Rasterized {
     pub is_hidden: bool,
     /// Whether the pyramid was asked.
     pub is_sieved: bool,
-    /// Whether it was drawn only if it faces the eye.
-    pub backface_culling: bool,
+    /// Whether it was drawn only if it faces the eye, and whether it could be see-through.
+    pub surfaces: Surfaces,
     /// The part of the image it was drawn in, if not all.
     pub window: Option<PixelRect>,
 }
@@ -146,8 +146,7 @@ impl<S: Faces> DepthNote<S> {
             Self::Rasterized(n) if !n.is_hidden => {
                 // How many threads drew is not recorded, since the image does not depend on it. Whether the
                 // pyramid was asked is: it decides which tiles the drawing marks as stale.
-                let options =
-                    Options { backface_culling: n.backface_culling, window: n.window, ..Options::default() };
+                let options = Options { surfaces: n.surfaces, window: n.window, ..Options::default() };
                 let prims = std::slice::from_ref(&n.prim);
                 Some(Step::Draw { scene, prims, options, is_sieved: n.is_sieved })
             }
@@ -277,7 +276,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             }
             Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
             Self::Answered(n) => n.sentence(far),
-            Self::Rasterized(n) => n.sentence::<S>(far),
+            Self::Rasterized(n) => n.sentence(context.scene, far),
         }
     }
 }
@@ -441,7 +440,14 @@ impl Rasterized {
         fields
     }
     /// `far`: the depth of an empty pixel.
-    fn sentence<S: Faces>(&self, far: f32) -> String {
+    fn sentence<S: Faces>(&self, scene: &Scene<S>, far: f32) -> String {
+        let mut text = self.drawn::<S>(far);
+        if !self.is_hidden && self.surfaces.show_through(scene, self.prim) {
+            text += " It is see-through, so it leaves the depths as they are and hides nothing.";
+        }
+        text
+    }
+    fn drawn<S: Faces>(&self, far: f32) -> String {
         let (kind, prim) = (S::PRIM, self.prim);
         // Drawn in a part of the image, it is not tested: there is nothing to compare in the sentence.
         if let Some(w) = self.window {

@@ -258,7 +258,7 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::DRAW => !two_pass,
         line::EACH_SHARED | line::UNSEEN => params.cubes.may_share(),
         line::CHILD => !is_one_cube,
-        line::FACES_AWAY => params.backface_culling,
+        line::FACES_AWAY => params.surfaces.one_sided,
         line::REFRESH => sieved && !two_pass,
         line::TEST => sieved,
         // Of one cube nothing is drawn before it is asked for, so nothing hides it or any of it.

@@ -33,11 +33,11 @@ use super::depth::{Buffer, Faces};
 use crate::drawing::Drawing;
 use crate::index::Octree;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
-    keeps_nothing, words,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
+    surface_knobs, words,
 };
 use crate::raster::DepthScale;
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub(crate) struct HierarchicalZ;
@@ -51,7 +51,7 @@ pub(crate) struct Params {
     primitive_test: bool,
     check_interval: u32,
     cubes: Cubes,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
@@ -66,7 +66,7 @@ impl Default for Params {
             // Section 3.3: "At the end of each frame all objects on the visible list are checked".
             check_interval: 1,
             cubes: Cubes::default(),
-            backface_culling: false,
+            surfaces: Surfaces::default(),
         }
     }
 }
@@ -167,7 +167,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         );
         knobs.integer(check, 1..=1000, &mut params.check_interval);
         params.cubes.knobs(knobs);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,

@@ -16,10 +16,10 @@ use crate::geometry::{
     View, nearest_depth,
 };
 use crate::index::{Octree, OctreeNode};
-use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::Options;
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// Buffers that frames reuse. A copy of the memory does not hold them.
 #[derive(Default)]
@@ -95,7 +95,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             params,
             // The rasterizer need not look for back faces, since each cube's primitives are tested as they
             // are gathered.
-            options: Options { backface_culling: false, threads: threads(), ..Options::default() },
+            options: Options {
+                surfaces: Surfaces { one_sided: false, ..params.surfaces },
+                threads: threads(),
+                ..Options::default()
+            },
             buffer,
             drawn,
             cubes,
@@ -344,14 +348,14 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 self.prims.push(prim);
             }
         }
-        if !self.params.backface_culling {
+        if !self.params.surfaces.one_sided {
             return;
         }
         // In place: the primitives of other cubes before `first` stay.
         let mut kept = first;
         for at in first..self.prims.len() {
             let prim = self.prims[at];
-            if prim_faces_away(scene, view.eye.position, prim) {
+            if scene.faces_away(prim, view.eye.position) {
                 self.line(line::FACES_AWAY);
                 self.watch.note(move || Evidence::Facing(Facing::of(prim)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
@@ -387,9 +391,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.note(move || {
                 // What was compared can still be read after drawing, which refreshes nothing.
                 let operands = is_sieved.then(|| buffer.operands(scene, prim, options)).flatten();
-                let (backface_culling, window) = (options.backface_culling, None);
-                let rasterized =
-                    Rasterized { prim, operands, is_hidden, is_sieved, backface_culling, window };
+                let (surfaces, window) = (options.surfaces, None);
+                let rasterized = Rasterized { prim, operands, is_hidden, is_sieved, surfaces, window };
                 Evidence::Depth(DepthNote::Rasterized(rasterized))
             });
             if is_hidden {

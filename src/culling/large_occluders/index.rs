@@ -45,7 +45,7 @@ impl Params {
                 self.directions,
                 self.occluders,
                 self.marginal_gain,
-                self.backface_culling.into(),
+                u32::from(self.surfaces.one_sided) | u32::from(self.surfaces.solid) << 1,
             ],
         }
     }
@@ -61,7 +61,7 @@ impl Params {
             directions: self.directions,
             most: self.occluders,
             gain: f64::from(self.marginal_gain) / 100.0,
-            one_sided: self.backface_culling,
+            one_sided: self.surfaces.one_sided,
         }
     }
     fn tree<S: Space>(&self, scene: &Scene<S>, progress: &dyn Progress) -> Option<KdTree<S::Vector>> {
@@ -106,9 +106,8 @@ impl<S: Shape> Index<S> {
         progress.report(0.0, "building the kD-tree");
         let Some(tree) = params.tree(scene, progress) else { return Ok(None) };
         // 2. Polygons, not primitives: a wall of two triangles hides what neither of them does.
-        let Some(faces) = S::polygons(scene, &Part { whole: progress, start: 0.1, length: 0.3 }) else {
-            return Ok(None);
-        };
+        let part = Part { whole: progress, start: 0.1, length: 0.3 };
+        let Some(faces) = S::polygons(scene, params.surfaces, &part) else { return Ok(None) };
         let all = Occluders::<S>::new(scene.points(), &faces);
         // 3. By far the longest step, so its result is what is saved: with the numbers that all polygons
         // have, which do not depend on the selection.

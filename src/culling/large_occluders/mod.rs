@@ -44,9 +44,9 @@ use self::walk::Walk;
 use crate::drawing::Drawing;
 use crate::method::{
     Card, CodeLine, Departure, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    backface_knob,
+    surface_knobs,
 };
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub struct LargeOccluders;
@@ -61,7 +61,7 @@ pub struct Params {
     marginal_gain: u32,
     cache: bool,
     detail_objects: bool,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
@@ -78,7 +78,7 @@ impl Default for Params {
             cache: true,
             detail_objects: true,
             // An occluder then hides from either side.
-            backface_culling: false,
+            surfaces: Surfaces::default(),
         }
     }
 }
@@ -311,7 +311,7 @@ impl<S: Shape> Method<S> for LargeOccluders {
         knobs.switch(Knob::new("cache", "", meaning, section!("3")), &mut params.cache);
         let meaning = "tests what survives object by object against the occluders near it";
         knobs.switch(Knob::new("detail-objects", "", meaning, section!("3.2")), &mut params.detail_objects);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,
@@ -345,7 +345,7 @@ impl<S: Shape> Method<S> for LargeOccluders {
             }
             line::DRAW_ALL => !params.detail_objects,
             line::OBJECT..=line::DRAW_OBJECT => params.detail_objects,
-            line::POLYGON..=line::DRAW => params.backface_culling,
+            line::POLYGON..=line::DRAW => params.surfaces.one_sided,
             _ => true,
         }
     }

@@ -70,13 +70,14 @@ pub fn read<S: Shape>(bytes: &[u8], key: &Key, nodes: usize, occluders: usize) -
     if params != key.params {
         return Err(format!(
             "it was made with {} levels, cells={} directions={} occluders={} marginal-gain={} \
-             backface-culling={}",
+             backface-culling={} see-through={}",
             params[0],
             params[1] == 1,
             params[2],
             params[3],
             params[4],
-            params[5] == 1
+            params[5] & 1 == 1,
+            if params[5] & 2 == 2 { "solid" } else { "clear" }
         ));
     }
     let lengths = words(4).ok_or_else(damaged)?;

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::geometry::{Aabb, Space, Vector};
-use crate::scene::{Face, Progress, Scene};
+use crate::scene::{Face, Progress, Scene, Surfaces};
 
 mod flat;
 mod solid;
@@ -56,7 +56,7 @@ pub trait Shape: Space {
     fn rounded(p: Self::Point) -> Self::Vector;
     // What makes a polygon an occluder, once per scene.
     /// The live primitives as convex polygons; `None` when cancelled.
-    fn polygons(scene: &Scene<Self>, progress: &dyn Progress) -> Option<Vec<Face>>;
+    fn polygons(scene: &Scene<Self>, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>>;
     /// Vector area: along the normal, as long as the area (in flatland: the length).
     fn area(corners: &[Self::Point]) -> Self::Point;
     /// Edge `i` of the polygon.

@@ -18,7 +18,7 @@ use super::{Active, LargeOccluders, Params, line};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Vector, View};
 use crate::index::KdNode;
-use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Observer, Verdict};
 use crate::scene::Scene;
 
@@ -150,13 +150,14 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Computes how the eye sees an occluder, once a frame; whether it can hide anything.
     fn can_hide(&mut self, id: u32) -> bool {
         let (occluders, eye, margin) = (&self.index.occluders, self.eye, self.margin);
-        let (scene, position, one_sided) = (self.scene, self.view.eye.position, self.params.backface_culling);
+        let (scene, position, one_sided) =
+            (self.scene, self.view.eye.position, self.params.surfaces.one_sided);
         let eye_side = self.memory.eye_side(id, |eye_side| {
             eye_side.look(occluders, id, eye, margin);
             // What is not drawn hides nothing.
             if eye_side.side != 0
                 && one_sided
-                && occluders.prims(id).iter().any(|&p| prim_faces_away(scene, position, p))
+                && occluders.prims(id).iter().any(|&p| scene.faces_away(p, position))
             {
                 eye_side.side = 0;
             }
@@ -498,7 +499,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Draws primitives, without those that face away if back faces are culled.
     fn draw(&mut self, prims: &[PrimId]) {
-        if !self.params.backface_culling {
+        if !self.params.surfaces.one_sided {
             self.out.prims.extend_from_slice(prims);
             return;
         }
@@ -507,7 +508,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.line(line::POLYGON);
             self.line(line::FACING);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            if prim_faces_away(scene, view.eye.position, prim) {
+            if scene.faces_away(prim, view.eye.position) {
                 self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
             } else {
                 self.line(line::DRAW);
@@ -547,7 +548,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // Eye are near the object, though the Eye may see none of them large.
         let center = bounds.center();
         let direction = index.selection.direction_of::<S>(self.eye - S::widened(center));
-        let (most, one_sided) = (self.params.occluders as usize, self.params.backface_culling);
+        let (most, one_sided) = (self.params.occluders as usize, self.params.surfaces.one_sided);
         let (occluders, center) = (&index.occluders, S::widened(center));
         // What cuts or touches the object's box, as its own primitives do, cannot hide all of it; of
         // one-sided ones those can that show it their back.

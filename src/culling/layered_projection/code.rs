@@ -126,7 +126,7 @@ pub(super) fn has_line(params: &Params, line: u8) -> bool {
         // Queries take its place, but for a time that ends them too.
         line::BREAK => !params.queries || matches!(params.budget, Budget::Milliseconds(_)),
         line::AGAIN => !everywhere && goes_on,
-        line::FACING => params.backface_culling,
+        line::FACING => params.surfaces.one_sided,
         line::COUNT => params.occupancy == Occupancy::FrontFacing && goes_on,
         line::EACH | line::CONTINUE | line::UPDATE | line::IF_STAR | line::RETURN => goes_on,
         _ if [line::IF_DONE, line::ENQUEUE, line::SUM, line::PENALTY].iter().any(|l| l.contains(&line)) => {

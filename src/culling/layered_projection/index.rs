@@ -22,6 +22,10 @@ use crate::scene::{Part, Progress, Scene};
 pub struct Index<S: Cellular> {
     pub cells: Cells<S>,
     pub assignment: Assignment,
+    /// How many primitives of each cell hide what is behind them; all of them if there is no table.
+    hiding: Option<Vec<u32>>,
+    /// ρ_max: the most of any cell.
+    most: u32,
     key: Key,
     bounds: Aabb<S::Vector>,
 }
@@ -51,7 +55,32 @@ impl<S: Cellular> Index<S> {
         // The root's box holds the scene and every cell, whichever reaches farther.
         let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
         let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
-        Self { cells, assignment, key: Key::of(scene, params), bounds }
+        let key = Key::of(scene, params);
+        let mut made = Self { cells, most: assignment.most(), assignment, hiding: None, key, bounds };
+        if params.surfaces.any_through(scene) {
+            // The paper knows opaque primitives only: what lets light through adds nothing to a cell's
+            // solidity.
+            let hides = |p: &PrimId| !params.surfaces.show_through(scene, *p);
+            let of_cell = |c: u32| made.prims_of(CellId(c)).filter(hides).count() as u32;
+            let hiding: Vec<u32> = (0..made.count() as u32).map(of_cell).collect();
+            made.most = hiding.iter().copied().max().unwrap_or(0);
+            made.hiding = Some(hiding);
+        }
+        made
+    }
+    /// The primitives that meet a cell: those of it alone, then the shared ones.
+    pub fn prims_of(&self, cell: CellId) -> impl Iterator<Item = PrimId> {
+        let shared = self.assignment.shared(cell).iter().map(|n| self.assignment.all_shared()[*n as usize]);
+        self.assignment.own(cell).iter().copied().chain(shared)
+    }
+    /// |c|, of the primitives that hide what is behind them.
+    #[inline]
+    pub fn hiding(&self, cell: CellId) -> u32 {
+        self.hiding.as_ref().map_or_else(|| self.assignment.held(cell), |hiding| hiding[cell.at()])
+    }
+    /// ρ_max, the most such primitives that meet any cell (Section 3.1).
+    pub fn most(&self) -> u32 {
+        self.most
     }
     /// Number of cells.
     pub fn count(&self) -> usize {

@@ -44,11 +44,11 @@ use crate::culling::depth::Faces;
 use crate::drawing::Drawing;
 use crate::index::tessellation::Cellular;
 use crate::method::{
-    Budget, Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
+    Budget, Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, surface_knobs,
     words,
 };
 use crate::raster::DepthScale;
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub struct LayeredProjection;
@@ -81,7 +81,7 @@ pub struct Params {
     /// Per cent of the pixels; 0: the budget holds.
     quality: u32,
     seed: u32,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
@@ -101,7 +101,7 @@ impl Default for Params {
             queries: false,
             quality: 0,
             seed: 1,
-            backface_culling: false,
+            surfaces: Surfaces::default(),
         }
     }
 }
@@ -138,7 +138,7 @@ impl<S: Cellular + Faces> Method<S> for LayeredProjection {
         extension_knobs(params, knobs);
         let meaning = "decides how the centers of cells are moved before they are triangulated";
         knobs.integer(Knob::new("seed", "", meaning, section!("4.3")), 0..=u32::MAX, &mut params.seed);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,

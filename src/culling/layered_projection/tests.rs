@@ -11,7 +11,6 @@ use crate::culling::Methods;
 use crate::drawing::Subject;
 use crate::geometry::{CellId, Flat, PrimId, Solid, Vector, View};
 use crate::index::tessellation::Cellular;
-use crate::method::evidence::prim_faces_away;
 use crate::method::{
     Budget, DrawList, Event, Field, Film, Frame, Method, Recorder, Run, Settings, State, Value, Verdict,
 };
@@ -450,7 +449,7 @@ fn is_exact_with_queries<S: World>(scene: &Arc<Scene<S>>, kind: &'static str) {
                     .live()
                     .iter()
                     .copied()
-                    .filter(|p| culled == "false" || !prim_faces_away(scene, view.eye.position, *p))
+                    .filter(|p| culled == "false" || !scene.faces_away(*p, view.eye.position))
                     .collect();
                 assert_eq!(
                     render(scene, &view, &list.prims).item,

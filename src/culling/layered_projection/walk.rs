@@ -23,7 +23,7 @@ use crate::drawing::Subject;
 use crate::geometry::{Aabb, CellId, Frustum, FrustumTest, NodeId, PrimId, Vector, View};
 use crate::index::Hierarchy;
 use crate::index::tessellation::{Cellular, Exit, Neighbor, Tessellation};
-use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Limit, Observer, Verdict};
 use crate::scene::Scene;
 
@@ -283,7 +283,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         // What meets several cells may reach out of those that are left: each by itself.
         for (number, &prim) in index.assignment.all_shared().iter().enumerate() {
-            let faces = || !(self.params.backface_culling && prim_faces_away(scene, eye, prim));
+            let faces = || !self.params.surfaces.leave_out(scene, prim, eye);
             let outside =
                 || matches!(self.frustum.test(&scene.prim_bounds(prim), planes), FrustumTest::Outside(_));
             // What the near plane may cut has no bound in the image: there are few of them, so they are
@@ -507,13 +507,12 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// |A| / ρ_max, or the part of it that faces the Eye (Section 6).
     fn share(&self, cell: CellId) -> f32 {
-        let assignment = &self.index.assignment;
-        let most = assignment.most().max(1) as f32;
+        let most = self.index.most().max(1) as f32;
         if self.params.occupancy == Occupancy::Count {
-            return assignment.held(cell) as f32 / most;
+            return self.index.hiding(cell) as f32 / most;
         }
-        let shared = assignment.shared(cell).iter().map(|n| assignment.all_shared()[*n as usize]);
-        assignment.own(cell).iter().copied().chain(shared).map(|prim| self.facing(prim)).sum::<f32>() / most
+        let hides = |prim: &PrimId| !self.params.surfaces.show_through(self.scene, *prim);
+        self.index.prims_of(cell).filter(hides).map(|prim| self.facing(prim)).sum::<f32>() / most
     }
     /// Section 6, front-facing triangles: the cosine of the angle between a primitive's normal and the way to
     /// the Eye, 0 if it faces away.
@@ -556,7 +555,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             && !star_shaped
             && (seen.is_settled || before.is_some_and(|v| v <= solidity));
         self.aspects[b.cell.at()].is_settled |= star_shaped;
-        let (held, most) = (self.index.assignment.held(a.cell), self.index.assignment.most());
+        let (held, most) = (self.index.hiding(a.cell), self.index.most());
         let (cell, normal, sight) = (b.cell, b.normal, seen.toward);
         let (a, share, of_a) = (a.cell, a.share, a.solidity);
         self.line(line::RETURN);
@@ -698,7 +697,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 return Some(Verdict::Outside);
             }
         }
-        if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+        if self.params.surfaces.leave_out(scene, prim, view.eye.position) {
             self.line(at[1]);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             return Some(Verdict::FacesAway);
@@ -803,7 +802,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         } else if let Some(left_out) = later.and_then(|later| later.of_prim(prim)) {
             self.watch.note(|| Evidence::LeftOut(left_out));
             self.watch.event(Event::DecidedPrim(prim, Verdict::OverBudget));
-        } else if self.params.backface_culling && prim_faces_away(self.scene, self.view.eye.position, prim) {
+        } else if self.params.surfaces.leave_out(self.scene, prim, self.view.eye.position) {
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
         } else {

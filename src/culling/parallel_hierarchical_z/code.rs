@@ -239,7 +239,7 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::MEANWHILE => machine.overlap,
         line::BOX | line::COMPARE_BOX => machine.query == Volume::Faces,
         line::SPHERE | line::COMPARE_SPHERE => machine.query == Volume::Sphere,
-        line::FACES_AWAY => params.backface_culling,
+        line::FACES_AWAY => params.surfaces.one_sided,
         _ => true,
     }
 }

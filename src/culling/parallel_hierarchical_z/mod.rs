@@ -38,11 +38,11 @@ use super::depth::{Buffer, DepthNote, Faces, picture};
 use crate::drawing::Drawing;
 use crate::index::Octree;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, backface_knob,
-    keeps_nothing,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
+    surface_knobs,
 };
 use crate::raster::DepthScale;
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 
 /// The method.
 pub(crate) struct ParallelHierarchicalZ;
@@ -54,7 +54,7 @@ pub(crate) struct Params {
     coherence: bool,
     check_interval: u32,
     cubes: Cubes,
-    backface_culling: bool,
+    surfaces: Surfaces,
 }
 
 impl Default for Params {
@@ -66,7 +66,7 @@ impl Default for Params {
             // Section 5.1.
             check_interval: 30,
             cubes: Cubes::default(),
-            backface_culling: false,
+            surfaces: Surfaces::default(),
         }
     }
 }
@@ -115,7 +115,7 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         );
         knobs.integer(check, 1..=1000, &mut params.check_interval);
         params.cubes.knobs(knobs);
-        backface_knob(knobs, &mut params.backface_culling);
+        surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
         scene: &Arc<Scene<S>>,

@@ -24,7 +24,7 @@ use crate::geometry::{
     nearest_depth,
 };
 use crate::index::Octree;
-use crate::method::evidence::{Facing, Tested, prim_faces_away};
+use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::{Options, PyramidCell};
 use crate::scene::Scene;
@@ -368,7 +368,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// back.
     fn bin(&mut self, node: NodeId, prim: PrimId, is_shared: bool, bins: &mut BTreeMap<u32, Vec<PrimId>>) {
         let (scene, view) = (self.scene, self.view);
-        if self.params.backface_culling && prim_faces_away(scene, view.eye.position, prim) {
+        if self.params.surfaces.leave_out(scene, prim, view.eye.position) {
             self.line(line::FACES_AWAY);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
@@ -387,7 +387,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         self.screen.regions(pixels).into_iter().for_each(|r| bins.entry(r).or_default().push(prim));
     }
     fn options(&self) -> Options {
-        Options { backface_culling: self.params.backface_culling, ..Options::default() }
+        Options { surfaces: self.params.surfaces, ..Options::default() }
     }
     /// Sends a message that is ready after so many ticks.
     fn send(&mut self, message: Message, ready: u32) {
@@ -561,7 +561,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
                 operands: None,
                 is_hidden: false,
                 is_sieved: false,
-                backface_culling: options.backface_culling,
+                surfaces: options.surfaces,
                 window: options.window,
             };
             self.watch.note(move || Evidence::Depth(DepthNote::Rasterized(rasterized)));

@@ -68,13 +68,12 @@ impl Checked {
 }
 
 impl<'a, S: World> Judge<'a, S> {
-    /// Of a scene, whose primitives have one side if the experiment's settings say so.
+    /// Of a scene, whose surfaces are taken as the experiment's settings say.
     pub fn new(scene: &'a Arc<Scene<S>>, setup: &Setup) -> Self {
-        let one_sided = setup.settings.0.get("backface-culling").is_some_and(|v| v == "true");
         Self {
             scene,
             every: setup.check_every,
-            truth: Truth::new(scene, one_sided, 1, BACKGROUND),
+            truth: Truth::new(scene, setup.settings.surfaces(), 1, BACKGROUND),
             view: None,
             visible: Vec::new(),
             exact: Vec::new(),

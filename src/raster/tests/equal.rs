@@ -45,6 +45,16 @@ fn triangles(dice: &mut Dice, count: usize) -> Vec<[Vec3; 3]> {
     list
 }
 
+fn sides(one: bool) -> Surfaces {
+    if one { ONE_SIDED } else { BOTH_SIDES }
+}
+
+/// The same, each third primitive see-through and each fourth with two sides, in every second round.
+fn mixed<S: Space>(scene: Scene<S>, round: u32) -> Scene<S> {
+    let is_mixed = round % 2 == 1;
+    with_materials(scene, |p| is_mixed && p % 3 == 0, |p| is_mixed && p % 4 == 0)
+}
+
 fn random_view(dice: &mut Dice) -> View<Solid> {
     let (width, height) = (1 + dice.below(100), 1 + dice.below(80));
     let near = [1e-3, 0.1, 2.0][dice.below(3) as usize];
@@ -70,9 +80,10 @@ fn triangles_equal_the_reference() {
     let dice = &mut Dice::new(1);
     let mut covered = 0;
     for round in 0..150 {
-        let scene = soup(&triangles(dice, 60));
+        let scene = mixed(soup(&triangles(dice, 60)), round);
         let view = if round % 3 == 0 { straight_view(64, 0.1, 30.0) } else { random_view(dice) };
-        let image = assert_equal(&scene, &view, scene.live(), round % 5 == 0, &format!("round {round}"));
+        let image =
+            assert_equal(&scene, &view, scene.live(), sides(round % 5 == 0), &format!("round {round}"));
         covered += image.item.iter().filter(|&&i| i != Target::NONE).count();
     }
     assert!(covered > 100_000, "the scenes show too little to test anything: {covered} pixels");
@@ -82,9 +93,9 @@ fn triangles_equal_the_reference() {
 fn single_triangles_equal_the_reference() {
     let dice = &mut Dice::new(2);
     for round in 0..3000 {
-        let scene = soup(&triangles(dice, 2));
+        let scene = mixed(soup(&triangles(dice, 2)), round);
         let view = if round % 2 == 0 { straight_view(64, 0.1, 30.0) } else { random_view(dice) };
-        assert_equal(&scene, &view, &[PrimId(round % 2)], false, &format!("round {round}"));
+        assert_equal(&scene, &view, &[PrimId(round % 2)], BOTH_SIDES, &format!("round {round}"));
     }
 }
 
@@ -99,10 +110,11 @@ fn segments_equal_the_reference() {
             points,
             (0..count).map(|s| [2 * s, (2 * s + 1 + dice.below(2)) % (2 * count)]).collect(),
         );
+        let scene = mixed(scene, round);
         let position = dice.point(1.0).truncate();
         let target = position + Vec2::new(1.5, 0.0) + dice.point(1.0).truncate();
         let eye = Eye { position, target, up: Vec2::Y, fov: dice.between(0.1, 3.0), near: 0.01, far: 40.0 };
         let view = View { eye, width: 1 + dice.below(300), height: 1 };
-        assert_equal(&scene, &view, scene.live(), round % 3 == 0, &format!("round {round}"));
+        assert_equal(&scene, &view, scene.live(), sides(round % 3 == 0), &format!("round {round}"));
     }
 }

@@ -15,7 +15,7 @@ fn widest_and_highest_images() {
             .collect();
         let scene = soup(&triangles);
         let view = View { width, height, ..straight_view(1, 0.01, 1e5) };
-        let image = assert_equal(&scene, &view, scene.live(), false, &format!("{width}×{height}"));
+        let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, &format!("{width}×{height}"));
         assert!(visible(&image).len() > 3);
     }
 }
@@ -28,8 +28,13 @@ fn extreme_depths_stay_finite_and_equal() {
     {
         let triangles: Vec<[Vec3; 3]> = (0..30).map(|_| [(); 3].map(|()| dice.point(reach))).collect();
         let scene = soup(&triangles);
-        let image =
-            assert_equal(&scene, &straight_view(24, near, far), scene.live(), false, &format!("near {near}"));
+        let image = assert_equal(
+            &scene,
+            &straight_view(24, near, far),
+            scene.live(),
+            BOTH_SIDES,
+            &format!("near {near}"),
+        );
         assert!(image.depth.iter().all(|d| d.is_finite()), "near {near}: a depth is not finite");
     }
 }
@@ -38,7 +43,7 @@ fn extreme_depths_stay_finite_and_equal() {
 fn nothing_drawn_shows_nothing() {
     let scene = soup(&[[Vec3::ZERO, Vec3::X, Vec3::Y]]);
     let view = straight_view(5, 1.0, 4.0);
-    for image in [render(&scene, &view, &[]), assert_equal(&scene, &view, &[], false, "nothing")] {
+    for image in [render(&scene, &view, &[]), assert_equal(&scene, &view, &[], BOTH_SIDES, "nothing")] {
         assert_eq!(visible(&image), []);
         assert!(image.item.iter().all(|&i| i == Target::NONE) && image.depth.iter().all(|&d| d == 0.25));
         assert_eq!(pick(&image, 5, 0), None);

@@ -10,12 +10,34 @@ use glam::{DVec3, Vec2, Vec3};
 use super::*;
 use crate::geometry::Eye;
 use crate::geometry::dice::Dice;
-use crate::scene::Parts;
+use crate::scene::{Material, Parts, Surfaces};
 
 /// A scene of one object and one material.
 pub(super) fn scene_of<S: Space>(points: Vec<S::Vector>, prims: Vec<S::Corners>) -> Scene<S> {
     let mut parts = Parts::simple("test", points, prims);
     parts.materials[0].color = [0.5; 3];
+    Scene::new(parts).expect("the test's scene is valid")
+}
+
+/// Primitives with two sides.
+pub(super) const BOTH_SIDES: Surfaces = Surfaces { one_sided: false, solid: false };
+/// Primitives with a front only.
+pub(super) const ONE_SIDED: Surfaces = Surfaces { one_sided: true, solid: false };
+
+/// The same with some primitives, by their place, of other materials: `see_through` and `two_sided` ones.
+pub(super) fn with_materials<S: Space>(
+    scene: Scene<S>,
+    see_through: impl Fn(usize) -> bool,
+    two_sided: impl Fn(usize) -> bool,
+) -> Scene<S> {
+    let mut parts = scene.into_parts();
+    for material in 1..4 {
+        let (see_through, two_sided) = (material & 1 == 1, material & 2 == 2);
+        parts.materials.push(Material { see_through, two_sided, ..parts.materials[0].clone() });
+    }
+    for (at, material) in parts.prim_material.iter_mut().enumerate() {
+        material.0 = u32::from(see_through(at)) | u32::from(two_sided(at)) << 1;
+    }
     Scene::new(parts).expect("the test's scene is valid")
 }
 
@@ -42,7 +64,7 @@ pub(super) fn at_px(size: u32, x: f64, y: f64, w: f64) -> Vec3 {
 
 /// Every way to draw that this machine has: instruction sets and threads. Reports once which sets it lacks,
 /// and so no test here sees.
-pub(super) fn all_options(backface_culling: bool) -> Vec<Options> {
+pub(super) fn all_options(surfaces: Surfaces) -> Vec<Options> {
     let (here, missing): (Vec<Isa>, Vec<Isa>) =
         [Isa::Portable, Isa::Avx2, Isa::Avx512].into_iter().partition(|&i| i <= Isa::best());
     static REPORT: std::sync::Once = std::sync::Once::new();
@@ -52,7 +74,7 @@ pub(super) fn all_options(backface_culling: bool) -> Vec<Options> {
         }
     });
     here.into_iter()
-        .flat_map(|isa| [1, 3].map(|threads| Options { backface_culling, threads, isa, window: None }))
+        .flat_map(|isa| [1, 3].map(|threads| Options { surfaces, threads, isa, window: None }))
         .collect()
 }
 
@@ -61,18 +83,23 @@ pub(super) fn assert_equal<S: Drawable>(
     scene: &Scene<S>,
     view: &View<S>,
     prims: &[PrimId],
-    backface_culling: bool,
+    surfaces: Surfaces,
     what: &str,
 ) -> Target {
     let mut expected = Target::new(view);
-    S::draw_reference(&mut expected, scene, view, prims, &Options { backface_culling, ..Options::default() });
-    for options in all_options(backface_culling) {
+    S::draw_reference(&mut expected, scene, view, prims, &Options { surfaces, ..Options::default() });
+    for options in all_options(surfaces) {
         let mut target = Target::new(view);
         S::draw(&mut target, scene, view, prims, &options);
         // The sieve is the same code on every instruction set.
         if options.isa == Isa::best() {
             sifted_is_the_same(scene, view, prims, &options, &target, what);
         }
+        assert_eq!(
+            shown_through(scene, view, &target, &options),
+            shown_through(scene, view, &expected, &options),
+            "{what}, {options:?}: see-through primitives and their pixels"
+        );
         if let Some(i) = (0..target.item.len()).find(|&i| {
             target.item[i] != expected.item[i] || target.depth[i].to_bits() != expected.depth[i].to_bits()
         }) {
@@ -90,7 +117,45 @@ pub(super) fn assert_equal<S: Drawable>(
             "{what}, {options:?}: depths alone"
         );
     }
+    fragments_equal_the_reference(scene, view, prims, surfaces, what);
     expected
+}
+
+/// The see-through primitives that were drawn and show, with their pixels.
+fn shown_through<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    target: &Target,
+    options: &Options,
+) -> Vec<(PrimId, usize)> {
+    let mut shown = Vec::new();
+    look_through(target, scene, view, &target.through, options, |prim, at| shown.push((prim, at)));
+    shown.sort_unstable();
+    shown.dedup();
+    shown
+}
+
+/// Asserts of some primitives that they cover what the reference fills when it draws them alone, at its
+/// depths.
+fn fragments_equal_the_reference<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    prims: &[PrimId],
+    surfaces: Surfaces,
+    what: &str,
+) {
+    let options = Options { surfaces: Surfaces { solid: true, ..surfaces }, ..Options::default() };
+    for &prim in prims.iter().take(6) {
+        let (mut alone, mut filled) = (Target::new(view), Target::new(view));
+        S::draw_reference(&mut alone, scene, view, &[prim], &options);
+        S::fragments(scene, view, prim, &options, &mut |at, depth| {
+            // As the z-buffer does: nothing shows beyond the far plane.
+            if depth >= filled.depth[at] {
+                (filled.depth[at], filled.item[at]) = (depth, prim.0);
+            }
+        });
+        assert_eq!(filled.wrong_pixels(&alone), 0, "{what}: fragments of {prim}");
+    }
 }
 
 /// Asserts that sifting, in several goes, gives the same image, leaves out nothing that shows, and keeps the
@@ -139,4 +204,7 @@ fn sifted_is_the_same<S: Drawable>(
     }
     assert!(*plain == target, "{what}: sifted, {options:?}");
     assert!(hidden.iter().all(|h| !plain.item.contains(&h.0)), "{what}: what is left out shows nowhere");
+    look_through(plain, scene, view, &hidden, options, |prim, at| {
+        panic!("{what}: {prim} is left out and shows through at pixel {at}");
+    });
 }

@@ -20,7 +20,7 @@ fn top_left_rule_by_hand() {
     let view = straight_view(8, 1.0, 10.0);
     let shown = |corners: [[f64; 2]; 3]| {
         let scene = soup(&[flat_triangle(8, corners)]);
-        let image = assert_equal(&scene, &view, scene.live(), false, "by hand");
+        let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "by hand");
         // Corners in another order, and so turned around, cover the same.
         let turned = soup(&[flat_triangle(8, [corners[1], corners[0], corners[2]])]);
         assert_eq!(covered(&image), covered(&render(&turned, &view, turned.live())));
@@ -54,7 +54,7 @@ fn left_rule_of_segments_by_hand() {
     let at = |x: f32| Vec2::new((x / 4.0 - 1.0) * 4.0, 4.0);
     let shown = |a: f32, b: f32| {
         let scene = scene_of::<Flat>(vec![at(a), at(b)], vec![[0, 1]]);
-        covered(&assert_equal(&scene, &view, scene.live(), false, "by hand"))
+        covered(&assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "by hand"))
             .iter()
             .map(|c| c.0)
             .collect::<Vec<_>>()
@@ -142,7 +142,7 @@ fn fans_across_the_near_plane_and_off_screen_are_watertight() {
         let count = owners(&scene, &view);
         assert!(count.iter().all(|&n| n <= 1), "round {round}: a pixel has two owners");
         // No gap inside a column: the plane below the horizon covers a column from top to bottom.
-        let together = assert_equal(&scene, &view, scene.live(), false, "fan");
+        let together = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "fan");
         for x in 0..60 {
             let column: Vec<bool> = (0..60).map(|y| pick(&together, x, y).is_some()).collect();
             let changes = column.windows(2).filter(|w| w[0] != w[1]).count();
@@ -290,7 +290,7 @@ fn far_and_near_planes_hold_per_fragment() {
     // A wall along the line of sight, from before the near to beyond the far plane.
     let wall = [Vec3::new(1.0, -9.0, -0.5), Vec3::new(1.0, 9.0, -0.5), Vec3::new(1.0, 0.0, -40.0)];
     let scene = soup(&[wall]);
-    let image = assert_equal(&scene, &view, scene.live(), false, "wall");
+    let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "wall");
     let depths: Vec<f32> =
         image.item.iter().zip(&image.depth).filter(|p| *p.0 == 0).map(|p| 1.0 / p.1).collect();
     let (least, most) = depths.iter().fold((f32::MAX, 0f32), |(l, m), &d| (l.min(d), m.max(d)));
@@ -302,7 +302,7 @@ fn backfaces_are_skipped_when_asked() {
     let front = flat_triangle(8, [[1.0, 7.0], [7.0, 7.0], [4.0, 1.0]]);
     let scene = soup(&[front, [front[0], front[2], front[1]]]);
     let view = straight_view(8, 1.0, 10.0);
-    let culling = Options { backface_culling: true, ..Options::default() };
+    let culling = Options { surfaces: ONE_SIDED, ..Options::default() };
     let shows = |id: u32, options: &Options| {
         let mut target = Target::new(&view);
         Solid::draw(&mut target, &scene, &view, &[PrimId(id)], options);
@@ -310,4 +310,43 @@ fn backfaces_are_skipped_when_asked() {
     };
     assert!(shows(0, &culling) && !shows(1, &culling));
     assert!(shows(0, &Options::default()) && shows(1, &Options::default()));
+}
+
+#[test]
+fn what_is_see_through_hides_nothing_and_is_seen_before_what_it_stands_in_front_of() {
+    // A pane before a wall, the wall, and behind the wall what nobody sees, solid and see-through.
+    let square = |w: f32| [[1.0, 7.0], [7.0, 7.0], [4.0, 1.0]].map(|[x, y]| at_px(8, x, y, f64::from(w)));
+    let triangles = [square(2.0), square(4.0), square(6.0), square(6.0)];
+    let scene = with_materials(soup(&triangles), |p| p == 0 || p == 3, |_| false);
+    let view = straight_view(8, 1.0, 10.0);
+    let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "pane");
+    assert_eq!(visible(&image), [PrimId(1)]);
+    let options = Options::default();
+    let mut seen: Vec<PrimId> = Vec::new();
+    look_through(&image, &scene, &view, scene.live(), &options, |prim, _| seen.push(prim));
+    seen.dedup();
+    assert_eq!(seen, [PrimId(0)]);
+    // Taken as solid, the pane is all that shows.
+    let solid = Surfaces { solid: true, ..BOTH_SIDES };
+    let image = assert_equal(&scene, &view, scene.live(), solid, "solid pane");
+    assert_eq!((visible(&image), image.through.len()), (vec![PrimId(0)], 0));
+    // On the wall itself it is seen.
+    let scene = with_materials(soup(&[square(4.0), square(4.0)]), |p| p == 1, |_| false);
+    let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "paint");
+    let mut pixels = 0;
+    look_through(&image, &scene, &view, scene.live(), &options, |_, _| pixels += 1);
+    assert_eq!(pixels, image.item.iter().filter(|i| **i == 0).count());
+    // And its color is mixed with what is behind, whatever the order in which it was drawn.
+    let layers = [square(2.0), square(3.0), square(4.0)];
+    let mut parts = with_materials(soup(&layers), |p| p < 2, |_| false).into_parts();
+    parts.prim_material[1].0 = 3;
+    parts.materials[3] = Material { color: [1.0, 0.0, 0.0], see_through: true, ..parts.materials[3].clone() };
+    let scene = Scene::new(parts).expect("a scene");
+    let pictures = [[0, 1, 2], [1, 0, 2], [2, 1, 0]].map(|order| {
+        let image = render(&scene, &view, &order.map(PrimId));
+        shade(&image, &scene, &view, [1.0; 3])
+    });
+    assert!(pictures.iter().all(|p| *p == pictures[0]));
+    let plain = shade(&render(&scene, &view, &[PrimId(2)]), &scene, &view, [1.0; 3]);
+    assert!(pictures[0] != plain, "two panes change the picture");
 }

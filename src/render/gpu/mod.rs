@@ -281,7 +281,8 @@ impl SpaceLayer {
         let mut pass = begin(encoder, target, style);
         pass.set_bind_group(0, &target.frame, &[]);
         let fronts = usize::from(style.only_fronts);
-        let cuts = style.surface != Surface::Solid || style.section.is_some();
+        let has_gaps = self.scene.as_ref().is_some_and(|scene| scene.has_see_through());
+        let cuts = style.surface != Surface::Solid || style.section.is_some() || has_gaps;
         let solid = if cuts { &self.pipelines.cut } else { &self.pipelines.whole };
         for (pipelines, shown) in [(solid, Shown::Solid), (&self.pipelines.ghost, Shown::Ghost)] {
             let mask = target::mask(style, shown);

@@ -111,7 +111,8 @@ pub(super) fn corners(scene: &Scene<Solid>, prims: &[PrimId], inner: &[u8]) -> V
     prims
         .iter()
         .map(|&prim| {
-            let look = look_word(scene.color_of(prim), scene.normal(prim), inner[prim.at()]);
+            let look = look_word(scene.color_of(prim), scene.normal(prim), inner[prim.at()])
+                | u32::from(scene.is_see_through(prim)) << 28;
             let mut points = scene.prim_points(prim);
             std::array::from_fn(|_| corner(points.next().unwrap_or_default(), look))
         })
@@ -124,14 +125,15 @@ const LIGHT: Vec3 = Vec3::new(0.36, 0.80, 0.48);
 /// Shade of planes along the light.
 const AMBIENT: f32 = 0.62;
 
-/// Seven bits a channel of the sRGB color, eight of shade, three of inner sides.
+/// Seven bits a channel of the sRGB color, seven of shade, one free for what is see-through, three of inner
+/// sides.
 fn look_word(linear: [f32; 3], normal: Vec3, inner: u8) -> u32 {
     let shade = AMBIENT + (1.0 - AMBIENT) * normal.normalize_or(LIGHT).dot(LIGHT).abs().min(1.0);
     let channels = linear.map(|c| (srgb(c) * 127.0).round() as u32);
     channels[0]
         | channels[1] << 7
         | channels[2] << 14
-        | ((shade * 255.0).round() as u32) << 21
+        | ((shade * 127.0).round() as u32) << 21
         | u32::from(inner & 7) << 29
 }
 
@@ -305,11 +307,11 @@ mod tests {
 
     #[test]
     fn shade_ignores_the_side_and_tells_the_axes_apart() {
-        let shade = |n: Vec3| look_word([0.5; 3], n, 0) >> 21 & 255;
+        let shade = |n: Vec3| look_word([0.5; 3], n, 0) >> 21 & 127;
         assert_eq!(shade(Vec3::new(1.0, 2.0, 3.0)), shade(Vec3::new(-1.0, -2.0, -3.0)));
         let mut axes = [Vec3::X, Vec3::Y, Vec3::Z].map(shade);
         axes.sort_unstable();
-        assert!(axes[0] + 8 <= axes[1] && axes[1] + 8 <= axes[2], "{axes:?}");
+        assert!(axes[0] + 4 <= axes[1] && axes[1] + 4 <= axes[2], "{axes:?}");
     }
 
     #[test]

@@ -28,7 +28,7 @@ fn corner(index: u32, point: vec3<f32>, look: u32, stamp: u32, shown: u32) -> Co
 
 // Color of the surface by state or material, and its shade.
 fn surface(look: vec2<u32>) -> vec4<f32> {
-    let shade = f32((look.x >> 21u) & 255u) / 255.0;
+    let shade = f32((look.x >> 21u) & 127u) / 127.0;
     let material = vec3<f32>(vec3<u32>(look.x, look.x >> 7u, look.x >> 14u) & vec3<u32>(127u)) / 127.0;
     let base = select(material, f.flat_color[look.y].rgb, f.what.y == 1u);
     return vec4<f32>(base * shade, shade);
@@ -54,14 +54,22 @@ fn cut_away(place: vec3<f32>) -> bool {
     return f.what.w == 1u && place.z < 0.0;
 }
 
+// What is see-through leaves out every second square, as a screen door does: no order is needed, and one sees
+// that one sees through.
+fn is_gap(look: u32, at: vec2<f32>) -> bool {
+    let p = vec2<i32>(floor((at + f.origin_px.xy) / max(round(f.target_px.z), 1.0)));
+    return ((look >> 28u) & 1u) == 1u && ((p.x + p.y) & 1) == 1;
+}
+
 // Whole surfaces: nothing is discarded, so the depth test can come first.
 @fragment fn fs_whole(in: Corner) -> @location(0) vec4<f32> {
     return vec4<f32>(patterned(in.at.xy, surface(in.look), in.look.y), 1.0);
 }
-// Surfaces with wires, wires alone, sections.
+// Surfaces with wires, wires alone, sections, and scenes in which some are see-through.
 @fragment fn fs_cut(in: Corner) -> @location(0) vec4<f32> {
     let wire = select(0.0, wired(in.look.x, in.place), f.what.z != 0u);
     if cut_away(in.place) || (f.what.z == 2u && wire < 0.5) { discard; }
+    if f.what.z != 2u && wire < 0.5 && is_gap(in.look.x, in.at.xy) { discard; }
     let color = surface(in.look);
     if f.what.z == 2u { return vec4<f32>(select(color.rgb, f.stroke[in.look.y].rgb, f.what.y == 1u), 1.0); }
     let filled = patterned(in.at.xy, color, in.look.y);

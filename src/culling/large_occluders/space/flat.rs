@@ -4,7 +4,7 @@ use glam::{DVec2, Vec2};
 
 use super::{Edge, Point, Shape, corner, side, slab};
 use crate::geometry::{Aabb, Flat};
-use crate::scene::{Face, Progress, Scene};
+use crate::scene::{Face, Progress, Scene, Surfaces};
 
 impl Point for DVec2 {
     #[inline]
@@ -25,8 +25,8 @@ impl Shape for Flat {
     fn rounded(p: DVec2) -> Vec2 {
         p.as_vec2()
     }
-    fn polygons(scene: &Scene<Self>, progress: &dyn Progress) -> Option<Vec<Face>> {
-        scene.convex_polygons(progress)
+    fn polygons(scene: &Scene<Self>, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>> {
+        scene.convex_polygons(surfaces, progress)
     }
     fn area(corners: &[DVec2]) -> DVec2 {
         // A quarter turn counter-clockwise, which keeps the length of the segment.

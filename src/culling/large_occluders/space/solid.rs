@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 
 use super::{Edge, Point, Shape, corner, side, slab};
 use crate::geometry::{Aabb, Solid};
-use crate::scene::{Face, Progress, Scene};
+use crate::scene::{Face, Progress, Scene, Surfaces};
 
 impl Point for DVec3 {
     #[inline]
@@ -32,8 +32,8 @@ impl Shape for Solid {
     fn rounded(p: DVec3) -> Vec3 {
         p.as_vec3()
     }
-    fn polygons(scene: &Scene<Self>, progress: &dyn Progress) -> Option<Vec<Face>> {
-        scene.convex_polygons(progress)
+    fn polygons(scene: &Scene<Self>, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>> {
+        scene.convex_polygons(surfaces, progress)
     }
     fn area(corners: &[DVec3]) -> DVec3 {
         // A fan from the first corner: differences are exact, where products of the coordinates themselves

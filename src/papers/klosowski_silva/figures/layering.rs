@@ -12,7 +12,7 @@ use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{Flat, PrimId, Solid, View};
 use crate::papers::keys::LAYERED_PROJECTION;
 use crate::raster::{Drawable, render, shade_with};
-use crate::scene::{Scene, SceneError, example};
+use crate::scene::{Scene, SceneError, Surfaces, example};
 use crate::truth::{layer_correlation, layering_numbers};
 
 /// Layers that have a color of their own.
@@ -65,7 +65,7 @@ fn shown<S: crate::culling::Methods + Drawable>(
     name: &str,
     leaf_size: &str,
 ) -> Vec<Shown> {
-    let layers = layering_numbers(&**scene, sight, false);
+    let layers = layering_numbers(&**scene, sight, Surfaces::default());
     let mut all = vec![Shown { label: format!("{name}, by layer ζ"), roles: by_layer(&layers) }];
     for (rules, called) in RULES {
         let pairs = [("rules", rules), ("budget", "100%"), ("leaf-size", leaf_size), ("seed", "1")];
@@ -154,7 +154,7 @@ mod tests {
     fn projection_follows_the_layers_better_than_chance() {
         let scene = example("bottleneck").expect("a scene");
         let sight = View { width: LINE_PX, ..eye(&scene, 0) };
-        let layers = layering_numbers(&*scene, &sight, false);
+        let layers = layering_numbers(&*scene, &sight, Surfaces::default());
         let [papers, ours] = RULES.map(|(rules, _)| {
             let pairs = [("rules", rules), ("budget", "100%")];
             let order = ready(&scene, LAYERED_PROJECTION, &pairs).cull(&sight).prims;

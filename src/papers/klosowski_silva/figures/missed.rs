@@ -10,7 +10,7 @@ use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{PrimId, Solid, View};
 use crate::papers::keys::{CENTROID, LAYERED_PROJECTION};
 use crate::raster::{render, shade, srgb_bytes};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Scene, SceneError, Surfaces};
 use crate::truth::{Truth, missing};
 
 /// Side of an image, pixels.
@@ -48,7 +48,8 @@ impl Exact {
     fn new(paper: [f32; 3]) -> Result<Self, SceneError> {
         let scene = room()?;
         let view = View { width: SIDE, height: SIDE, ..scene.paths()[0].views[FRAME] };
-        let mut truth = Truth::new(&*scene, true, 1, paper);
+        let one_sided = Surfaces { one_sided: true, ..Surfaces::default() };
+        let mut truth = Truth::new(&*scene, one_sided, 1, paper);
         let visible = truth.look(&*scene, &view);
         let image = shade(truth.image(), &*scene, &view, paper);
         Ok(Self { scene, view, paper, visible, image })

@@ -45,12 +45,12 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         let build = part(progress, 0.05 * i as f32, 0.05 * (i + 1) as f32);
         runs.extend(ready(scene, setup, way, &[Most::Percent(100.0)], &build)?);
     }
-    let one_sided = setup.settings.0.get("backface-culling").is_some_and(|v| v == "true");
+    let surfaces = setup.settings.surfaces();
     let mut deepest = 0;
     let mut found: Vec<Vec<[f64; 4]>> = vec![Vec::new(); WAYS.len()];
     for (k, view) in path.views.iter().enumerate() {
         checkpoint(progress, 0.3 + 0.7 * k as f32 / path.views.len() as f32, "ranking triangles by layers")?;
-        let layers = layering_numbers(scene, view, one_sided);
+        let layers = layering_numbers(scene, view, surfaces);
         deepest = deepest.max(layers.iter().copied().max().unwrap_or(0));
         for (run, found) in runs.iter_mut().zip(&mut found) {
             let order: Vec<u32> = run.cull(view).prims.iter().map(|p| layers[p.at()]).collect();
