@@ -8,6 +8,8 @@ mod flat;
 mod fuzz;
 #[path = "broken/gltf.rs"]
 mod gltf;
+#[path = "broken/materials.rs"]
+mod materials;
 #[path = "broken/obj.rs"]
 mod obj;
 

@@ -166,7 +166,8 @@ impl<S: Space> Scene<S> {
     /// # Errors
     /// [`SceneError::Empty`] if no primitive is live, [`SceneError::Inconsistent`] if a table does not
     /// fit another one (a reader's fault, not the file's).
-    pub fn new(parts: Parts<S>) -> Result<Self, SceneError> {
+    pub fn new(mut parts: Parts<S>) -> Result<Self, SceneError> {
+        parts.report.settle();
         let n = parts.prims.len();
         let bad = |what: &'static str| SceneError::Inconsistent { scene: parts.source.clone(), what };
         if parts.prim_object.len() != n || parts.prim_material.len() != n {
@@ -188,7 +189,8 @@ impl<S: Space> Scene<S> {
         }
         let live: Vec<PrimId> = (0..n as u32).map(PrimId).filter(|p| parts.prims[p.at()].is_some()).collect();
         if live.is_empty() {
-            return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM });
+            let why = parts.report.reasons();
+            return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM, why });
         }
         let hash = digest(&parts);
         // Asked before each primitive's own material, which most scenes then need not look up.

@@ -50,7 +50,8 @@ pub(super) fn read(
             why => format(format!("tobj refused it: {why}")),
         })?;
     pass.tell();
-    mesh.materials = mtl::resolve(&pass.material_names, &pass.libraries, folder, &mut pass.report);
+    let home = folder.map(|folder| mtl::Home { folder, model: name });
+    mesh.materials = mtl::resolve(&pass.material_names, &pass.libraries, home, &mut pass.report);
     mesh.objects = std::mem::take(&mut pass.objects);
     assemble(mesh, name, source, options, pass.report, &Part { whole: progress, start: 0.7, length: 0.3 })
 }
@@ -80,7 +81,7 @@ struct Pass<'a> {
     /// Object of the next face, once one has been made for the current names.
     object: Option<u32>,
     material_ids: BTreeMap<Vec<u8>, u32>,
-    material_names: Vec<String>,
+    material_names: Vec<Vec<u8>>,
     material: Option<u32>,
     libraries: Vec<(usize, String)>,
     ignored: BTreeMap<&'static str, usize>,
@@ -253,7 +254,7 @@ impl<'a> Pass<'a> {
         let next = self.material_names.len() as u32;
         let id = *self.material_ids.entry(name.to_vec()).or_insert(next);
         if id == next {
-            self.material_names.push(name_of(name));
+            self.material_names.push(name.to_vec());
         }
         self.material = Some(id);
     }

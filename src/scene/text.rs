@@ -44,6 +44,11 @@ pub(super) fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
     if relative.as_os_str().is_empty() || !plain {
         return Err("the name leads out of the model's folder, so it was not opened".into());
     }
+    inside(folder, &relative)
+}
+
+/// The full path of `relative` in `folder`, unless a link leads out of the folder.
+pub(super) fn inside(folder: &Path, relative: &Path) -> Result<PathBuf, String> {
     let reason = |e: io::Error| {
         if e.kind() == io::ErrorKind::NotFound { "there is no such file".to_owned() } else { e.to_string() }
     };

@@ -110,20 +110,29 @@ fn material_files_are_read_only_from_the_folder_of_the_model() {
 #[test]
 fn broken_material_files_leave_gray_and_a_note() {
     let home = folder("broken_materials");
-    let cases: [(&[u8], [f32; 3], &str); 6] = [
-        (b"newmtl red\nKd nan 0 0\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not three numbers; it is gray"),
-        (b"newmtl red\nKd 1 0\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not three numbers; it is gray"),
+    let cases: [(&[u8], [f32; 3], &str); 7] = [
+        (b"Kd 1 0 0\n", [0.7; 3], "material `red` is in no material file; it is gray"),
+        (b"newmtl red\nKd nan 0 0\n", [0.7; 3], "b.mtl:2: `Kd` of `red` is not finite, so it does not count"),
+        (
+            b"newmtl red\nKd 1 0\n",
+            [0.7; 3],
+            "b.mtl:2: `Kd` of `red` is not three numbers, so it does not count",
+        ),
+        (
+            b"newmtl red\nKd 0,5 0 1\n",
+            [0.7; 3],
+            "b.mtl:2: `Kd` of `red` has a comma where a number has its point, so it does not count",
+        ),
         (
             b"newmtl red\nKd spectral file.rfl\n",
             [0.7; 3],
-            "b.mtl:2: `Kd` of `red` is not three numbers; it is gray",
+            "b.mtl:2: `Kd` of `red` is not made of numbers, so it does not count",
         ),
         (
             b"newmtl red\nKd 1 0 0\nnewmtl red\nKd 0 1 0\n",
             [1.0, 0.0, 0.0],
             "b.mtl:3: material `red` is defined twice; the first counts",
         ),
-        (b"Kd 1 0 0\n", [0.7; 3], "material `red` is in no material file; it is gray"),
         (b"\xff\xfen\0", [0.7; 3], "b.mtl: is UTF-16 text; save it as UTF-8"),
     ];
     for (bytes, color, note) in cases {

@@ -126,8 +126,15 @@ fn bad_points_drop_their_faces_and_shift_nothing() {
 
 #[test]
 fn if_nothing_is_left_that_is_the_error() {
-    assert_eq!(error("m.obj", b"v 0 0 0\nf 1 1 1\n"), "m.obj: it has no triangle that can be drawn");
-    assert_eq!(error("m.obj", b"f 1 2 3\n"), "m.obj: it has no triangle that can be drawn");
+    let head = "m.obj: it has no triangle that can be drawn";
+    assert_eq!(error("m.obj", b"v 0 0 0\nf 1 1 1\n"), format!("{head}: 1 degenerate"));
+    assert_eq!(
+        error("m.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\nf 7 8 9\nf 1 1 2\n"),
+        format!(
+            "{head}: 1 degenerate, 2 out of range; m.obj:4: corner 9 is past the last of 3 points, so the face \
+             is dropped; m.obj:5: corner 7 is past the last of 3 points, so the face is dropped"
+        )
+    );
 }
 
 #[test]
@@ -264,7 +271,10 @@ fn far_off_models_keep_their_detail() {
     );
     let stay = LoadOptions { recenter: Recenter::Never, ..LoadOptions::default() };
     let refused = load_bytes(text, "m.obj", &stay, &Quiet).map_err(|e| e.to_string());
-    assert!(matches!(&refused, Err(e) if e.ends_with("no triangle that can be drawn")), "{refused:?}");
+    assert!(
+        matches!(&refused, Err(e) if e.contains("no triangle that can be drawn: 1 degenerate")),
+        "{refused:?}"
+    );
 }
 
 #[test]
