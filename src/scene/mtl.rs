@@ -219,7 +219,7 @@ impl Shelf<'_> {
         let told = self.unused.iter().take(24).map(|(key, count)| format!("`{key}` ({count})"));
         let told = told.collect::<Vec<_>>().join(", ");
         let more = if self.unused.len() > 24 { ", …" } else { "" };
-        self.report.note(format!("not used of material files, with how often they stand there: {told}{more}"));
+        self.report.note(format!("not used of material files, with how often it stands there: {told}{more}"));
     }
 }
 

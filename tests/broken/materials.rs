@@ -29,8 +29,8 @@ fn one(library: &str) -> (Material, Vec<String>) {
     (materials[0].clone(), notes)
 }
 
-/// Wavefront MTL: `d` is how much a material dissolves into the background, 1.0 fully opaque; `-halo` makes it
-/// depend on the angle; `Tr`, which others added, is 1 − `d`; `map_d` holds `d` by place.
+/// Wavefront MTL: `d` is how much a material dissolves into the background, 1.0 fully opaque; `-halo` makes
+/// it depend on the angle; `Tr`, which others added, is 1 − `d`; `map_d` holds `d` by place.
 #[test]
 fn what_dissolves_is_see_through() {
     let cases = [
@@ -58,7 +58,8 @@ fn what_dissolves_is_see_through() {
     let both = "material `pane`: `d` and `Tr` contradict each other; `d` counts";
     assert_eq!(said("Tr 1.0\nd 1.0\n"), (false, both.into()));
     assert_eq!(said("d 0.5\nTr 0\n"), (true, both.into()));
-    let glass = "material `pane`: `illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is opaque";
+    let glass = "material `pane`: `illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is \
+                 opaque";
     assert_eq!(said("illum 4\n"), (false, glass.into()));
     assert_eq!(said("illum 4\nd 0.1\n"), (true, String::new()));
     let comma = "SOME:3: `d` of `pane` has a comma where a number has its point, so it does not count";
@@ -74,7 +75,8 @@ fn keywords_count_in_any_letter_case() {
 
 #[test]
 fn names_that_are_not_text_differ_by_their_bytes() {
-    let model = b"mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\nusemtl gr\xf6n\nf 3 2 1\n";
+    let model =
+        b"mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\nusemtl gr\xf6n\nf 3 2 1\n";
     let library = b"newmtl gr\xfcn\nKd 0 1 0\nnewmtl gr\xf6n\nKd 1 0 0\n";
     let (materials, _) = loaded("bytes", model, &[("m.mtl", library)]);
     assert_eq!(materials.iter().map(|m| m.color).collect::<Vec<_>>(), [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]);
@@ -92,9 +94,10 @@ fn what_is_not_used_is_said_once() {
         notes,
         [
             "material `a`: its texture (`map_Kd`) is not read; without `Kd` it is gray",
-            "material `b`: its texture (`map_Kd`) is not read; it has the color of its `Kd` (and 1 more: `c`)",
+            "material `b`: its texture (`map_Kd`) is not read; it has the color of its `Kd` \
+             (and 1 more: `c`)",
             "material `d`: it has no `Kd`; it is gray",
-            "not used of material files, with how often they stand there: `Ka` (2), `Ns` (1)",
+            "not used of material files, with how often it stands there: `Ka` (2), `Ns` (1)",
         ]
     );
 }

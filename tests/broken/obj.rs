@@ -131,8 +131,8 @@ fn if_nothing_is_left_that_is_the_error() {
     assert_eq!(
         error("m.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\nf 7 8 9\nf 1 1 2\n"),
         format!(
-            "{head}: 1 degenerate, 2 out of range; m.obj:4: corner 9 is past the last of 3 points, so the face \
-             is dropped; m.obj:5: corner 7 is past the last of 3 points, so the face is dropped"
+            "{head}: 1 degenerate, 2 out of range; m.obj:4: corner 9 is past the last of 3 points, so the \
+             face is dropped; m.obj:5: corner 7 is past the last of 3 points, so the face is dropped"
         )
     );
 }
