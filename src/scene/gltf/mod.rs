@@ -13,6 +13,7 @@ use std::path::Path;
 
 use ::gltf::json::Root;
 use ::gltf::json::validation::{Checked, Error as Fault, Validate};
+use ::gltf::material::AlphaMode;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Node, Primitive, Semantic};
 use glam::{DMat4, DVec3};
@@ -300,10 +301,27 @@ impl<'a> Reader<'a> {
                 }
             };
             let color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { GRAY[0] });
-            self.mesh.materials.push(Material::new(name, color));
+            self.mesh.materials.push(Material {
+                see_through: see_through(material),
+                two_sided: material.double_sided(),
+                ..Material::new(name, color)
+            });
         }
         id
     }
+}
+
+/// Whether light comes through somewhere (glTF 2.0, 3.9.4; KHR_materials_transmission). A texture may hold any
+/// alpha, so one that is blended or cut out by its texture counts; an opaque material ignores alpha.
+fn see_through(material: &::gltf::Material) -> bool {
+    let pbr = material.pbr_metallic_roughness();
+    let (alpha, texture) = (pbr.base_color_factor()[3], pbr.base_color_texture().is_some());
+    let blended = match material.alpha_mode() {
+        AlphaMode::Opaque => false,
+        AlphaMode::Mask => texture || alpha < material.alpha_cutoff().unwrap_or(0.5),
+        AlphaMode::Blend => texture || alpha < 1.0,
+    };
+    blended || material.transmission().is_some_and(|t| t.transmission_factor() > 0.0)
 }
 
 /// The triangles that a list of corners stands for; every second one of a strip is turned over.
