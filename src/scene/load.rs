@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::source::{JSON_LIMIT_BYTES, LoadOptions, MODEL_LIMIT_BYTES, stem};
-use super::text::read_file;
+use super::text::{read_file, stand_in};
 use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, views};
 
 /// Loads a scene: a path to `.obj`, `.gltf`, `.glb` or a flatland `.json`, or `generate:NAME[?key=value&…]`.
@@ -48,7 +48,9 @@ pub fn load_bytes(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<AnyScene, SceneError> {
+    let format = |why: &str| SceneError::Format { path: source.to_owned(), why: why.into() };
     match kind_of(source) {
+        Some(_) if let Some(why) = stand_in(bytes) => Err(format(why)),
         Some(kind) => read(kind, bytes, None, source, options, progress),
         None => Err(SceneError::Format {
             path: source.to_owned(),

@@ -34,7 +34,18 @@ pub(super) fn read_file(path: &Path, shown: &str, limit_bytes: u64) -> Result<Ve
     if bytes.len() as u64 > limit_bytes {
         return Err(format(format!("grew beyond the limit of {limit_bytes} bytes while it was read")));
     }
-    Ok(bytes)
+    match stand_in(&bytes) {
+        Some(why) => Err(format(why.into())),
+        None => Ok(bytes),
+    }
+}
+
+/// What to tell of bytes that only stand for the file, or hold it in another form.
+pub(super) fn stand_in(bytes: &[u8]) -> Option<&'static str> {
+    if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
+        return Some("is a Git LFS pointer, not the file itself; `git lfs pull` brings the file");
+    }
+    bytes.starts_with(&[0x1f, 0x8b]).then_some("is compressed with gzip; unpack it first (`gunzip`)")
 }
 
 /// Finds the file that a model in `folder` names, or the reason why it must not be opened.

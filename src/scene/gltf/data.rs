@@ -1,210 +1,343 @@
-//! Buffers and accessors of a glTF file, with every bound checked.
+//! Buffers, buffer views and accessors of a glTF file, with every bound checked (glTF 2.0, section 3.6).
 //!
-//! Only the binary chunk, `data:` URIs and regular files in the model's folder are read. The same file named
-//! by many buffers is read once.
+//! Only the binary chunk, `data:` URIs and regular files in the model's folder are read, each when something
+//! first asks for it. The same file named by many buffers is read once.
 
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::BTreeMap;
+use std::ops::Deref;
 use std::path::Path;
-use std::sync::Arc;
+use std::rc::Rc;
 
-use ::gltf::accessor::{DataType, Dimensions};
-use ::gltf::buffer::{Source, View};
-use ::gltf::{Accessor, Document};
 use base64::Engine as _;
 use base64::engine::general_purpose::{GeneralPurpose, GeneralPurposeConfig};
 
+use super::codec;
+use super::file::{Accessor, Gltf, Index, Sparse};
 use crate::scene::source::MODEL_LIMIT_BYTES;
 use crate::scene::text::{beside, read_file};
 
-/// Items of an accessor without data (all zeros) beyond which the file is taken to be broken.
-const MAX_ZEROS: usize = 1 << 24;
+/// Items without data behind them (all zeros) that every file may have.
+const FREE_ZEROS: usize = 1 << 20;
+/// Bytes that compressed views may come to in every file, and for each byte of a longer one.
+const FREE_UNPACKED: usize = 1 << 26;
+const UNPACKED_FOR_EACH: usize = 64;
 
-/// The bytes of all buffers.
-pub(super) struct Data {
-    buffers: Vec<Arc<[u8]>>,
+/// The bytes of a buffer.
+enum Bytes<'a> {
+    Chunk(&'a [u8]),
+    Decoded(Vec<u8>),
+    File(Rc<[u8]>),
 }
 
-impl Data {
-    pub(super) fn read(
-        document: &Document,
-        blob: Option<&[u8]>,
-        folder: Option<&Path>,
-    ) -> Result<Self, String> {
-        let mut files: BTreeMap<String, Arc<[u8]>> = BTreeMap::new();
-        let mut buffers = Vec::new();
-        let mut left_bytes = MODEL_LIMIT_BYTES;
-        for buffer in document.buffers() {
-            let bytes: Arc<[u8]> = match buffer.source() {
-                Source::Bin => blob
-                    .ok_or_else(|| {
-                        format!("buffer {} is the binary chunk, but there is none", buffer.index())
-                    })?
-                    .into(),
-                Source::Uri(uri) if uri.starts_with("data:") => {
-                    decode(uri).map_err(|why| format!("buffer {}: {why}", buffer.index()))?.into()
-                }
-                Source::Uri(uri) => match files.get(uri) {
-                    Some(read) => read.clone(),
-                    None => {
-                        let shown: String = uri.chars().take(80).collect();
-                        let folder = folder
-                            .ok_or_else(|| format!("buffer file {shown}: there is no folder to look in"))?;
-                        let path = beside(folder, &unescape(uri))
-                            .map_err(|why| format!("buffer file {shown}: {why}"))?;
-                        let bytes: Arc<[u8]> = read_file(&path, &shown, left_bytes)
-                            .map_err(|e| format!("buffer file {e}"))?
-                            .into();
-                        left_bytes = left_bytes.saturating_sub(bytes.len() as u64);
-                        files.insert(uri.to_owned(), bytes.clone());
-                        bytes
-                    }
-                },
-            };
-            if bytes.len() < buffer.length() {
-                return Err(format!(
-                    "buffer {} should have {} bytes, but there are only {}",
-                    buffer.index(),
-                    buffer.length(),
-                    bytes.len()
-                ));
-            }
-            buffers.push(bytes);
+impl Deref for Bytes<'_> {
+    type Target = [u8];
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Chunk(bytes) => bytes,
+            Self::Decoded(bytes) => bytes,
+            Self::File(bytes) => bytes,
         }
-        Ok(Self { buffers })
+    }
+}
+
+/// What is made when it is first asked for, or why it cannot be.
+type Lazy<T> = OnceCell<Result<T, String>>;
+
+/// The binary data of a file.
+pub(super) struct Data<'a> {
+    gltf: &'a Gltf,
+    chunk: Option<&'a [u8]>,
+    folder: Option<&'a Path>,
+    buffers: Vec<Lazy<Bytes<'a>>>,
+    files: RefCell<BTreeMap<&'a str, Rc<[u8]>>>,
+    unpacked: RefCell<BTreeMap<Index, Rc<Lazy<Vec<u8>>>>>,
+    file_bytes: Cell<usize>,
+    zeros: Cell<usize>,
+    unpacked_bytes: Cell<usize>,
+}
+
+impl<'a> Data<'a> {
+    /// `file_bytes` long is the file itself; without a `folder` no buffer file is opened.
+    pub(super) fn new(
+        gltf: &'a Gltf,
+        chunk: Option<&'a [u8]>,
+        folder: Option<&'a Path>,
+        file_bytes: usize,
+    ) -> Self {
+        Self {
+            gltf,
+            chunk,
+            folder,
+            buffers: gltf.buffers.iter().map(|_| OnceCell::new()).collect(),
+            files: RefCell::default(),
+            unpacked: RefCell::default(),
+            file_bytes: Cell::new(file_bytes),
+            zeros: Cell::new(0),
+            unpacked_bytes: Cell::new(0),
+        }
     }
 
-    fn view(&self, view: &View<'_>) -> Result<&[u8], String> {
-        let bytes = self
-            .buffers
-            .get(view.buffer().index())
-            .map_or(&[][..], |b| &b[..view.buffer().length().min(b.len())]);
-        let inside = view.offset().checked_add(view.length()).and_then(|end| bytes.get(view.offset()..end));
-        inside.ok_or_else(|| {
-            format!("buffer view {} lies outside of buffer {}", view.index(), view.buffer().index())
+    /// Bytes of the file and of those that were read with it so far: what work and memory are measured by.
+    pub(super) fn file_bytes(&self) -> usize {
+        self.file_bytes.get()
+    }
+
+    fn buffer(&self, index: Index) -> Result<&[u8], String> {
+        let at = index as usize;
+        let Some(cell) = self.buffers.get(at) else {
+            return Err(format!("there is no buffer {index}"));
+        };
+        let bytes = cell.get_or_init(|| self.read_buffer(at)).as_ref().map_err(Clone::clone)?;
+        Ok(&bytes[..self.gltf.buffers[at].byte_length])
+    }
+
+    fn read_buffer(&self, index: usize) -> Result<Bytes<'a>, String> {
+        let buffer = &self.gltf.buffers[index];
+        let bytes = match buffer.uri.as_deref() {
+            // "glTF Buffer referring to GLB-stored BIN chunk MUST be the first element" (3.6.1.2).
+            None if index > 0 => {
+                return Err(format!(
+                    "buffer {index} has no URI, and only buffer 0 may be the binary chunk of a GLB"
+                ));
+            }
+            None => Bytes::Chunk(
+                self.chunk.ok_or_else(|| format!("buffer {index} is the binary chunk, but there is none"))?,
+            ),
+            Some(uri) if uri.starts_with("data:") => {
+                Bytes::Decoded(decode(uri).map_err(|why| format!("buffer {index}: {why}"))?)
+            }
+            Some(uri) => Bytes::File(self.read_beside(uri)?),
+        };
+        if bytes.len() < buffer.byte_length {
+            return Err(format!(
+                "buffer {index} should have {} bytes, but there are only {}",
+                buffer.byte_length,
+                bytes.len()
+            ));
+        }
+        Ok(bytes)
+    }
+
+    fn read_beside(&self, uri: &'a str) -> Result<Rc<[u8]>, String> {
+        if let Some(read) = self.files.borrow().get(uri) {
+            return Ok(read.clone());
+        }
+        let shown: String = uri.chars().take(80).collect();
+        let fail = |why: String| format!("buffer file {shown}: {why}");
+        if ["http://", "https://", "ftp://", "//"].iter().any(|scheme| uri.starts_with(scheme)) {
+            let name = uri.rsplit('/').next().unwrap_or_default();
+            return Err(fail(format!(
+                "it is an address on the web, and nothing is fetched; put `{name}` beside the model and name it \
+                 there"
+            )));
+        }
+        let folder = self.folder.ok_or_else(|| fail("there is no folder to look in".into()))?;
+        let path = beside(folder, &unescape(uri)).map_err(fail)?;
+        let left = MODEL_LIMIT_BYTES.saturating_sub(self.file_bytes() as u64);
+        let bytes: Rc<[u8]> = read_file(&path, &shown, left).map_err(|e| format!("buffer file {e}"))?.into();
+        self.file_bytes.set(self.file_bytes() + bytes.len());
+        self.files.borrow_mut().insert(uri, bytes.clone());
+        Ok(bytes)
+    }
+
+    fn part(&self, buffer: Index, offset: usize, length: usize, what: &str) -> Result<&[u8], String> {
+        let bytes = self.buffer(buffer)?;
+        let inside = offset.checked_add(length).and_then(|end| bytes.get(offset..end));
+        inside.ok_or_else(|| format!("{what} lies outside of buffer {buffer}"))
+    }
+
+    /// Hands the bytes of a buffer view to `read`.
+    pub(super) fn view<T>(
+        &self,
+        index: Index,
+        read: impl FnOnce(&[u8]) -> Result<T, String>,
+    ) -> Result<T, String> {
+        let Some(view) = self.gltf.buffer_views.get(index as usize) else {
+            return Err(format!("there is no buffer view {index}"));
+        };
+        let what = format!("buffer view {index}");
+        let Some(packed) = view.extensions.as_ref().and_then(|e| e.meshopt.as_ref()) else {
+            return read(self.part(view.buffer, view.byte_offset, view.byte_length, &what)?);
+        };
+        let cell = self.unpacked.borrow_mut().entry(index).or_default().clone();
+        let unpacked = cell.get_or_init(|| {
+            let size = packed.count.saturating_mul(packed.byte_stride);
+            self.spend_unpacked(size)?;
+            let from = self.part(packed.buffer, packed.byte_offset, packed.byte_length, &what)?;
+            codec::meshopt(packed, from).map_err(|why| format!("{what}: {why}"))
+        });
+        read(unpacked.as_ref().map_err(Clone::clone)?)
+    }
+
+    fn spend_unpacked(&self, bytes: usize) -> Result<(), String> {
+        let all = self.unpacked_bytes.get().saturating_add(bytes);
+        self.unpacked_bytes.set(all);
+        if all > FREE_UNPACKED.max(self.file_bytes().saturating_mul(UNPACKED_FOR_EACH)) {
+            return Err(format!("its compressed data comes to {all} bytes, out of proportion to the file"));
+        }
+        Ok(())
+    }
+
+    pub(super) fn accessor(&self, index: Index) -> Result<&'a Accessor, String> {
+        self.gltf.accessors.get(index as usize).ok_or_else(|| {
+            format!("there is no accessor {index}, but only {}", self.gltf.accessors.len())
         })
     }
 
-    /// All numbers of an accessor of `width` components an item, normalized where it says so.
-    pub(super) fn floats(&self, accessor: &Accessor, width: usize) -> Result<Vec<f64>, String> {
-        let fail = |why: &str| format!("accessor {}: {why}", accessor.index());
-        if components(accessor.dimensions()) != width {
-            return Err(fail(&format!("needs {width} numbers an item")));
-        }
-        let (kind, count) = (accessor.data_type(), accessor.count());
-        let number = |bytes: &[u8]| component(kind, accessor.normalized(), bytes);
-        let mut all = self.items(accessor, width, number)?;
-        if let Some(sparse) = accessor.sparse() {
-            let indices = self.strided(
-                &sparse.indices().view(),
-                sparse.indices().offset(),
-                None,
-                sparse.count(),
-                index_bytes(&sparse.indices()),
-            );
-            let values = self.strided(
-                &sparse.values().view(),
-                sparse.values().offset(),
-                None,
-                sparse.count(),
-                width * kind.size(),
-            );
-            let (indices, values) = (indices.map_err(|why| fail(&why))?, values.map_err(|why| fail(&why))?);
-            for (index, value) in indices.zip(values) {
-                let at = little(index) as usize;
-                if at >= count {
-                    return Err(fail(&format!("sparse index {at} is past its {count} items")));
-                }
-                for (k, bytes) in value.chunks_exact(kind.size()).enumerate() {
-                    all[at * width + k] = number(bytes);
-                }
+    /// The items of an accessor of `W` numbers each, normalized where it says so.
+    pub(super) fn vectors<const W: usize>(&self, index: Index) -> Result<Vec<[f64; W]>, String> {
+        let accessor = self.accessor(index)?;
+        let read = || {
+            if components(accessor) != W {
+                return Err(format!("needs {W} numbers an item"));
             }
+            match accessor.component_type {
+                5126 => self.items::<W, 4, _>(accessor, |b| f64::from(f32::from_le_bytes(b))),
+                5120 => self.items(accessor, number(accessor, |b: [u8; 1]| i8::from_le_bytes(b), 127.0)),
+                5121 => self.items(accessor, number(accessor, |[b]: [u8; 1]| b, 255.0)),
+                5122 => self.items(accessor, number(accessor, i16::from_le_bytes, 32767.0)),
+                5123 => self.items(accessor, number(accessor, u16::from_le_bytes, 65535.0)),
+                5125 => self.items(accessor, number(accessor, u32::from_le_bytes, f64::from(u32::MAX))),
+                other => Err(format!("there is no component type {other}")),
+            }
+        };
+        read().map_err(|why| format!("accessor {index}: {why}"))
+    }
+
+    /// The items of an accessor of `W` unsigned whole numbers each.
+    pub(super) fn whole<const W: usize>(&self, index: Index) -> Result<Vec<[u32; W]>, String> {
+        let accessor = self.accessor(index)?;
+        let read = || {
+            if components(accessor) != W {
+                return Err(format!("needs {W} numbers an item"));
+            }
+            match accessor.component_type {
+                5121 => self.items::<W, 1, _>(accessor, |[b]| u32::from(b)),
+                5123 => self.items::<W, 2, _>(accessor, |b| u32::from(u16::from_le_bytes(b))),
+                5125 => self.items::<W, 4, _>(accessor, u32::from_le_bytes),
+                _ => Err("its numbers must be unsigned and whole".into()),
+            }
+        };
+        read().map_err(|why| format!("accessor {index}: {why}"))
+    }
+
+    /// `W` components of `S` bytes an item, sparse values in their places.
+    fn items<const W: usize, const S: usize, T: Copy + Default>(
+        &self,
+        accessor: &Accessor,
+        number: impl Fn([u8; S]) -> T,
+    ) -> Result<Vec<[T; W]>, String> {
+        let item = |bytes: &[u8]| {
+            let parts = bytes.as_chunks::<S>().0;
+            std::array::from_fn(|k| number(parts[k]))
+        };
+        let mut all = match accessor.buffer_view {
+            Some(view) => {
+                let stride = self.gltf.buffer_views.get(view as usize).and_then(|v| v.byte_stride);
+                let stride = stride.unwrap_or(W * S);
+                self.run(view, accessor.byte_offset, stride, accessor.count, W * S, |run| {
+                    run.map(item).collect()
+                })?
+            }
+            None => {
+                self.spend_zeros(accessor.count)?;
+                vec![[T::default(); W]; accessor.count]
+            }
+        };
+        if let Some(sparse) = &accessor.sparse {
+            self.sparse(sparse, W * S, |at, bytes| match all.get_mut(at as usize) {
+                Some(place) => {
+                    *place = item(bytes);
+                    Ok(())
+                }
+                None => Err(format!("sparse index {at} is past its {} items", accessor.count)),
+            })?;
         }
         Ok(all)
     }
 
-    /// All indices of an accessor of unsigned numbers.
-    pub(super) fn indices(&self, accessor: &Accessor) -> Result<Vec<u32>, String> {
-        if !matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32)
-            || accessor.sparse().is_some()
-        {
-            return Err(format!("accessor {}: indices must be plain unsigned numbers", accessor.index()));
+    /// "When undefined, the accessor MUST be initialized with zeros" (5.1.1); the file holds none of them.
+    fn spend_zeros(&self, count: usize) -> Result<(), String> {
+        let all = self.zeros.get().saturating_add(count);
+        self.zeros.set(all);
+        if all > FREE_ZEROS.max(self.file_bytes()) {
+            return Err(format!("{count} items and no data, out of proportion to the file"));
         }
-        self.items(accessor, components(accessor.dimensions()).min(1), little)
+        Ok(())
     }
 
-    fn items<T: Clone + Default>(
+    fn sparse(
         &self,
-        accessor: &Accessor,
-        width: usize,
-        read: impl Fn(&[u8]) -> T,
-    ) -> Result<Vec<T>, String> {
-        let fail = |why: &str| format!("accessor {}: {why}", accessor.index());
-        let (count, size) = (accessor.count(), accessor.data_type().size());
-        let Some(view) = accessor.view() else {
-            if count > MAX_ZEROS {
-                return Err(fail(&format!("{count} items and no data")));
-            }
-            return Ok(vec![T::default(); count * width]);
+        sparse: &Sparse,
+        size: usize,
+        mut set: impl FnMut(u32, &[u8]) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let bytes = match sparse.indices.component_type {
+            5121 => 1,
+            5123 => 2,
+            5125 => 4,
+            other => return Err(format!("sparse indices cannot be of component type {other}")),
         };
-        let items = self
-            .strided(&view, accessor.offset(), view.stride(), count, width * size)
-            .map_err(|why| fail(&why))?;
-        Ok(items.flat_map(|item| item.chunks_exact(size)).map(read).collect())
+        let little = |bytes: &[u8]| bytes.iter().rev().fold(0, |n, b| n << 8 | u32::from(*b));
+        let (at, count) = (&sparse.indices, sparse.count);
+        let places: Vec<u32> =
+            self.run(at.buffer_view, at.byte_offset, bytes, count, bytes, |run| run.map(little).collect())?;
+        let values = &sparse.values;
+        self.run(values.buffer_view, values.byte_offset, size, count, size, |run| {
+            places.iter().zip(run).try_for_each(|(at, bytes)| set(*at, bytes))
+        })?
     }
 
-    /// `count` items of `size` bytes; checked to lie in the view before the first is read.
-    fn strided<'s>(
-        &'s self,
-        view: &View<'_>,
+    /// Hands `count` items of at least `size` bytes to `read`; they lie in the view.
+    fn run<T>(
+        &self,
+        view: Index,
         offset: usize,
-        stride: Option<usize>,
+        stride: usize,
         count: usize,
         size: usize,
-    ) -> Result<impl Iterator<Item = &'s [u8]> + use<'s>, String> {
-        let stride = stride.unwrap_or(size);
-        let bytes = self.view(view)?;
-        let end = count
-            .checked_sub(1)
-            .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size)?.checked_add(offset));
-        if stride < size || end.is_none_or(|end| end > bytes.len()) {
-            return Err(format!(
-                "{count} items of {size} bytes do not fit into buffer view {}",
-                view.index()
-            ));
-        }
-        Ok((0..count).map(move |i| &bytes[offset + i * stride..][..size]))
+        read: impl FnOnce(std::slice::Chunks<'_, u8>) -> T,
+    ) -> Result<T, String> {
+        self.view(view, |bytes| {
+            let length = count
+                .checked_sub(1)
+                .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
+            let run = length.and_then(|l| bytes.get(offset..offset.checked_add(l)?));
+            match run.filter(|_| stride >= size) {
+                Some(run) => Ok(read(run.chunks(stride))),
+                None => {
+                    Err(format!("{count} items of {size} bytes do not fit into buffer view {view}"))
+                }
+            }
+        })
     }
 }
 
-fn components(dimensions: Dimensions) -> usize {
-    dimensions.multiplicity()
-}
-
-fn index_bytes(indices: &::gltf::accessor::sparse::Indices) -> usize {
-    use ::gltf::accessor::sparse::IndexType::{U8, U16, U32};
-    match indices.index_type() {
-        U8 => 1,
-        U16 => 2,
-        U32 => 4,
+/// Numbers an item of an accessor; 0 for a type that is none.
+pub(super) fn components(accessor: &Accessor) -> usize {
+    match accessor.shape.as_str() {
+        "SCALAR" => 1,
+        "VEC2" => 2,
+        "VEC3" => 3,
+        "VEC4" | "MAT2" => 4,
+        "MAT3" => 9,
+        "MAT4" => 16,
+        _ => 0,
     }
 }
 
-/// An unsigned number of one, two or four bytes.
-fn little(bytes: &[u8]) -> u32 {
-    bytes.iter().rev().fold(0, |n, b| n << 8 | u32::from(*b))
-}
-
-fn component(kind: DataType, normalized: bool, bytes: &[u8]) -> f64 {
-    let raw = little(bytes);
-    let (value, scale) = match kind {
-        DataType::F32 => return f64::from(f32::from_bits(raw)),
-        DataType::I8 => (f64::from(raw as u8 as i8), 127.0),
-        DataType::U8 => (f64::from(raw), 255.0),
-        DataType::I16 => (f64::from(raw as u16 as i16), 32767.0),
-        DataType::U16 => (f64::from(raw), 65535.0),
-        DataType::U32 => (f64::from(raw), f64::from(u32::MAX)),
-    };
-    if normalized { (value / scale).max(-1.0) } else { value }
+/// A whole number as it is, or as a part of `most` (3.6.2.2).
+fn number<const S: usize, N: Into<f64>>(
+    accessor: &Accessor,
+    whole: impl Fn([u8; S]) -> N,
+    most: f64,
+) -> impl Fn([u8; S]) -> f64 {
+    let normalized = accessor.normalized;
+    move |bytes| {
+        let value = whole(bytes).into();
+        if normalized { (value / most).max(-1.0) } else { value }
+    }
 }
 
 /// The bytes of a base64 `data:` URI.

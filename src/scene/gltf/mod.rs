@@ -1,43 +1,46 @@
-//! glTF 2.0 and GLB through the crate `gltf`: its JSON and its validation; containers, buffers and accessors
-//! are read here, with every bound checked (Khronos, "glTF 2.0 Specification", 2021).
+//! glTF 2.0 and GLB, read by types of our own: only what is needed, with every bound checked (Khronos, "glTF
+//! 2.0 Specification", 2021).
 //!
-//! Each node with a mesh becomes an object under its transform; triangles, strips and fans become triangles
-//! in the order of the node tree. The first animation becomes motions where it is rigid. Textures, skins and
-//! morph targets are left out with a note. Cost: O(file), times the instances of each mesh up to a limit.
+//! Each node with a mesh becomes an object under its transform, and so does each of its instances; triangles,
+//! strips and fans become triangles in the order of the node tree. Skins stand at their joints at rest, morph
+//! targets at their default weights. The first animation becomes motions where it is rigid, cameras become
+//! view paths. What is left out is said once, with names and counts. Cost: O(file), times the instances of
+//! each mesh up to a limit.
 
+mod camera;
+mod codec;
+mod container;
 mod data;
+mod file;
+mod lost;
 mod motion;
+mod paint;
+mod shape;
+mod skin;
+mod tree;
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
+use std::sync::Arc;
 
-use ::gltf::json::Root;
-use ::gltf::json::validation::{Checked, Error as Fault, Validate};
-use ::gltf::material::AlphaMode;
-use ::gltf::mesh::Mode;
-use ::gltf::{Document, Node, Primitive, Semantic};
 use glam::{DMat4, DVec3};
 
 use self::data::Data;
+use self::file::{Gltf, Index, short};
+use self::lost::Lost;
+use self::motion::Clip;
+use self::paint::Palette;
+use self::shape::Shape;
+use self::skin::Skin;
+use self::tree::{Stand, Tree, turn};
 use super::assemble::{Mesh, assemble};
-use super::mtl::GRAY;
-use super::text::without_mark;
-use super::{Dropped, LoadOptions, Material, Object, Part, Parts, Progress, Report, SceneError, json};
-use crate::geometry::Solid;
+use super::{Dropped, LoadOptions, Object, Part, Parts, Pose, Progress, Report, SceneError};
+use crate::geometry::{Aabb, Solid};
 
-/// Most points and most triangles that instances may multiply to: some gigabytes of tables.
-const MAX_INSTANCED: usize = 1 << 25;
-
-/// Extensions that a file may require without changing where its triangles are.
-const HARMLESS: &[&str] = &[
-    "KHR_materials_",
-    "KHR_texture_",
-    "KHR_lights_",
-    "EXT_texture_",
-    "KHR_mesh_quantization",
-    "EXT_lights_",
-    "KHR_xmp",
-];
+/// Points, corners and instances that every file may multiply to: some gigabytes of tables. A longer file may
+/// have one a byte.
+const FREE_INSTANCED: usize = 1 << 25;
 
 /// Reads glTF JSON or GLB. Without a `folder` no buffer file is opened.
 pub(super) fn read(
@@ -49,292 +52,358 @@ pub(super) fn read(
     progress: &dyn Progress,
 ) -> Result<Parts<Solid>, SceneError> {
     let format = |why: String| SceneError::Format { path: source.to_owned(), why };
-    let (text, blob) =
-        if bytes.starts_with(b"glTF") { split_glb(bytes).map_err(format)? } else { (bytes, None) };
-    let root = root(text, source)?;
     let mut report = Report::default();
-    check(&root, &mut report).map_err(format)?;
-    let document = Document::from_json_without_validation(root);
-    let data = Data::read(&document, blob, folder).map_err(format)?;
-    let mut reader = Reader::new(&document, data, report);
-    reader.tree(source, progress)?;
-    let Reader { mesh, report, placed, data, .. } = reader;
+    let (gltf, chunk) = container::open(bytes, source, &mut report)?;
+    lost::check(&gltf, &mut report).map_err(format)?;
+    let roots = tree::roots(&gltf, None, &mut report).map_err(format)?;
+    let tree = Tree::walk(&gltf, &roots, source, progress)?;
+    let data = Data::new(&gltf, chunk, folder, bytes.len());
+    let mut reader = Reader::new(&gltf, &data, &tree);
+    reader.nodes(source, progress)?;
+    reader.tell(&mut report);
+    let Reader { mut mesh, palette, placed, skinned, .. } = reader;
     if mesh.faces.is_empty() {
-        let meshes = document.meshes().count();
-        return Err(format(format!(
-            "it has no triangles in its scene ({meshes} meshes, {} nodes)",
-            document.nodes().count()
-        )));
+        return Err(format(why_empty(&gltf, &report)));
     }
-    let mut parts =
-        assemble(mesh, name, source, options, report, &Part { whole: progress, start: 0.5, length: 0.5 })?;
-    motion::attach(&document, &data, &placed, &mut parts);
+    mesh.materials = palette.materials;
+    lost::left_out(&gltf, &mut report);
+    let clip = Clip::read(&gltf, &data, &tree, &mut report);
+    let part = Part { whole: progress, start: 0.5, length: 0.5 };
+    let mut parts = assemble(mesh, name, source, options, report, &part)?;
+    let moved = Moved { gltf: &gltf, tree: &tree, placed: &placed, skinned: &skinned };
+    moved.attach(clip.as_ref(), &mut parts, progress);
+    if progress.cancelled() {
+        return Err(SceneError::Cancelled(source.to_owned()));
+    }
     Ok(parts)
 }
 
-/// JSON text and binary chunk of a GLB container.
-fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
-    fn word(bytes: &[u8], at: usize) -> Option<u32> {
-        bytes.get(at..at + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+/// Why there is nothing to show: what there is, and the first of what was noticed.
+fn why_empty(gltf: &Gltf, report: &Report) -> String {
+    let (meshes, nodes) = (gltf.meshes.len(), gltf.nodes.len());
+    let mut why = format!("it has no triangles in its scene ({meshes} meshes, {nodes} nodes)");
+    for note in report.notes.iter().take(3) {
+        why += "; ";
+        why += note;
     }
-    let (Some(version), Some(length)) = (word(bytes, 4), word(bytes, 8)) else {
-        return Err("the GLB header is cut off".into());
-    };
-    if version != 2 {
-        return Err(format!("GLB version {version} is not supported, only 2"));
-    }
-    if length as usize > bytes.len() {
-        return Err(format!("the GLB says it has {length} bytes, but the file has {}", bytes.len()));
-    }
-    let bytes = &bytes[..length as usize];
-    let (mut text, mut blob, mut at) = (None, None, 12);
-    while let (Some(size), Some(kind)) = (word(bytes, at), word(bytes, at + 4)) {
-        let Some(chunk) = bytes.get(at + 8..).and_then(|rest| rest.get(..size as usize)) else {
-            return Err(format!(
-                "the GLB chunk at byte {at} says it has {size} bytes, but the file ends before"
-            ));
-        };
-        match &kind.to_le_bytes() {
-            b"JSON" if text.is_none() => text = Some(chunk),
-            b"BIN\0" if blob.is_none() => blob = Some(chunk),
-            _ => {}
-        }
-        // Chunks are padded to four bytes.
-        at += 8 + (size as usize).next_multiple_of(4);
-    }
-    text.map(|t| (t, blob)).ok_or_else(|| "the GLB has no JSON chunk".into())
+    why
 }
 
-fn root(text: &[u8], source: &str) -> Result<Root, SceneError> {
-    let text =
-        without_mark(text).map_err(|why| SceneError::Format { path: source.to_owned(), why: why.into() })?;
-    // Padding of the chunk, which some writers make of zeros.
-    let end = text.iter().rposition(|b| *b != 0).map_or(0, |e| e + 1);
-    json::from_slice(&text[..end], source)
-}
-
-/// Everything that the crate's validation says, except on extensions that do not matter here.
-fn check(root: &Root, report: &mut Report) -> Result<(), String> {
-    let harmless = |name: &String| HARMLESS.iter().any(|h| name.starts_with(h));
-    if let Some(needed) = root.extensions_required.iter().find(|e| !harmless(e)) {
-        return Err(format!("it requires the extension {needed}, which is not supported"));
-    }
-    if !root.asset.version.starts_with("2.") {
-        return Err(format!("glTF version {} is not supported, only 2", root.asset.version));
-    }
-    // The crate's validation looks this one up without asking whether it is there.
-    let positions = root
-        .meshes
-        .iter()
-        .flat_map(|m| &m.primitives)
-        .filter_map(|p| p.attributes.get(&Checked::Valid(Semantic::Positions)));
-    if let Some(bad) = positions.map(|p| p.value()).find(|p| *p >= root.accessors.len()) {
-        return Err(format!(
-            "a mesh has its positions in accessor {bad}, but there are only {}",
-            root.accessors.len()
-        ));
-    }
-    let mut faults = Vec::new();
-    root.validate(root, ::gltf::json::Path::new, &mut |path, fault| {
-        let place = path().to_string();
-        // Bounds of positions are not needed, and a primitive without positions is left out with a note.
-        let needless = place.contains("\"POSITION\"") && !matches!(fault, Fault::IndexOutOfBounds);
-        if !needless && !matches!(fault, Fault::Unsupported) {
-            faults.push(format!("{place}: {fault}"));
-        }
-    });
-    if let Some(first) = faults.first() {
-        return Err(format!("{first} ({} faults)", faults.len()));
-    }
-    for (what, count) in [("skins", root.skins.len()), ("textures", root.textures.len())] {
-        if count > 0 {
-            report.note(format!("{count} {what} left out"));
-        }
-    }
-    Ok(())
-}
-
-/// An object that was placed: its node, and the world transform of the node at rest.
-struct Placed {
-    node: usize,
-    world: DMat4,
-}
+/// The primitives of a mesh.
+type Shapes = Rc<Vec<Shape>>;
 
 struct Reader<'a> {
-    document: &'a Document,
-    data: Data,
+    gltf: &'a Gltf,
+    data: &'a Data<'a>,
+    tree: &'a Tree,
     mesh: Mesh,
-    report: Report,
-    placed: Vec<Placed>,
-    material_ids: BTreeMap<Option<usize>, u32>,
-    points_wanted: usize,
-    triangles_wanted: usize,
+    palette: Palette,
+    lost: Lost,
+    /// The node with which each object moves, if it does not follow joints.
+    placed: Vec<Option<Index>>,
+    /// Objects that follow joints, and their skins.
+    skinned: Vec<Index>,
+    /// How many nodes show each mesh, and what was read of those that several show.
+    uses: Vec<u32>,
+    shapes: BTreeMap<Index, Shapes>,
+    skins: BTreeMap<Index, Result<Rc<Skin>, String>>,
+    /// Points, corners and instances that may still come.
+    left: usize,
+    most: usize,
 }
 
 impl<'a> Reader<'a> {
-    fn new(document: &'a Document, data: Data, report: Report) -> Self {
+    fn new(gltf: &'a Gltf, data: &'a Data<'a>, tree: &'a Tree) -> Self {
+        let mut uses = vec![0; gltf.meshes.len()];
+        for node in tree.order.iter().filter(|n| tree.shown[**n as usize]) {
+            let mesh = gltf.nodes[*node as usize].mesh;
+            if let Some(count) = mesh.and_then(|m| uses.get_mut(m as usize)) {
+                *count += 1;
+            }
+        }
         Self {
-            document,
+            gltf,
             data,
+            tree,
             mesh: Mesh::default(),
-            report,
+            palette: Palette::default(),
+            lost: Lost::default(),
             placed: Vec::new(),
-            material_ids: BTreeMap::new(),
-            points_wanted: 0,
-            triangles_wanted: 0,
+            skinned: Vec::new(),
+            uses,
+            shapes: BTreeMap::new(),
+            skins: BTreeMap::new(),
+            left: FREE_INSTANCED,
+            most: FREE_INSTANCED,
         }
     }
 
-    /// Walks the nodes of the default scene (or the first, or all), depth first, without recursion.
-    fn tree(&mut self, source: &str, progress: &dyn Progress) -> Result<(), SceneError> {
+    /// Makes the objects of all nodes that are shown.
+    fn nodes(&mut self, source: &str, progress: &dyn Progress) -> Result<(), SceneError> {
         let format = |why: String| SceneError::Format { path: source.to_owned(), why };
-        let count = self.document.nodes().len();
-        let mut seen = vec![false; count];
-        let roots: Vec<Node> = match self.document.default_scene().or_else(|| self.document.scenes().next()) {
-            Some(scene) => scene.nodes().collect(),
-            None => {
-                let mut child = vec![false; count];
-                self.document
-                    .nodes()
-                    .flat_map(|n| n.children().map(|c| c.index()).collect::<Vec<_>>())
-                    .for_each(|c| child[c] = true);
-                self.document.nodes().filter(|n| !child[n.index()]).collect()
-            }
-        };
-        let mut stack: Vec<(Node, DMat4, String)> =
-            roots.into_iter().rev().map(|n| (n, DMat4::IDENTITY, String::new())).collect();
-        let mut done = 0;
-        while let Some((node, above, group)) = stack.pop() {
-            if std::mem::replace(&mut seen[node.index()], true) {
-                return Err(format(format!("node {} is in the tree twice", node.index())));
-            }
-            done += 1;
-            if done % 256 == 0 {
-                progress.report(done as f32 / count as f32 * 0.5, "reading nodes");
+        let (mut done, mut asked) = (0, 0);
+        for (k, index) in self.tree.order.iter().enumerate() {
+            // By what was made, since one node may hold everything.
+            if k - asked > 1_024 || self.mesh.faces.len() - done > 65_536 {
+                (done, asked) = (self.mesh.faces.len(), k);
+                progress.report(k as f32 / self.tree.order.len() as f32 * 0.5, "reading meshes");
                 if progress.cancelled() {
                     return Err(SceneError::Cancelled(source.to_owned()));
                 }
             }
-            let world = above * motion::local(&node);
-            self.node(&node, world, &group).map_err(format)?;
-            let name = node.name().unwrap_or("").to_owned();
-            let children: Vec<Node> = node.children().collect();
-            stack.extend(children.into_iter().rev().map(|c| (c, world, name.clone())));
-        }
-        Ok(())
-    }
-
-    fn node(&mut self, node: &Node, world: DMat4, group: &str) -> Result<(), String> {
-        let Some(mesh) = node.mesh() else { return Ok(()) };
-        let name =
-            node.name().or(mesh.name()).map_or_else(|| format!("node_{}", node.index()), str::to_owned);
-        let object = self.mesh.objects.len() as u32;
-        self.mesh.objects.push(Object { name, group: group.to_owned(), motion: None });
-        self.placed.push(Placed { node: node.index(), world });
-        for primitive in mesh.primitives() {
-            self.primitive(&primitive, world, object)
-                .map_err(|why| format!("mesh {}, primitive {}: {why}", mesh.index(), primitive.index()))?;
-        }
-        Ok(())
-    }
-
-    fn primitive(&mut self, primitive: &Primitive, world: DMat4, object: u32) -> Result<(), String> {
-        let mode = primitive.mode();
-        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-            self.report
-                .note(format!("mesh primitive {} is made of points or lines; left out", primitive.index()));
-            return Ok(());
-        }
-        if primitive.morph_targets().len() > 0 {
-            self.report.note(format!("morph targets of primitive {} left out", primitive.index()));
-        }
-        let Some(positions) = primitive.get(&Semantic::Positions) else {
-            self.report.note(format!("mesh primitive {} has no positions; left out", primitive.index()));
-            return Ok(());
-        };
-        let corners = primitive.indices().map_or(positions.count(), |i| i.count());
-        self.points_wanted = self.points_wanted.saturating_add(positions.count());
-        self.triangles_wanted = self.triangles_wanted.saturating_add(corners);
-        if self.points_wanted.max(self.triangles_wanted) > MAX_INSTANCED {
-            return Err(format!("its instances come to over {MAX_INSTANCED} points or corners"));
-        }
-        let places = self.data.floats(&positions, 3)?;
-        let count = places.len() / 3;
-        let indices = match primitive.indices() {
-            Some(accessor) => self.data.indices(&accessor)?,
-            None => (0..count as u32).collect(),
-        };
-        let material = self.material(&primitive.material());
-        let base = self.mesh.points.len() as u32;
-        let at = |p: &[f64; 3]| world.transform_point3(DVec3::from_array(*p));
-        self.mesh.points.extend(places.as_chunks::<3>().0.iter().map(at));
-        // A mirroring transform turns triangles over.
-        let mirrored = world.determinant() < 0.0;
-        for [a, b, c] in triangles(mode, &indices) {
-            if [a, b, c].iter().any(|i| *i as usize >= count) {
-                self.mesh.push_lost(1, object, material, Dropped::OutOfRange);
-            } else {
-                let [b, c] = if mirrored { [c, b] } else { [b, c] };
-                self.mesh.push(&[base + a, base + b, base + c], object, material);
+            if let Some(mesh) = self.gltf.nodes[*index as usize].mesh.filter(|_| self.tree.shown[*index as usize]) {
+                self.node(*index, mesh, progress).map_err(format)?;
+            }
+            if progress.cancelled() {
+                return Err(SceneError::Cancelled(source.to_owned()));
             }
         }
-        let spare = if mode == Mode::Triangles { indices.len() % 3 } else { 0 };
-        if spare > 0 {
-            self.report.note(format!(
-                "primitive {}: the last {spare} of {} corners make no triangle",
-                primitive.index(),
-                indices.len()
-            ));
+        Ok(())
+    }
+
+    fn node(&mut self, index: Index, mesh: Index, progress: &dyn Progress) -> Result<(), String> {
+        let node = &self.gltf.nodes[index as usize];
+        let Some(named) = self.gltf.meshes.get(mesh as usize) else {
+            return Err(format!("node {index} shows mesh {mesh}, but there are only {}", self.gltf.meshes.len()));
+        };
+        let name = node.name.as_deref().or(named.name.as_deref());
+        let name = name.map_or_else(|| format!("node_{index}"), short);
+        let above = self.tree.parents[index as usize].and_then(|p| self.gltf.nodes[p as usize].name.as_deref());
+        let shapes = self.shapes(index, mesh)?;
+        let skin = match node.skin {
+            Some(skin) => self.skin(skin),
+            None => None,
+        };
+        if let Some(skin) = skin.filter(|_| shapes.iter().any(|s| !s.influences.is_empty())) {
+            let object = self.object(name, above.map_or(String::new(), short), None);
+            self.skinned.extend(node.skin);
+            return shapes.iter().try_for_each(|shape| self.place_skinned(shape, &skin, index, object));
+        }
+        let world = self.tree.worlds[index as usize];
+        let Some(instances) = self.instances(index)? else {
+            let object = self.object(name, above.map_or(String::new(), short), Some(index));
+            return shapes.iter().try_for_each(|shape| self.place(shape, &world, object));
+        };
+        for (k, stand) in instances.iter().enumerate() {
+            if progress.cancelled() {
+                return Ok(());
+            }
+            let object = self.object(format!("{name}_{k}"), name.clone(), Some(index));
+            let world = world * stand.matrix();
+            shapes.iter().try_for_each(|shape| self.place(shape, &world, object))?;
         }
         Ok(())
     }
 
-    fn material(&mut self, material: &::gltf::Material) -> u32 {
-        let next = self.mesh.materials.len() as u32;
-        let id = *self.material_ids.entry(material.index()).or_insert(next);
-        if id == next {
-            let [r, g, b, _] = material.pbr_metallic_roughness().base_color_factor();
-            let (name, color) = match material.index() {
-                None => ("default".to_owned(), GRAY),
-                Some(i) => {
-                    (material.name().map_or_else(|| format!("material_{i}"), str::to_owned), [r, g, b])
-                }
-            };
-            let color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { GRAY[0] });
-            self.mesh.materials.push(Material {
-                see_through: see_through(material),
-                two_sided: material.double_sided(),
-                ..Material::new(name, color)
-            });
+    fn object(&mut self, name: String, group: String, node: Option<Index>) -> u32 {
+        self.mesh.objects.push(Object { name, group, motion: None });
+        self.placed.push(node);
+        self.mesh.objects.len() as u32 - 1
+    }
+
+    /// The primitives of a mesh as a node shows it. They are kept where other nodes show them alike.
+    fn shapes(&mut self, node: Index, mesh: Index) -> Result<Shapes, String> {
+        let shown = &self.gltf.nodes[node as usize];
+        let alike = shown.weights.is_none() && shown.skin.is_none() && self.uses[mesh as usize] > 1;
+        if let Some(shapes) = self.shapes.get(&mesh).filter(|_| alike) {
+            return Ok(shapes.clone());
         }
-        id
+        let own = &self.gltf.meshes[mesh as usize];
+        let reader = shape::Reader {
+            gltf: self.gltf,
+            data: self.data,
+            // "If defined on a node, they override those of the mesh" (3.7.2.2).
+            weights: shown.weights.as_ref().map_or(&own.weights, |w| w),
+            skinned: shown.skin.is_some(),
+            most: FREE_INSTANCED.max(self.data.file_bytes()),
+        };
+        let mut shapes = Vec::new();
+        for (k, primitive) in own.primitives.iter().enumerate() {
+            let at = (mesh as usize, k);
+            if !primitive.targets.is_empty() {
+                let name = || self.gltf.mesh_name(at.0);
+                self.lost.add("# primitives have morph targets and stand at the default weights, of meshes", at, name);
+            }
+            let read = reader.read(at, &mut self.lost);
+            shapes.extend(read.map_err(|why| format!("mesh {mesh}, primitive {k}: {why}"))?);
+        }
+        let shapes = Rc::new(shapes);
+        if alike {
+            self.shapes.insert(mesh, shapes.clone());
+        }
+        Ok(shapes)
+    }
+
+    /// A skin, unless it is not valid, which becomes a note.
+    fn skin(&mut self, index: Index) -> Option<Rc<Skin>> {
+        let read = || Skin::read(self.gltf, self.data, self.tree, index).map(Rc::new);
+        let skin = self.skins.entry(index).or_insert_with(read);
+        skin.clone().map_err(|why| {
+            self.lost.add("# skins are not valid, so that meshes stand where their nodes are", (index as usize, 0), || {
+                format!("skin {index}: {why}")
+            });
+        })
+        .ok()
+    }
+
+    /// Where the instances of a node's mesh stand in the node (EXT_mesh_gpu_instancing).
+    fn instances(&mut self, index: Index) -> Result<Option<Vec<Stand>>, String> {
+        let extensions = self.gltf.nodes[index as usize].extensions.as_ref();
+        let Some(instancing) = extensions.and_then(|e| e.instancing.as_ref()) else { return Ok(None) };
+        let fail = |why: String| format!("node {index}: its instances: {why}");
+        let attributes = &instancing.attributes;
+        let named = [attributes.translation, attributes.rotation, attributes.scale];
+        let mut counts = named.into_iter().flatten().map(|a| Ok(self.data.accessor(a).map_err(fail)?.count));
+        let Some(count) = counts.next().transpose()? else { return Ok(None) };
+        if counts.collect::<Result<Vec<_>, String>>()?.iter().any(|c| *c != count) {
+            return Err(fail("their attributes have different counts".into()));
+        }
+        self.spend(count).map_err(fail)?;
+        let mut stands =
+            vec![Stand { translation: DVec3::ZERO, rotation: glam::DQuat::IDENTITY, scale: DVec3::ONE }; count];
+        if let Some(accessor) = attributes.translation {
+            let all = self.data.vectors::<3>(accessor).map_err(fail)?;
+            stands.iter_mut().zip(all).for_each(|(s, v)| s.translation = DVec3::from_array(v));
+        }
+        if let Some(accessor) = attributes.rotation {
+            let all = self.data.vectors::<4>(accessor).map_err(fail)?;
+            stands.iter_mut().zip(all).for_each(|(s, v)| s.rotation = turn(v));
+        }
+        if let Some(accessor) = attributes.scale {
+            let all = self.data.vectors::<3>(accessor).map_err(fail)?;
+            stands.iter_mut().zip(all).for_each(|(s, v)| s.scale = DVec3::from_array(v));
+        }
+        Ok(Some(stands))
+    }
+
+    fn spend(&mut self, count: usize) -> Result<(), String> {
+        // What was read since has made the file longer.
+        let most = FREE_INSTANCED.max(self.data.file_bytes());
+        self.left += most - self.most;
+        self.most = most;
+        self.left = self.left.checked_sub(count).ok_or_else(|| {
+            format!("its instances come to over {most} points or corners")
+        })?;
+        Ok(())
+    }
+
+    fn place_skinned(&mut self, shape: &Shape, skin: &Skin, node: Index, object: u32) -> Result<(), String> {
+        if shape.influences.is_empty() {
+            return self.place(shape, &self.tree.worlds[node as usize], object);
+        }
+        let points = skin.place(&shape.points, &shape.influences);
+        let points = points.map_err(|why| format!("node {node}: {why}"))?;
+        self.add(shape, points.into_iter(), skin.is_mirrored(), object)
+    }
+
+    fn place(&mut self, shape: &Shape, world: &DMat4, object: u32) -> Result<(), String> {
+        // "The determinant of the transform is negative: the winding order is reversed" (3.7.4).
+        let points = shape.points.iter().map(|p| world.transform_point3(*p));
+        self.add(shape, points, world.determinant() < 0.0, object)
+    }
+
+    /// Adds a primitive whose points are these in the world.
+    fn add(
+        &mut self,
+        shape: &Shape,
+        points: impl ExactSizeIterator<Item = DVec3>,
+        mirrored: bool,
+        object: u32,
+    ) -> Result<(), String> {
+        let count = points.len();
+        self.spend(count.max(3 * shape.triangles.len()))?;
+        let base = self.mesh.points.len() as u32;
+        self.mesh.points.extend(points);
+        self.mesh.corners.reserve(3 * shape.triangles.len());
+        self.mesh.faces.reserve(shape.triangles.len());
+        let mut last = shape.tints.first().copied().flatten();
+        let mut material = self.palette.id(self.gltf, shape.material, last);
+        for (k, corners) in shape.triangles.iter().enumerate() {
+            let tint = shape.tints.get(k).copied().flatten();
+            if tint != last {
+                (last, material) = (tint, self.palette.id(self.gltf, shape.material, tint));
+            }
+            if corners.iter().any(|i| *i as usize >= count) {
+                self.mesh.push_lost(1, object, material, Dropped::OutOfRange);
+            } else {
+                let [a, b, c] = corners.map(|i| base + i);
+                self.mesh.push(&if mirrored { [a, c, b] } else { [a, b, c] }, object, material);
+            }
+        }
+        Ok(())
+    }
+
+    fn tell(&mut self, report: &mut Report) {
+        for (mesh, _) in self.uses.iter().enumerate().filter(|(_, uses)| **uses == 0) {
+            self.lost.add("# meshes are shown by no node of this scene", (mesh, 0), || self.gltf.mesh_name(mesh));
+        }
+        if self.tree.hidden > 0 {
+            report.note(format!("{} nodes are hidden (KHR_node_visibility) and left out", self.tree.hidden));
+        }
+        self.lost.tell(report);
     }
 }
 
-/// Whether light comes through somewhere (glTF 2.0, 3.9.4; KHR_materials_transmission). A texture may hold any
-/// alpha, so one that is blended or cut out by its texture counts; an opaque material ignores alpha.
-fn see_through(material: &::gltf::Material) -> bool {
-    let pbr = material.pbr_metallic_roughness();
-    let (alpha, texture) = (pbr.base_color_factor()[3], pbr.base_color_texture().is_some());
-    let blended = match material.alpha_mode() {
-        AlphaMode::Opaque => false,
-        AlphaMode::Mask => texture || alpha < material.alpha_cutoff().unwrap_or(0.5),
-        AlphaMode::Blend => texture || alpha < 1.0,
-    };
-    blended || material.transmission().is_some_and(|t| t.transmission_factor() > 0.0)
+/// What the animation moves.
+struct Moved<'a> {
+    gltf: &'a Gltf,
+    tree: &'a Tree,
+    placed: &'a [Option<Index>],
+    skinned: &'a [Index],
 }
 
-/// The triangles that a list of corners stands for; every second one of a strip is turned over.
-fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-    match mode {
-        Mode::TriangleStrip => indices
-            .windows(3)
-            .enumerate()
-            .map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
-            .collect(),
-        Mode::TriangleFan => {
-            indices.get(1..).unwrap_or(&[]).windows(2).map(|w| [indices[0], w[0], w[1]]).collect()
+impl Moved<'_> {
+    /// Gives the objects their motions and makes the cameras view paths.
+    fn attach(&self, clip: Option<&Clip>, parts: &mut Parts<Solid>, progress: &dyn Progress) {
+        let cameras = camera::nodes(self.gltf, self.tree);
+        let nodes = self.placed.iter().flatten().chain(&cameras).copied();
+        let worlds = match clip.map(|clip| clip.sample(self.gltf, self.tree, nodes, progress)) {
+            Some(Ok(worlds)) => worlds,
+            Some(Err(why)) => {
+                parts.report.note(format!("animation left out: {why}"));
+                BTreeMap::new()
+            }
+            None => BTreeMap::new(),
+        };
+        let still = Pose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
+        let motions: BTreeMap<Index, Option<Arc<[Pose]>>> = worlds
+            .iter()
+            .map(|(node, list)| {
+                let poses = motion::poses(list, &self.tree.worlds[*node as usize], parts.origin);
+                (*node, poses.map(Arc::from))
+            })
+            .collect();
+        let mut bent = Lost::default();
+        for (k, (object, node)) in parts.objects.iter_mut().zip(self.placed).enumerate() {
+            match node.and_then(|n| motions.get(&n)) {
+                Some(Some(poses)) if poses.iter().any(|p| *p != still) => object.motion = Some(poses.clone()),
+                Some(None) => {
+                    bent.add("# objects are scaled by the animation and stand still", (k, 0), || {
+                        format!("`{}`", object.name)
+                    });
+                }
+                _ => {}
+            }
         }
-        _ => indices.as_chunks::<3>().0.to_vec(),
+        bent.tell(&mut parts.report);
+        if let Some(clip) = clip {
+            self.tell_of_joints(clip, &mut parts.report);
+        }
+        let bounds = Aabb::of(parts.points.iter().copied());
+        let report = &mut parts.report;
+        parts.paths = camera::paths(self.gltf, self.tree, &cameras, &worlds, parts.origin, bounds, report);
+    }
+
+    fn tell_of_joints(&self, clip: &Clip, report: &mut Report) {
+        let moves = |skin: &&Index| {
+            let skin = self.gltf.skins.get(**skin as usize).and_then(|s| s.0.as_ref().ok());
+            skin.is_some_and(|s| s.joints.iter().any(|j| clip.moving.get(*j as usize) == Some(&true)))
+        };
+        let count = self.skinned.iter().filter(moves).count();
+        if count > 0 {
+            report.note(format!(
+                "the animation moves the joints of {count} skinned objects, which stand at rest"
+            ));
+        }
     }
 }
