@@ -1,4 +1,5 @@
-//! Broken input, kind by kind, each with its outcome: one clear error, or the valid part and a report.
+//! Broken input, kind by kind, each with its outcome: one clear error, or the valid part and a report; and
+//! valid files that are seldom, with the right values.
 
 #[path = "broken/files.rs"]
 mod files;
@@ -8,6 +9,8 @@ mod flat;
 mod fuzz;
 #[path = "broken/gltf.rs"]
 mod gltf;
+#[path = "files/gltf.rs"]
+mod gltf_files;
 #[path = "broken/materials.rs"]
 mod materials;
 #[path = "broken/obj.rs"]

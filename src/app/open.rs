@@ -42,7 +42,8 @@ impl Wanted {
     /// The files that may be it, the likeliest first: where the path leads from the session's folder and from
     /// the working folder, then files of its name in and above the session's folder.
     fn places(&self) -> Vec<PathBuf> {
-        let (path, name) = (Path::new(&self.source), file_name(&self.source));
+        let file = scene::file_of(&self.source);
+        let (path, name) = (Path::new(file), file_name(file));
         let here = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
         let mut places = vec![self.folder.join(path), path.to_owned(), self.folder.join(&name)];
         // A path that leads up and down again: its last part may lie somewhere above.
@@ -56,7 +57,7 @@ impl Wanted {
     }
     /// Files beside the session that have another name and perhaps its content.
     fn namesakes(&self) -> Vec<PathBuf> {
-        let ending = Path::new(&self.source).extension();
+        let ending = Path::new(scene::file_of(&self.source)).extension();
         let mut files: Vec<_> = entries(&self.folder_or_dot())
             .into_iter()
             .filter(|p| p.is_file() && is_scene(p) && p.extension() == ending)
@@ -81,20 +82,22 @@ pub(super) fn file_name(source: &str) -> String {
 /// A scene's source as it is found from `folder`: a file by the way from there, without a folder by its whole
 /// path; what is no file as it is.
 pub(super) fn named_from(source: &str, folder: Option<&Path>) -> String {
-    let Some(file) = Path::new(source).canonicalize().ok().filter(|p| p.is_file()) else {
+    let (path, choice) = source.split_at(scene::file_of(source).len());
+    let Some(file) = Path::new(path).canonicalize().ok().filter(|p| p.is_file()) else {
         return source.to_owned();
     };
-    let Some(folder) = folder else { return file.to_string_lossy().into_owned() };
+    let whole = || file.to_string_lossy().into_owned() + choice;
+    let Some(folder) = folder else { return whole() };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let Ok(folder) = folder.canonicalize() else { return file.to_string_lossy().into_owned() };
+    let Ok(folder) = folder.canonicalize() else { return whole() };
     let common = file.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
     if common == 0 {
-        return file.to_string_lossy().into_owned();
+        return whole();
     }
     let up = folder.components().skip(common).map(|_| "..".to_owned());
     let down = file.components().skip(common).map(|c| c.as_os_str().to_string_lossy().into_owned());
     // With the separator that every system reads.
-    up.chain(down).collect::<Vec<_>>().join("/")
+    up.chain(down).collect::<Vec<_>>().join("/") + choice
 }
 
 /// Loads a scene and, if named, a view file. The error is one line.
@@ -118,7 +121,8 @@ fn find(wanted: &Wanted, progress: &dyn Progress) -> Result<AnyScene, String> {
         return read(source).or_else(|error| inside(source, error)).map_err(|e| e.to_string());
     }
     // A path from the working folder is what one would type.
-    let typed = |place: &Path| named_from(&place.to_string_lossy(), Some(Path::new("")));
+    let choice = &wanted.source[scene::file_of(&wanted.source).len()..];
+    let typed = |place: &Path| named_from(&place.to_string_lossy(), Some(Path::new(""))) + choice;
     let (mut first, mut failed) = (None, None);
     for place in wanted.places() {
         match read(&typed(&place)) {

@@ -6,6 +6,7 @@ use super::CliError;
 use super::methods::{find, settings};
 use crate::app::{Shot, Start};
 use crate::geometry::{Flat, Solid};
+use crate::scene::file_of;
 
 #[derive(clap::Args, Default)]
 #[command(
@@ -68,7 +69,7 @@ fn start(args: &Args) -> Result<Start, CliError> {
         return Err(error);
     }
     for file in [&args.scene, &args.view, &args.session].into_iter().flatten() {
-        if !file.starts_with("generate:") && !Path::new(file).exists() {
+        if !file.starts_with("generate:") && !Path::new(file_of(file)).exists() {
             return Err(CliError::work(file.as_str(), "there is no such file"));
         }
     }

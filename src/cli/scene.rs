@@ -11,7 +11,7 @@ use super::methods::json_text;
 use super::progress::Bar;
 use super::{CliError, World, convert, output, suggest};
 use crate::geometry::{Vector, each};
-use crate::scene::{AnyScene, LoadOptions, Recenter, Scene, SceneError, generators, load};
+use crate::scene::{AnyScene, LoadOptions, Recenter, Scene, SceneError, file_of, generators, load};
 
 /// What `cull` and `step` look at, and with what.
 #[derive(clap::Args)]
@@ -117,8 +117,8 @@ fn explained(source: &str, error: SceneError) -> CliError {
         };
     }
     let missing = matches!(&error, SceneError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound)
-        || !Path::new(source).exists();
-    let near = if missing { neighbor(Path::new(source)) } else { None };
+        || !Path::new(file_of(source)).exists();
+    let near = if missing { neighbor(Path::new(file_of(source))) } else { None };
     match near {
         Some(near) => CliError::work(source, "there is no such file").with_help(format!(
             "did you mean \

@@ -8,6 +8,7 @@ use super::text::{read_file, stand_in};
 use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, views};
 
 /// Loads a scene: a path to `.obj`, `.gltf`, `.glb` or a flatland `.json`, or `generate:NAME[?key=value&…]`.
+/// Of several scenes in a glTF file `PATH?scene=NUMBER` chooses one.
 ///
 /// # Errors
 /// One sentence with the file and, where there is one, the line; [`SceneError::Cancelled`] if `progress` asks
@@ -16,7 +17,7 @@ pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Res
     if let Some(call) = source.strip_prefix("generate:") {
         return Scene::new(generate::generate(call, options, progress)?).map(AnyScene::from);
     }
-    let path = Path::new(source);
+    let path = Path::new(file_of(source));
     let Some(kind) = kind_of(source) else {
         return Err(SceneError::Format { path: source.to_owned(), why: unknown_kind(path) });
     };
@@ -75,8 +76,16 @@ impl Kind {
     }
 }
 
+/// The file that a source names: what is before `?scene=`.
+pub fn file_of(source: &str) -> &str {
+    match source.rsplit_once("?scene=") {
+        Some((file, number)) if !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()) => file,
+        _ => source,
+    }
+}
+
 fn kind_of(source: &str) -> Option<Kind> {
-    let extension = Path::new(source).extension()?.to_string_lossy().to_ascii_lowercase();
+    let extension = Path::new(file_of(source)).extension()?.to_string_lossy().to_ascii_lowercase();
     match extension.as_str() {
         "obj" => Some(Kind::Obj),
         "gltf" | "glb" => Some(Kind::Gltf),
@@ -93,11 +102,15 @@ fn read(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<AnyScene, SceneError> {
-    let name = stem(Path::new(source));
+    let file = file_of(source);
+    let name = stem(Path::new(file));
+    // A number beyond all numbers is no scene either.
+    let scene = source.strip_prefix(file).and_then(|rest| rest.strip_prefix("?scene="));
+    let scene = scene.map(|number| number.parse().unwrap_or(usize::MAX));
     let parts = match kind {
         Kind::Flat => return flat::read(bytes, source, options).map(AnyScene::from),
         Kind::Obj => obj::read(bytes, folder, &name, source, options, progress)?,
-        Kind::Gltf => gltf::read(bytes, folder, &name, source, options, progress)?,
+        Kind::Gltf => gltf::read(bytes, folder, &name, source, scene, options, progress)?,
     };
     Scene::new(parts).map(AnyScene::from)
 }

@@ -30,7 +30,7 @@ pub use about::{About, Expectation};
 pub use assemble::{MAX_COORDINATE, MAX_PRIMS};
 pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
-pub use load::{load, load_bytes};
+pub use load::{file_of, load, load_bytes};
 pub use paths::{figure_eight_path, random_views};
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};

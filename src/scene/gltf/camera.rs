@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DMat4, DVec3};
 
 use super::file::{Gltf, Index, Perspective, short};
+use super::lost::counted;
 use super::tree::Tree;
 use crate::geometry::{Aabb, Eye, Solid, View, ViewPath};
 use crate::scene::Report;
@@ -53,7 +54,8 @@ pub(super) fn paths(
         }
     }
     if without > 0 {
-        report.note(format!("{without} cameras left out: orthographic, or they cannot see"));
+        let they = if without == 1 { "it" } else { "they" };
+        report.note(format!("{} left out: orthographic, or {they} cannot see", counted(without, "camera")));
     }
     paths
 }

@@ -52,7 +52,8 @@ impl Unpacked {
 
     /// The attribute of this id, `W` numbers a point, as they were stored.
     pub(super) fn vectors<const W: usize>(&self, id: u32) -> Result<Vec<[f64; W]>, String> {
-        let attribute = self.0.attribute_by_unique_id(id).ok_or_else(|| format!("it has no attribute {id}"))?;
+        let attribute =
+            self.0.attribute_by_unique_id(id).ok_or_else(|| format!("it has no attribute {id}"))?;
         let numbers = attribute.read_f32s(self.0.num_points(), W);
         Ok(numbers.as_chunks::<W>().0.iter().map(|v| v.map(f64::from)).collect())
     }

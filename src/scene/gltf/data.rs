@@ -55,6 +55,7 @@ pub(super) struct Data<'a> {
     file_bytes: Cell<usize>,
     zeros: Cell<usize>,
     unpacked_bytes: Cell<usize>,
+    fault: OnceCell<String>,
 }
 
 impl<'a> Data<'a> {
@@ -75,6 +76,7 @@ impl<'a> Data<'a> {
             file_bytes: Cell::new(file_bytes),
             zeros: Cell::new(0),
             unpacked_bytes: Cell::new(0),
+            fault: OnceCell::new(),
         }
     }
 
@@ -83,12 +85,20 @@ impl<'a> Data<'a> {
         self.file_bytes.get()
     }
 
+    /// Why the first buffer that cannot be read cannot.
+    pub(super) fn fault(&self) -> Option<&str> {
+        self.fault.get().map(String::as_str)
+    }
+
     fn buffer(&self, index: Index) -> Result<&[u8], String> {
         let at = index as usize;
         let Some(cell) = self.buffers.get(at) else {
             return Err(format!("there is no buffer {index}"));
         };
-        let bytes = cell.get_or_init(|| self.read_buffer(at)).as_ref().map_err(Clone::clone)?;
+        let bytes = cell.get_or_init(|| self.read_buffer(at)).as_ref().map_err(|why| {
+            self.fault.get_or_init(|| why.clone());
+            why.clone()
+        })?;
         Ok(&bytes[..self.gltf.buffers[at].byte_length])
     }
 
@@ -128,8 +138,8 @@ impl<'a> Data<'a> {
         if ["http://", "https://", "ftp://", "//"].iter().any(|scheme| uri.starts_with(scheme)) {
             let name = uri.rsplit('/').next().unwrap_or_default();
             return Err(fail(format!(
-                "it is an address on the web, and nothing is fetched; put `{name}` beside the model and name it \
-                 there"
+                "it is an address on the web, and nothing is fetched; put `{name}` beside the model and \
+                 name it there"
             )));
         }
         let folder = self.folder.ok_or_else(|| fail("there is no folder to look in".into()))?;
@@ -180,9 +190,10 @@ impl<'a> Data<'a> {
     }
 
     pub(super) fn accessor(&self, index: Index) -> Result<&'a Accessor, String> {
-        self.gltf.accessors.get(index as usize).ok_or_else(|| {
-            format!("there is no accessor {index}, but only {}", self.gltf.accessors.len())
-        })
+        self.gltf
+            .accessors
+            .get(index as usize)
+            .ok_or_else(|| format!("there is no accessor {index}, but only {}", self.gltf.accessors.len()))
     }
 
     /// The items of an accessor of `W` numbers each, normalized where it says so.
@@ -300,15 +311,12 @@ impl<'a> Data<'a> {
         read: impl FnOnce(std::slice::Chunks<'_, u8>) -> T,
     ) -> Result<T, String> {
         self.view(view, |bytes| {
-            let length = count
-                .checked_sub(1)
-                .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
+            let length =
+                count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
             let run = length.and_then(|l| bytes.get(offset..offset.checked_add(l)?));
             match run.filter(|_| stride >= size) {
                 Some(run) => Ok(read(run.chunks(stride))),
-                None => {
-                    Err(format!("{count} items of {size} bytes do not fit into buffer view {view}"))
-                }
+                None => Err(format!("{count} items of {size} bytes do not fit into buffer view {view}")),
             }
         })
     }

@@ -1,7 +1,7 @@
-//! What is read of the JSON of a glTF file, as it stands there (Khronos, "glTF 2.0 Specification", section 5).
+//! What is read of the JSON of a glTF file, as it stands there (glTF 2.0, section 5).
 //!
 //! Everything else is skipped, whatever it is: `extras` of any kind, attributes that belong to applications,
-//! extensions. Nothing here is compared with anything else: whoever follows an index asks whether it is there.
+//! extensions. Nothing here is compared with anything else: whoever follows an index asks if it is there.
 
 use std::collections::BTreeMap;
 
@@ -90,7 +90,7 @@ pub(super) struct Node {
     pub(super) translation: Option<Box<[f64; 3]>>,
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
-    pub(super) weights: Option<Box<Vec<f64>>>,
+    pub(super) weights: Option<Vec<f64>>,
     pub(super) extensions: Option<Box<NodeExtensions>>,
 }
 
@@ -149,10 +149,7 @@ pub(super) struct Primitive {
 }
 
 /// The accessor of an attribute.
-pub(super) fn attribute(
-    attributes: &BTreeMap<String, Value>,
-    name: &str,
-) -> Result<Option<Index>, String> {
+pub(super) fn attribute(attributes: &BTreeMap<String, Value>, name: &str) -> Result<Option<Index>, String> {
     let index = |v: &Value| v.as_u64().and_then(|i| Index::try_from(i).ok());
     match attributes.get(name) {
         None => Ok(None),

@@ -78,14 +78,14 @@ pub(super) fn left_out(gltf: &Gltf, report: &mut Report) {
     let lights = gltf.extensions.lights.as_ref().map_or(0, |l| l.0.as_ref().map_or(0, |l| l.lights.len()));
     for (what, count) in [("texture", gltf.textures.len()), ("light", lights)] {
         if count > 0 {
-            report.note(format!("{count} {what}{} left out", if count == 1 { "" } else { "s" }));
+            report.note(format!("{} left out", counted(count, what)));
         }
     }
     let wrap = |code: Option<u32>| code.is_none_or(|c| [33071, 33648, 10497].contains(&c));
-    let filter = |code: Option<u32>| code.is_none_or(|c| [9728, 9729].contains(&c) || (9984..9988).contains(&c));
-    let sampler = |s: &TextureSampler| {
-        wrap(s.wrap_s) && wrap(s.wrap_t) && filter(s.mag_filter) && filter(s.min_filter)
-    };
+    let filter =
+        |code: Option<u32>| code.is_none_or(|c| [9728, 9729].contains(&c) || (9984..9988).contains(&c));
+    let sampler =
+        |s: &TextureSampler| wrap(s.wrap_s) && wrap(s.wrap_t) && filter(s.mag_filter) && filter(s.min_filter);
     let there = |index: Option<u32>, count: usize| index.is_none_or(|i| (i as usize) < count);
     let texture = |t: &Texture| {
         (t.source.is_some() || t.extensions.is_some())
@@ -104,7 +104,8 @@ pub(super) fn left_out(gltf: &Gltf, report: &mut Report) {
     let count = gltf.accessors.len() as u64;
     let bad = named.filter(|(_, index)| index.as_u64().is_none_or(|i| i >= count)).count();
     if bad > 0 {
-        report.note(format!("{bad} attributes of primitives name accessors that are not there"));
+        let attributes = counted(bad, "attribute");
+        report.note(format!("{attributes} of primitives with accessors that are not there"));
     }
 }
 
@@ -116,9 +117,12 @@ fn faults<T>(what: &str, list: &[Lenient<T>], right: impl Fn(&T) -> bool, report
     report.note(format!("{count} of {} {what} not valid (the first is {what}[{first}]: {why})", list.len()));
 }
 
+/// What is said of one part of a kind, and of several, whose number stands for `#`.
+pub(super) type Sentence = [&'static str; 2];
+
 /// What was noticed part by part, to be said once for all parts of a kind.
 #[derive(Default)]
-pub(super) struct Lost(BTreeMap<&'static str, Kind>);
+pub(super) struct Lost(BTreeMap<Sentence, Kind>);
 
 #[derive(Default)]
 struct Kind {
@@ -130,13 +134,8 @@ impl Lost {
     /// Names of a kind that are said.
     const NAMES: usize = 3;
 
-    /// Notes a part (of the same number only once) that is called `name`. `sentence` holds `#` for the count.
-    pub(super) fn add(
-        &mut self,
-        sentence: &'static str,
-        part: (usize, usize),
-        name: impl FnOnce() -> String,
-    ) {
+    /// Notes a part, which counts once however often it is noted, and which is called `name`.
+    pub(super) fn add(&mut self, sentence: Sentence, part: (usize, usize), name: impl FnOnce() -> String) {
         let kind = self.0.entry(sentence).or_default();
         if kind.parts.insert(part) && kind.names.len() <= Self::NAMES {
             let name = name();
@@ -147,10 +146,17 @@ impl Lost {
     }
 
     pub(super) fn tell(&self, report: &mut Report) {
-        for (sentence, kind) in &self.0 {
+        for ([one, several], kind) in &self.0 {
+            let count = kind.parts.len();
+            let said = if count == 1 { (*one).to_owned() } else { several.replace('#', &count.to_string()) };
             let more = if kind.names.len() > Self::NAMES { ", …" } else { "" };
             let names = kind.names[..kind.names.len().min(Self::NAMES)].join(", ");
-            report.note(format!("{}: {names}{more}", sentence.replace('#', &kind.parts.len().to_string())));
+            report.note(format!("{said} ({names}{more})"));
         }
     }
+}
+
+/// "1 thing", "2 things".
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

@@ -28,7 +28,7 @@ use glam::{DMat4, DVec3};
 
 use self::data::Data;
 use self::file::{Gltf, Index, short};
-use self::lost::Lost;
+use self::lost::{Lost, Sentence, counted};
 use self::motion::Clip;
 use self::paint::Palette;
 use self::shape::Shape;
@@ -42,12 +42,27 @@ use crate::geometry::{Aabb, Solid};
 /// have one a byte.
 const FREE_INSTANCED: usize = 1 << 25;
 
-/// Reads glTF JSON or GLB. Without a `folder` no buffer file is opened.
+const MORPHED: Sentence = [
+    "1 primitive with morph targets, shown at the default weights",
+    "# primitives with morph targets, shown at the default weights",
+];
+const BAD_SKIN: Sentence = [
+    "1 skin is not valid, so its meshes stand where their nodes are",
+    "# skins are not valid, so their meshes stand where their nodes are",
+];
+const UNSHOWN: Sentence =
+    ["1 mesh is shown by no node of the scene", "# meshes are shown by no node of the scene"];
+const BENT: Sentence =
+    ["1 object scaled by the animation stands still", "# objects scaled by the animation stand still"];
+
+/// Reads glTF JSON or GLB: the scene of this number, or the default one. Without a `folder` no buffer file is
+/// opened.
 pub(super) fn read(
     bytes: &[u8],
     folder: Option<&Path>,
     name: &str,
     source: &str,
+    scene: Option<usize>,
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Parts<Solid>, SceneError> {
@@ -55,7 +70,7 @@ pub(super) fn read(
     let mut report = Report::default();
     let (gltf, chunk) = container::open(bytes, source, &mut report)?;
     lost::check(&gltf, &mut report).map_err(format)?;
-    let roots = tree::roots(&gltf, None, &mut report).map_err(format)?;
+    let roots = tree::roots(&gltf, scene, &mut report).map_err(format)?;
     let tree = Tree::walk(&gltf, &roots, source, progress)?;
     let data = Data::new(&gltf, chunk, folder, bytes.len());
     let mut reader = Reader::new(&gltf, &data, &tree);
@@ -140,7 +155,11 @@ impl<'a> Reader<'a> {
 
     /// Makes the objects of all nodes that are shown.
     fn nodes(&mut self, source: &str, progress: &dyn Progress) -> Result<(), SceneError> {
-        let format = |why: String| SceneError::Format { path: source.to_owned(), why };
+        let format = |why: String| {
+            // A buffer that cannot be read is the reason, whatever asked for it first.
+            let why = self.data.fault().map_or(why, str::to_owned);
+            SceneError::Format { path: source.to_owned(), why }
+        };
         let (mut done, mut asked) = (0, 0);
         for (k, index) in self.tree.order.iter().enumerate() {
             // By what was made, since one node may hold everything.
@@ -151,7 +170,9 @@ impl<'a> Reader<'a> {
                     return Err(SceneError::Cancelled(source.to_owned()));
                 }
             }
-            if let Some(mesh) = self.gltf.nodes[*index as usize].mesh.filter(|_| self.tree.shown[*index as usize]) {
+            if let Some(mesh) =
+                self.gltf.nodes[*index as usize].mesh.filter(|_| self.tree.shown[*index as usize])
+            {
                 self.node(*index, mesh, progress).map_err(format)?;
             }
             if progress.cancelled() {
@@ -164,11 +185,15 @@ impl<'a> Reader<'a> {
     fn node(&mut self, index: Index, mesh: Index, progress: &dyn Progress) -> Result<(), String> {
         let node = &self.gltf.nodes[index as usize];
         let Some(named) = self.gltf.meshes.get(mesh as usize) else {
-            return Err(format!("node {index} shows mesh {mesh}, but there are only {}", self.gltf.meshes.len()));
+            return Err(format!(
+                "node {index} shows mesh {mesh}, but there are only {}",
+                self.gltf.meshes.len()
+            ));
         };
         let name = node.name.as_deref().or(named.name.as_deref());
         let name = name.map_or_else(|| format!("node_{index}"), short);
-        let above = self.tree.parents[index as usize].and_then(|p| self.gltf.nodes[p as usize].name.as_deref());
+        let above =
+            self.tree.parents[index as usize].and_then(|p| self.gltf.nodes[p as usize].name.as_deref());
         let shapes = self.shapes(index, mesh)?;
         let skin = match node.skin {
             Some(skin) => self.skin(skin),
@@ -213,7 +238,7 @@ impl<'a> Reader<'a> {
             gltf: self.gltf,
             data: self.data,
             // "If defined on a node, they override those of the mesh" (3.7.2.2).
-            weights: shown.weights.as_ref().map_or(&own.weights, |w| w),
+            weights: shown.weights.as_ref().unwrap_or(&own.weights),
             skinned: shown.skin.is_some(),
             most: FREE_INSTANCED.max(self.data.file_bytes()),
         };
@@ -222,7 +247,7 @@ impl<'a> Reader<'a> {
             let at = (mesh as usize, k);
             if !primitive.targets.is_empty() {
                 let name = || self.gltf.mesh_name(at.0);
-                self.lost.add("# primitives have morph targets and stand at the default weights, of meshes", at, name);
+                self.lost.add(MORPHED, at, name);
             }
             let read = reader.read(at, &mut self.lost);
             shapes.extend(read.map_err(|why| format!("mesh {mesh}, primitive {k}: {why}"))?);
@@ -238,12 +263,11 @@ impl<'a> Reader<'a> {
     fn skin(&mut self, index: Index) -> Option<Rc<Skin>> {
         let read = || Skin::read(self.gltf, self.data, self.tree, index).map(Rc::new);
         let skin = self.skins.entry(index).or_insert_with(read);
-        skin.clone().map_err(|why| {
-            self.lost.add("# skins are not valid, so that meshes stand where their nodes are", (index as usize, 0), || {
-                format!("skin {index}: {why}")
-            });
-        })
-        .ok()
+        skin.clone()
+            .map_err(|why| {
+                self.lost.add(BAD_SKIN, (index as usize, 0), || format!("skin {index}: {why}"));
+            })
+            .ok()
     }
 
     /// Where the instances of a node's mesh stand in the node (EXT_mesh_gpu_instancing).
@@ -260,7 +284,10 @@ impl<'a> Reader<'a> {
         }
         self.spend(count).map_err(fail)?;
         let mut stands =
-            vec![Stand { translation: DVec3::ZERO, rotation: glam::DQuat::IDENTITY, scale: DVec3::ONE }; count];
+            vec![
+                Stand { translation: DVec3::ZERO, rotation: glam::DQuat::IDENTITY, scale: DVec3::ONE };
+                count
+            ];
         if let Some(accessor) = attributes.translation {
             let all = self.data.vectors::<3>(accessor).map_err(fail)?;
             stands.iter_mut().zip(all).for_each(|(s, v)| s.translation = DVec3::from_array(v));
@@ -281,9 +308,10 @@ impl<'a> Reader<'a> {
         let most = FREE_INSTANCED.max(self.data.file_bytes());
         self.left += most - self.most;
         self.most = most;
-        self.left = self.left.checked_sub(count).ok_or_else(|| {
-            format!("its instances come to over {most} points or corners")
-        })?;
+        self.left = self
+            .left
+            .checked_sub(count)
+            .ok_or_else(|| format!("its instances come to over {most} points or corners"))?;
         Ok(())
     }
 
@@ -335,10 +363,11 @@ impl<'a> Reader<'a> {
 
     fn tell(&mut self, report: &mut Report) {
         for (mesh, _) in self.uses.iter().enumerate().filter(|(_, uses)| **uses == 0) {
-            self.lost.add("# meshes are shown by no node of this scene", (mesh, 0), || self.gltf.mesh_name(mesh));
+            self.lost.add(UNSHOWN, (mesh, 0), || self.gltf.mesh_name(mesh));
         }
         if self.tree.hidden > 0 {
-            report.note(format!("{} nodes are hidden (KHR_node_visibility) and left out", self.tree.hidden));
+            let nodes = counted(self.tree.hidden, "node");
+            report.note(format!("{nodes} with a mesh or camera hidden by KHR_node_visibility"));
         }
         self.lost.tell(report);
     }
@@ -378,9 +407,7 @@ impl Moved<'_> {
             match node.and_then(|n| motions.get(&n)) {
                 Some(Some(poses)) if poses.iter().any(|p| *p != still) => object.motion = Some(poses.clone()),
                 Some(None) => {
-                    bent.add("# objects are scaled by the animation and stand still", (k, 0), || {
-                        format!("`{}`", object.name)
-                    });
+                    bent.add(BENT, (k, 0), || format!("`{}`", object.name));
                 }
                 _ => {}
             }
@@ -401,9 +428,8 @@ impl Moved<'_> {
         };
         let count = self.skinned.iter().filter(moves).count();
         if count > 0 {
-            report.note(format!(
-                "the animation moves the joints of {count} skinned objects, which stand at rest"
-            ));
+            let objects = counted(count, "skinned object");
+            report.note(format!("the animation of the joints of {objects} left out: shown at rest"));
         }
     }
 }

@@ -210,7 +210,8 @@ impl Curves<'_, '_> {
             }
             curves.entry(node).or_default().push(self.read(animation, channel, property)?);
         }
-        for (count, what) in [(shapes, "of morph targets"), (pointers, "of other properties than nodes have")] {
+        for (count, what) in [(shapes, "of morph targets"), (pointers, "of other properties than nodes have")]
+        {
             if count > 0 {
                 report.note(format!("{count} channels of the animation {what} left out"));
             }
@@ -219,7 +220,12 @@ impl Curves<'_, '_> {
     }
 
     /// Counts are compared before anything is read: many channels may name one long list.
-    fn read(&mut self, animation: &Animation, channel: &Channel, property: Property) -> Result<Curve, String> {
+    fn read(
+        &mut self,
+        animation: &Animation,
+        channel: &Channel,
+        property: Property,
+    ) -> Result<Curve, String> {
         let Some(sampler) = animation.samplers.get(channel.sampler as usize) else {
             return Err("it names a sampler, node or property that is not there".into());
         };

@@ -1,9 +1,10 @@
 //! Materials: color, what light comes through, and whether there is a back (glTF 2.0, section 3.9).
 //!
 //! A surface has one color here. Where a mesh has colors at its points, each triangle takes their mean, out
-//! of a palette of [`LEVELS`] a channel, so that materials stay few. See-through is what is blended or cut out
-//! by an alpha below 1 (of the factor or of a point), by a texture that may hold one (any but a JPEG), or what
-//! transmits light. Light that is only scattered on (KHR_materials_diffuse_transmission) shows nothing behind.
+//! of a palette of [`LEVELS`] a channel, so that materials stay few. See-through is what is blended or cut
+//! out by an alpha below 1 (of the factor or of a point) or by a texture that may hold one (any but a JPEG),
+//! and what transmits light. Light that is only scattered (KHR_materials_diffuse_transmission) shows nothing
+//! of what is behind.
 
 use std::collections::BTreeMap;
 
@@ -84,10 +85,9 @@ fn make(gltf: &Gltf, index: Option<Index>, tint: Option<Tint>) -> crate::scene::
     };
     let level = |k: u8| (f32::from(k) / (LEVELS - 1.0)).powi(2);
     let (name, color) = match tint {
-        Some([r, g, b, _]) => (
-            format!("{name}_{r}{g}{b}"),
-            [level(r) * factor[0], level(g) * factor[1], level(b) * factor[2]],
-        ),
+        Some([r, g, b, _]) => {
+            (format!("{name}_{r}{g}{b}"), [level(r) * factor[0], level(g) * factor[1], level(b) * factor[2]])
+        }
         None if own.is_none() => (name, GRAY),
         None => (name, [factor[0], factor[1], factor[2]]),
     };
@@ -127,7 +127,10 @@ fn has_alpha(gltf: &Gltf, texture: &TextureUse) -> bool {
 fn is_jpeg(image: &Image) -> bool {
     let uri = image.uri.as_deref().unwrap_or_default();
     let ends = |with: &str| {
-        uri.len().checked_sub(with.len()).and_then(|at| uri.get(at..)).is_some_and(|e| e.eq_ignore_ascii_case(with))
+        uri.len()
+            .checked_sub(with.len())
+            .and_then(|at| uri.get(at..))
+            .is_some_and(|e| e.eq_ignore_ascii_case(with))
     };
     image.mime_type.as_deref() == Some("image/jpeg")
         || uri.starts_with("data:image/jpeg")

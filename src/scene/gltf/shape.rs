@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::codec::{self, Unpacked};
 use super::data::{Data, components};
 use super::file::{Gltf, Index, Primitive, attribute};
-use super::lost::Lost;
+use super::lost::{Lost, Sentence};
 use super::paint::{Alpha, Tint};
 use super::skin::Influences;
 
@@ -32,6 +32,23 @@ pub(super) struct Reader<'a> {
     pub(super) most: usize,
 }
 
+const LINES: Sentence =
+    ["1 primitive of points or lines left out", "# primitives of points or lines left out"];
+const NO_POSITIONS: Sentence =
+    ["1 primitive without positions left out", "# primitives without positions left out"];
+const SPARE: Sentence = [
+    "1 primitive ends with corners that make no triangle",
+    "# primitives end with corners that make no triangle",
+];
+const TINTED: Sentence = [
+    "1 primitive with colors at points, shown as one color a triangle",
+    "# primitives with colors at points, shown as one color a triangle",
+];
+const UNTINTED: Sentence = [
+    "1 primitive with colors at points that cannot be read",
+    "# primitives with colors at points that cannot be read",
+];
+
 const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
 const FAN: u32 = 6;
@@ -43,11 +60,11 @@ impl Reader<'_> {
         let mesh = || self.gltf.mesh_name(at.0);
         let mode = primitive.mode.unwrap_or(TRIANGLES);
         if !(TRIANGLES..=FAN).contains(&mode) {
-            lost.add("# primitives are made of points or lines and left out, of meshes", at, mesh);
+            lost.add(LINES, at, mesh);
             return Ok(None);
         }
         let Some(position) = attribute(&primitive.attributes, "POSITION")? else {
-            lost.add("# primitives have no positions and are left out, of meshes", at, mesh);
+            lost.add(NO_POSITIONS, at, mesh);
             return Ok(None);
         };
         let unpacked = self.unpack(primitive, position)?;
@@ -62,19 +79,19 @@ impl Reader<'_> {
             (None, None) => (0..count as u32).collect(),
         };
         let mode = if from.unpacked.is_some() { TRIANGLES } else { mode };
-        if mode == TRIANGLES && corners.len() % 3 > 0 {
-            lost.add("# primitives end with corners that make no triangle, of meshes", at, mesh);
+        if mode == TRIANGLES && !corners.len().is_multiple_of(3) {
+            lost.add(SPARE, at, mesh);
         }
         let triangles = triangles(mode, corners);
         let tints = match self.tints(&from, &triangles, count) {
             Ok(tints) => tints,
             Err(_) => {
-                lost.add("# primitives have colors at points that cannot be read, of meshes", at, mesh);
+                lost.add(UNTINTED, at, mesh);
                 Vec::new()
             }
         };
         if !tints.is_empty() {
-            lost.add("# primitives have colors at points, shown as one color a triangle, of meshes", at, mesh);
+            lost.add(TINTED, at, mesh);
         }
         let influences = if self.skinned { self.influences(&from, count)? } else { Vec::new() };
         let points = points.into_iter().map(DVec3::from_array).collect();
@@ -130,7 +147,9 @@ impl Reader<'_> {
         }
         let colors: Vec<[f64; 4]> = match components(shape) {
             4 => from.vectors::<4>("COLOR_0", accessor)?,
-            _ => from.vectors::<3>("COLOR_0", accessor)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect(),
+            _ => {
+                from.vectors::<3>("COLOR_0", accessor)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
+            }
         };
         let color = |corner: u32| colors.get(corner as usize).copied();
         let tint = |t: &[u32; 3]| Some(alpha.tint([color(t[0])?, color(t[1])?, color(t[2])?]));

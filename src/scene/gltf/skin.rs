@@ -61,9 +61,9 @@ impl Skin {
 
     fn joint(&self, joint: u32) -> Result<&DMat4, String> {
         let count = self.matrices.len();
-        self.matrices.get(joint as usize).ok_or_else(|| {
-            format!("a point follows joint {joint}, but its skin has only {count}")
-        })
+        self.matrices
+            .get(joint as usize)
+            .ok_or_else(|| format!("a point follows joint {joint}, but its skin has only {count}"))
     }
 
     /// Whether the joints turn the mesh inside out.

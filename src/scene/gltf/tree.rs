@@ -73,7 +73,7 @@ pub(super) fn roots(gltf: &Gltf, wanted: Option<usize>, report: &mut Report) -> 
     if count > 1 {
         let name = scene.name.as_deref().map_or(String::new(), |n| format!(" `{}`", super::file::short(n)));
         report.note(format!(
-            "scene {chosen}{name} of {count} is loaded; `?scene=NUMBER` behind the file's name chooses another"
+            "scene {chosen}{name} of {count} is loaded; `?scene=NUMBER` after the file's name chooses another"
         ));
     }
     Ok(scene.nodes.clone())
@@ -156,7 +156,8 @@ impl Tree {
                     return Err(SceneError::Cancelled(source.unwrap_or_default().to_owned()));
                 }
             }
-            let visible = node.extensions.as_ref().and_then(|e| e.visibility.as_ref()).is_none_or(|v| v.visible);
+            let visible =
+                node.extensions.as_ref().and_then(|e| e.visibility.as_ref()).is_none_or(|v| v.visible);
             let above = parent.map_or(DMat4::IDENTITY, |p| self.worlds[p as usize]);
             self.order.push(index);
             self.parents[at] = parent;
