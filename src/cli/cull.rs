@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use serde_json::Value as Json;
 
 use super::methods::params_json;
 use super::progress::Bar;
-use super::task::{Ready, Task};
+use super::task::{Ready, Task, moves, seen_by};
 use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, View, each};
@@ -94,11 +95,17 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let Ready { mut run, path, build_ms, bar } = args.task.ready(scene)?;
+    let first = seen_by(0, scene);
+    let Ready { mut run, path, build_ms, bar } = args.task.ready(&first)?;
     let pool = (args.threads > 1)
         .then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
     let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
-    let mut work = || frames(args, scene, &mut run, &path.views, &bar);
+    let mut work = || {
+        if moves(scene) {
+            return moving_frames(args, scene, &path.views, &bar);
+        }
+        frames(args, scene, &mut run, &path.views, 0..path.views.len(), &bar)
+    };
     let frames = match &pool {
         Some(pool) => pool.install(&mut work)?,
         None => work()?,
@@ -116,13 +123,30 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     output::emit(args.out.as_deref(), |to| write_report(&report, &frames, to).map(|()| true))
 }
 
-/// Every frame twice: timed, then counted, each time from no memory, so that what a method keeps from frame
+/// Each view sees its own frame of the motions, and the index is built anew for it.
+fn moving_frames<S: World>(
+    args: &Args,
+    scene: &Arc<Scene<S>>,
+    views: &[View<S>],
+    bar: &Bar,
+) -> Result<Vec<Frame>, CliError> {
+    let mut all = Vec::with_capacity(views.len());
+    for at in 0..views.len() {
+        let still = seen_by(at, scene);
+        let mut run = args.task.ready_again(&still, bar)?;
+        all.extend(frames(args, &still, &mut run, views, at..at + 1, bar)?);
+    }
+    Ok(all)
+}
+
+/// Every frame of some views twice: timed, then counted, each time from no memory, so that what a method keeps from frame
 /// to frame is what it would keep.
 fn frames<S: World>(
     args: &Args,
     scene: &Scene<S>,
     run: &mut Paced<S>,
     views: &[View<S>],
+    which: Range<usize>,
     bar: &Bar,
 ) -> Result<Vec<Frame>, CliError> {
     let surfaces = surfaces_of(&run.knobs());
@@ -134,9 +158,9 @@ fn frames<S: World>(
         surfaces: Surfaces { one_sided: false, ..surfaces },
         ..Options::default()
     };
-    let mut frames = Vec::with_capacity(views.len());
+    let mut frames = Vec::with_capacity(which.len());
     run.forget();
-    for (i, view) in views.iter().enumerate() {
+    for (i, view) in which.clone().zip(&views[which.clone()]) {
         bar.report(i as f32 / (views.len() + 1) as f32, "culling and drawing");
         if bar.cancelled() {
             return Err(CliError::Interrupted);
@@ -165,7 +189,7 @@ fn frames<S: World>(
         });
     }
     run.forget();
-    for (frame, view) in frames.iter_mut().zip(views) {
+    for (frame, view) in frames.iter_mut().zip(&views[which]) {
         let (list, tally) = run.count(view);
         debug_assert_eq!(list.prims.len(), frame.drawn_triangles, "a counted run draws the same");
         frame.counters = tally.named();

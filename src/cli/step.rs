@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value as Json};
 
 use super::methods::params_json;
-use super::task::{Ready, Task};
+use super::task::{Ready, Task, moves, seen_by};
 use super::{CliError, World, output};
 use crate::geometry::{ViewPath, each};
 use crate::method::{Budget, KnobValue};
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let Ready { mut run, path, bar, .. } = args.task.ready(scene)?;
+    let Ready { mut run, path, bar, .. } = args.task.ready(&seen_by(0, scene))?;
     if let Some((_, time)) =
         run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_))))
     {
@@ -63,6 +63,13 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
         let mut to = Counted { to, bytes: 0 };
         write_header(&header, &mut to)?;
         for (frame, view) in path.views.iter().enumerate() {
+            if frame > 0 && moves(scene) {
+                // Words that were right for the first frame are right for all.
+                run = match args.task.ready_again(&seen_by(frame, scene), &bar) {
+                    Err(CliError::Interrupted) => return Ok(false),
+                    ready => ready.map_err(io::Error::other)?,
+                };
+            }
             let film = run.record(view, FILM_CAP).film;
             let (done, part, events) =
                 (frame as f32, 1.0 / path.views.len() as f32, film.events().len().max(1) as f32);

@@ -68,6 +68,13 @@ impl Task {
         Ok(Ready { run, path, build_ms, bar })
     }
 
+    /// The method made ready for a scene that moved, by words that were checked.
+    pub fn ready_again<S: World>(&self, scene: &Arc<Scene<S>>, bar: &Bar) -> Result<Paced<S>, CliError> {
+        let (entry, settings) = (find::<S>(&self.scene.method)?, settings(&self.scene.set)?);
+        let run = entry.ready(scene, &settings, bar)?.ok_or(CliError::Interrupted)?;
+        Ok(Paced::new(run, scene))
+    }
+
     /// The bytes of `--preprocess`, if the file is there.
     fn saved(&self) -> Result<Option<Vec<u8>>, CliError> {
         let Some(path) = self.preprocess.as_ref().filter(|p| p.exists()) else { return Ok(None) };
@@ -83,4 +90,15 @@ impl Task {
             }
         }
     }
+}
+
+/// The scene that a view of a path sees, by its number: where objects move, as they stand in the frame of
+/// that number.
+pub(super) fn seen_by<S: World>(view: usize, scene: &Arc<Scene<S>>) -> Arc<Scene<S>> {
+    if moves(scene) { Arc::new(scene.posed(view)) } else { scene.clone() }
+}
+
+/// Whether the views of a path see different scenes.
+pub(super) fn moves<S: World>(scene: &Scene<S>) -> bool {
+    scene.objects().iter().any(|o| o.motion.is_some())
 }

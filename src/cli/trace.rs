@@ -10,6 +10,7 @@ use serde_json::Value as Json;
 use super::methods::find;
 use super::progress::Bar;
 use super::step::FILM_CAP;
+use super::task::{moves, seen_by};
 use super::{CliError, World, error::reason, output, scene};
 use crate::geometry::{ViewPath, each};
 use crate::method::Settings;
@@ -70,7 +71,11 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
     let view = Json::Object(header.view.clone()).to_string();
     let path: ViewPath<S> = parse_views(view.as_bytes(), file, scene.origin())?;
     let bar = Bar::new();
-    let mut run = find::<S>(&header.method)?.ready(scene, &settings, &bar)?.ok_or(CliError::Interrupted)?;
+    let entry = find::<S>(&header.method)?;
+    let ready = |frame: usize| -> Result<_, CliError> {
+        entry.ready(&seen_by(frame, scene), &settings, &bar)?.ok_or(CliError::Interrupted)
+    };
+    let mut run = ready(0)?;
     let detail =
         if header.more.get("detail").is_some_and(|d| d == "coarse") { Detail::Coarse } else { Detail::Full };
     let mut same = Same { theirs: read(file)?, line: 1, buffer: Vec::new() };
@@ -84,6 +89,9 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
         bar.report(frame as f32 / path.views.len() as f32, "proving");
         if bar.cancelled() {
             return Err(CliError::Interrupted);
+        }
+        if frame > 0 && moves(scene) {
+            run = ready(frame)?;
         }
         let film = run.record(view, FILM_CAP).film;
         certificates += check_film(&*film)

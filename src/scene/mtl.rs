@@ -122,7 +122,10 @@ impl Shelf<'_> {
         };
         let see_through = entry.mask || !opaque;
         if entry.glass && !see_through {
-            say("mtl: glass", "`illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is opaque");
+            say(
+                "mtl: glass",
+                "`illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is opaque",
+            );
         }
         Material { see_through, ..Material::new(shown, entry.color.unwrap_or(GRAY)) }
     }
