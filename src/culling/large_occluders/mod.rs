@@ -304,8 +304,8 @@ impl<S: Shape> Method<S> for LargeOccluders {
         knobs.integer(Knob::new("directions", "", meaning, section!("3.1")), 1..=64, &mut params.directions);
         let meaning = "leaves out an occluder whose area-angle is below this share of the sum of the better \
                        ones; 0: never";
-        // The paper investigates "strategies for adaptively choosing k" and names none: this is our own.
-        let gain = Knob::new("marginal-gain", "%", meaning, section!("5"));
+        let source = "our own: Section 5 only says that strategies for choosing k are under investigation";
+        let gain = Knob::new("marginal-gain", "%", meaning, source);
         knobs.integer(gain, 0..=100, &mut params.marginal_gain);
         let meaning = "keeps planes from frame to frame";
         knobs.switch(Knob::new("cache", "", meaning, section!("3")), &mut params.cache);
