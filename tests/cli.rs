@@ -408,6 +408,29 @@ fn converted_scenes_are_the_same_scenes() {
             assert_eq!(from[key], to[key], "`{key}`");
         }
     }
+    // Objects, groups, materials and what is see-through stay apart, whatever they are called.
+    let text = "mtllib mixed.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no two words\ng left wing\nusemtl a b\nf 1 2 3\no \
+                same\ng\nusemtl c\nf 1 2 3\ng same\no\nf 1 2 3\no same\ng\nf 3 2 1\n";
+    fs::write(here.join("mixed.obj"), text).expect("written");
+    fs::write(here.join("mixed.mtl"), "newmtl a b\nKd 1 0 0\nnewmtl c\nKd 0 0 1\nd 0.2\n").expect("written");
+    let said = cullscope(&here, &["scene", "convert", "mixed.obj", "again.obj"]);
+    let said = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert!(said.contains("1 objects are written under other names") && said.contains("`same` as `same.2`"));
+    assert!(
+        said.contains("1 materials are see-through, by how much is not known; written with `d 0.5`: `c`")
+    );
+    let written = fs::read_to_string(here.join("again.obj")).expect("written");
+    let lines: Vec<&str> = written.lines().filter(|l| "ogu".contains(&l[..1])).collect();
+    assert_eq!(
+        lines,
+        ["o two words", "g left wing", "usemtl a b", "o same", "g", "usemtl c", "o same.2", "o same"]
+    );
+    let library = fs::read_to_string(here.join("again.mtl")).expect("written");
+    assert_eq!(library, "newmtl a b\nKd 1 0 0\nnewmtl c\nKd 0 0 1\nd 0.5\n");
+    let (from, to) = (describe("mixed.obj"), describe("again.obj"));
+    for key in ["triangles", "live", "objects", "groups", "materials"] {
+        assert_eq!(from[key], to[key], "`{key}`");
+    }
     // What is drawn has the same ids.
     let ids = |scene: &str| {
         let words = with(&["cull", scene, "--method", "frustum", "--ids"], &ALONG);

@@ -1,9 +1,11 @@
 //! `cullscope scene convert`: a scene as OBJ with materials and views, or as a flatland JSON file.
 //!
 //! Primitive ids stay: a primitive that was dropped is written as one without extent, which is dropped again
-//! when it is read. Coordinates are written so that they read back as the same 32-bit numbers.
+//! when it is read. Coordinates are written so that they read back as the same 32-bit numbers. Names that a
+//! line cannot hold and names that stand twice are changed, so that objects stay apart; that is said, and so
+//! is what the format has no words for.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
@@ -13,7 +15,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::{CliError, output};
 use crate::geometry::{Flat, ObjectId, PrimId, Solid, Vector, View};
-use crate::scene::{AnyScene, Expectation, Object, Scene, write_views};
+use crate::scene::{AnyScene, Expectation, Material, Scene, write_views};
 
 /// Writes `scene` to `out`; `recentered` keeps its origin subtracted.
 pub(super) fn write(scene: &AnyScene, out: &Path, recentered: bool) -> Result<(), CliError> {
@@ -25,8 +27,11 @@ pub(super) fn write(scene: &AnyScene, out: &Path, recentered: bool) -> Result<()
                 let ending = if path.name == "walk" { "walk.views.json" } else { "views.json" };
                 write_text(&out.with_extension(ending), &write_views(path, origin))?;
             }
-            write_text(&out.with_extension("mtl"), &materials(scene))?;
-            output::write_file(out, |to| obj(scene, origin, out, to).map(|()| true))
+            let names = Names::of(scene);
+            write_text(&out.with_extension("mtl"), &materials(scene, &names.materials))?;
+            output::write_file(out, |to| obj(scene, &names, origin, out, to).map(|()| true))?;
+            losses(scene, &names).iter().for_each(|line| output::say(line));
+            Ok(())
         }
         (AnyScene::Flat(scene), "json") => write_text(out, &flat_json(scene)),
         (AnyScene::Solid(_), _) => Err(wrong_kind(out, "a scene in space is written as .obj")),
@@ -42,43 +47,117 @@ fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
     output::write_file(path, |to| to.write_all(text.as_bytes()).map(|()| true))
 }
 
-/// A name that survives as one word of a line.
-fn word(name: &str) -> String {
-    let kept: String =
-        name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect();
-    if kept.is_empty() { "_".into() } else { kept }
+/// A name that survives as the rest of a line: no breaks, no space around it, no `\` that joins lines.
+fn on_a_line(name: &str) -> String {
+    let kept: String = name.trim().chars().map(|c| if c.is_control() { '_' } else { c }).collect();
+    match kept.strip_suffix('\\') {
+        Some(rest) => format!("{rest}_"),
+        None => kept,
+    }
 }
 
-fn materials(scene: &Scene<Solid>) -> String {
+/// Names under which everything is written.
+struct Names {
+    /// Name and group of each object.
+    objects: Vec<(String, String)>,
+    materials: Vec<String>,
+}
+
+impl Names {
+    fn of(scene: &Scene<Solid>) -> Self {
+        let mut taken = BTreeSet::new();
+        let objects = scene.objects().iter().map(|o| {
+            let group = on_a_line(&o.group);
+            (unique(&on_a_line(&o.name), &mut taken, |name| (name, group.clone())), group)
+        });
+        let objects = objects.collect();
+        let mut taken = BTreeSet::new();
+        let materials = scene.materials().iter();
+        let materials = materials.map(|m| unique(&on_a_line(&m.name), &mut taken, |name| name)).collect();
+        Self { objects, materials }
+    }
+}
+
+/// The name, or with the first number from 2 on under which it does not stand yet.
+fn unique<K: Ord>(name: &str, taken: &mut BTreeSet<K>, key: impl Fn(String) -> K) -> String {
+    let name = if name.is_empty() { "_" } else { name };
+    let tries = std::iter::once(name.to_owned()).chain((2u64..).map(|k| format!("{name}.{k}")));
+    for tried in tries {
+        if taken.insert(key(tried.clone())) {
+            return tried;
+        }
+    }
+    name.to_owned()
+}
+
+/// A line for each kind of thing that is not written as it was.
+fn losses(scene: &Scene<Solid>, names: &Names) -> Vec<String> {
+    let used: BTreeSet<ObjectId> = scene.live().iter().map(|p| scene.object_of(*p)).collect();
+    let objects = scene.objects();
+    let renamed: Vec<String> = objects
+        .iter()
+        .zip(&names.objects)
+        .filter(|(o, (name, group))| o.name != *name || o.group != *group)
+        .map(|(o, (name, _))| format!("`{}` as `{name}`", on_a_line(&o.name)))
+        .collect();
+    let listed = |what: &str, list: Vec<String>| {
+        let more = if list.len() > 4 { ", …" } else { "" };
+        let first = list.iter().take(4).cloned().collect::<Vec<_>>().join(", ");
+        (!list.is_empty()).then(|| format!("{} {what}: {first}{more}", list.len()))
+    };
+    let quoted = |name: &String| format!("`{}`", on_a_line(name));
+    let moving = objects.iter().filter(|o| o.motion.is_some()).map(|o| quoted(&o.name)).collect();
+    let empty = (0..objects.len()).filter(|o| !used.contains(&ObjectId(*o as u32)));
+    let empty = empty.map(|o| quoted(&objects[o].name)).collect();
+    let of = |keep: fn(&Material) -> bool| {
+        scene.materials().iter().filter(|m| keep(m)).map(|m| quoted(&m.name)).collect()
+    };
+    let lines = [
+        listed("objects are written under other names, to stay apart and on their line", renamed),
+        listed("objects move, which OBJ cannot say; they are written as they stand at rest", moving),
+        listed("objects have no triangle, so they are not written", empty),
+        listed(
+            "materials are see-through, by how much is not known; written with `d 0.5`",
+            of(|m| m.see_through),
+        ),
+        listed("materials are two-sided, which OBJ cannot say", of(|m| m.two_sided)),
+    ];
+    lines.into_iter().flatten().collect()
+}
+
+fn materials(scene: &Scene<Solid>, names: &[String]) -> String {
     let mut text = String::new();
-    for (i, material) in scene.materials().iter().enumerate() {
+    for (material, name) in scene.materials().iter().zip(names) {
         let [r, g, b] = material.color;
-        // Writing to a string cannot fail. The number keeps equal names apart.
-        let _ = writeln!(text, "newmtl {}.{i}\nKd {r} {g} {b}", word(&material.name));
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "newmtl {name}\nKd {r} {g} {b}");
+        if material.see_through {
+            text += "d 0.5\n";
+        }
     }
     text
 }
 
-fn obj(scene: &Scene<Solid>, origin: DVec3, out: &Path, to: &mut dyn Write) -> io::Result<()> {
-    writeln!(to, "# {}: {} triangles, ids in this order", word(scene.name()), scene.prim_count())?;
+fn obj(scene: &Scene<Solid>, names: &Names, origin: DVec3, out: &Path, to: &mut dyn Write) -> io::Result<()> {
+    writeln!(to, "# {}: {} triangles, ids in this order", on_a_line(scene.name()), scene.prim_count())?;
     let library = out.with_extension("mtl");
     writeln!(to, "mtllib {}", library.file_name().unwrap_or_default().to_string_lossy())?;
     for point in scene.points() {
         let [x, y, z] = [0, 1, 2].map(|a| coordinate(point.get(a), origin[a]));
         writeln!(to, "v {x} {y} {z}")?;
     }
-    let (mut object, mut material) = (None, None);
+    let (mut object, mut material, mut in_group) = (None, None, "");
     for prim in (0..scene.prim_count() as u32).map(PrimId) {
         if object.replace(scene.object_of(prim)) != Some(scene.object_of(prim)) {
-            let Object { name, group, .. } = &scene.objects()[scene.object_of(prim).at()];
-            writeln!(to, "o {}", word(name))?;
-            if !group.is_empty() {
-                writeln!(to, "g {}", word(group))?;
+            let (name, group) = &names.objects[scene.object_of(prim).at()];
+            writeln!(to, "o {name}")?;
+            if group != in_group {
+                writeln!(to, "{}", format!("g {group}").trim_end())?;
+                in_group = group;
             }
         }
         if material.replace(scene.material_of(prim)) != Some(scene.material_of(prim)) {
-            let at = scene.material_of(prim).at();
-            writeln!(to, "usemtl {}.{at}", word(&scene.materials()[at].name))?;
+            writeln!(to, "usemtl {}", names.materials[scene.material_of(prim).at()])?;
         }
         let [a, b, c] = scene.corners(prim).map_or([1, 1, 1], |corners| corners.map(|c| c + 1));
         writeln!(to, "f {a} {b} {c}")?;
@@ -137,9 +216,13 @@ fn head(scene: &Scene<Flat>, objects: &[Vec<u32>]) -> Map<String, Json> {
             head.insert(key.into(), text.as_str().into());
         }
     }
-    head.insert("object_names".into(), scene.objects().iter().map(|o| Json::from(&*o.name)).collect());
-    head.insert("colors".into(), colors(scene, objects));
-    head.insert("motions".into(), motions(scene));
+    // Colors and motions go by name.
+    let mut taken = BTreeSet::new();
+    let names: Vec<String> =
+        scene.objects().iter().map(|o| unique(&o.name, &mut taken, |name| name)).collect();
+    head.insert("object_names".into(), names.iter().map(|n| Json::from(&**n)).collect());
+    head.insert("colors".into(), colors(scene, &names, objects));
+    head.insert("motions".into(), motions(scene, &names));
     for path in scene.paths().iter().filter(|p| p.name == "eyes" || p.name == "walk") {
         let stand = |v: &View<Flat>| {
             let (p, d) = (v.eye.position, v.eye.target - v.eye.position);
@@ -163,20 +246,14 @@ fn expectation(e: &Expectation) -> Json {
 }
 
 /// Color by object name, of the object's first segment.
-fn colors(scene: &Scene<Flat>, objects: &[Vec<u32>]) -> Json {
-    let mut colors = BTreeMap::new();
-    for (object, prims) in scene.objects().iter().zip(objects) {
-        if let Some(first) = prims.first() {
-            colors
-                .entry(object.name.clone())
-                .or_insert_with(|| scene.color_of(PrimId(*first)).map(number).to_vec());
-        }
-    }
-    json!(colors)
+fn colors(scene: &Scene<Flat>, names: &[String], objects: &[Vec<u32>]) -> Json {
+    let color = |prim: &u32| scene.color_of(PrimId(*prim)).map(number).to_vec();
+    let colors = names.iter().zip(objects).filter_map(|(name, prims)| Some((name, color(prims.first()?))));
+    json!(colors.collect::<BTreeMap<_, _>>())
 }
 
 /// Frames by object name: x, y and degrees.
-fn motions(scene: &Scene<Flat>) -> Json {
+fn motions(scene: &Scene<Flat>, names: &[String]) -> Json {
     let frame = |pose: &crate::scene::Pose| {
         let degrees = (2.0 * f64::from(pose.rotation[2]).atan2(f64::from(pose.rotation[3]))).to_degrees();
         json!([number(pose.translation[0]), number(pose.translation[1]), (degrees * 1e4).round() / 1e4])
@@ -184,6 +261,7 @@ fn motions(scene: &Scene<Flat>) -> Json {
     let moving = scene
         .objects()
         .iter()
-        .filter_map(|o| Some((o.name.clone(), o.motion.as_ref()?.iter().map(frame).collect::<Vec<_>>())));
+        .zip(names)
+        .filter_map(|(o, name)| Some((name, o.motion.as_ref()?.iter().map(frame).collect::<Vec<_>>())));
     json!(moving.collect::<BTreeMap<_, _>>())
 }

@@ -53,10 +53,7 @@ pub fn load_bytes(
     match kind_of(source) {
         Some(_) if let Some(why) = stand_in(bytes) => Err(format(why)),
         Some(kind) => read(kind, bytes, None, source, options, progress),
-        None => Err(SceneError::Format {
-            path: source.to_owned(),
-            why: format!("this kind of file cannot be read; {KNOWN}"),
-        }),
+        None => Err(SceneError::Format { path: source.to_owned(), why: unread(Path::new(source)) }),
     }
 }
 
@@ -122,5 +119,14 @@ fn unknown_kind(path: &Path) -> String {
     if !path.exists() {
         return format!("no such file, and no kind of scene either; {KNOWN}");
     }
-    format!("this kind of file cannot be read; {KNOWN}")
+    unread(path)
+}
+
+/// Why a file of this name is not read.
+fn unread(path: &Path) -> String {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    match extension.as_str() {
+        "pdb" | "xyz" => format!("molecules (.{extension}) cannot be read yet; {KNOWN}"),
+        _ => format!("this kind of file cannot be read; {KNOWN}"),
+    }
 }

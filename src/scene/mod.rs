@@ -14,6 +14,7 @@ mod load;
 mod merge;
 mod mtl;
 mod obj;
+mod palette;
 mod paths;
 mod polygon;
 mod pose;

@@ -1,9 +1,10 @@
 //! Wavefront material files: the color of a material (`Kd`), and whether it is see-through.
 //!
 //! See-through is what the common readers take for it: `d` below 1 (also `d -halo`), else `Tr` above 0 (it is
-//! 1 − `d`; where both stand `d` counts, as in tinyobjloader), or a mask `map_d`. `illum` 4, 6, 7 and 9, which
-//! the format calls glass, and the filter `Tf` decide nothing: Maya writes `illum 4` and `Tf 1 1 1` for opaque
-//! materials. Keywords count in any letter case. Textures and the rest of the format are told, not read.
+//! 1 − `d`; where both stand `d` counts, as in tinyobjloader), or a mask `map_d`. `illum` 4, 6, 7 and 9,
+//! which the format calls glass, and the filter `Tf` decide nothing: Maya writes `illum 4` and `Tf 1 1 1` for
+//! opaque materials. Keywords count in any letter case. Textures and the rest of the format are told, not
+//! read.
 //!
 //! Read by us because a library name may lead anywhere (`/dev/zero`, `../..`, a pipe): only regular
 //! files inside the model's folder are opened. A name that leads elsewhere is looked for there by its last
@@ -13,7 +14,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::text::{Lines, beside, inside, keyword, name_of, number, read_file, without_mark, words};
+use super::text::{
+    Lines, beside, inside, is_decimal_comma, keyword, name_of, number, read_file, without_mark, words,
+};
 use super::{Material, Report};
 
 /// Longest material file, bytes.
@@ -122,10 +125,7 @@ impl Shelf<'_> {
         };
         let see_through = entry.mask || !opaque;
         if entry.glass && !see_through {
-            say(
-                "mtl: glass",
-                "`illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is opaque",
-            );
+            say("mtl: glass", "`illum` says that it is glass, no `d`, `Tr` or `map_d` does; it is opaque");
         }
         Material { see_through, ..Material::new(shown, entry.color.unwrap_or(GRAY)) }
     }
@@ -270,15 +270,6 @@ fn finite(word: &[u8]) -> Result<f64, &'static str> {
         None if is_decimal_comma(word) => Err("has a comma where a number has its point"),
         None => Err("is not made of numbers"),
     }
-}
-
-/// Whether a word is a number but for a comma in place of its point, as programs write it whose language does.
-pub(super) fn is_decimal_comma(word: &[u8]) -> bool {
-    let mut parts = word.split(|b| *b == b',');
-    let (Some(whole), Some(fraction), None) = (parts.next(), parts.next(), parts.next()) else {
-        return false;
-    };
-    number(&[whole, b".", fraction].concat()).is_some()
 }
 
 /// The file in the model's folder that a name may mean which names none as it stands, and how it is called

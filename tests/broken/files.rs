@@ -34,6 +34,11 @@ fn files_that_cannot_be_scenes_are_refused() {
     let known = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
     assert_eq!(refused(&home), format!("IT: is a folder; {known}"));
     assert_eq!(refused(&home.join("photo.jpeg")), format!("IT: this kind of file cannot be read; {known}"));
+    for extension in ["pdb", "xyz"] {
+        let path = home.join(format!("water.{extension}"));
+        fs::write(&path, "3\nwater\nO 0 0 0\nH 0.76 0.59 0\nH -0.76 0.59 0\n").expect("written");
+        assert_eq!(refused(&path), format!("IT: molecules (.{extension}) cannot be read yet; {known}"));
+    }
     assert_eq!(
         refused(&home.join("nothing")),
         format!("IT: no such file, and no kind of scene either; {known}")

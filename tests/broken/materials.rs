@@ -58,8 +58,7 @@ fn what_dissolves_is_see_through() {
     let both = "material `pane`: `d` and `Tr` contradict each other; `d` counts";
     assert_eq!(said("Tr 1.0\nd 1.0\n"), (false, both.into()));
     assert_eq!(said("d 0.5\nTr 0\n"), (true, both.into()));
-    let glass = "material `pane`: `illum` says that it is glass, but no `d`, `Tr` or `map_d` does; it is \
-                 opaque";
+    let glass = "material `pane`: `illum` says that it is glass, no `d`, `Tr` or `map_d` does; it is opaque";
     assert_eq!(said("illum 4\n"), (false, glass.into()));
     assert_eq!(said("illum 4\nd 0.1\n"), (true, String::new()));
     let comma = "SOME:3: `d` of `pane` has a comma where a number has its point, so it does not count";

@@ -1,7 +1,7 @@
 //! Broken Wavefront text.
 
 use cullscope::geometry::PrimId;
-use cullscope::scene::Dropped::{Degenerate, Malformed, NotFinite, OutOfRange};
+use cullscope::scene::Dropped::{Degenerate, Malformed, NotFinite, OutOfRange, Rounded, TooFar, TooLong};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Recenter, load_bytes};
 
 use super::{counts, error, solid};
@@ -13,12 +13,24 @@ const GOOD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\n";
 fn files_without_a_face_are_refused_with_a_guess_at_what_they_are() {
     let stl = "solid cube\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 \
                0\nendloop\nendfacet\nendsolid\n";
-    let cases: [(&[u8], &str); 12] = [
+    let cases: [(&[u8], &str); 13] = [
         (b"", "the file is empty"),
         (b" \n\n\t", "the file is empty"),
-        (b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "it has no faces (3 points and 0 line elements)"),
-        (b"v 0 0 0\nv 1 0 0\nl 1 2\np 1\n", "it has no faces (2 points and 1 line elements)"),
-        (b"v 0 0 0\nf 1 1\n", "it has no faces (1 points and 0 line elements)"),
+        (b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "it has no faces (3 points)"),
+        (
+            b"v 0 0 0\nv 1 0 0\nl 1 2\np 1\n",
+            "it has no faces (2 points): m.obj: 1 line elements ignored; m.obj: 1 point elements ignored",
+        ),
+        (
+            b"v 0 0 0\nf 1 1\nf 1\n",
+            "it has no faces (1 points): m.obj:2: a face of 2 needs three corners, so it was left out (and 1 \
+             more: line 3)",
+        ),
+        (
+            b"V 0 0 0\nF 1 1 1\nF 1 1 1\n",
+            "it has no faces (0 points): m.obj:1: unknown statement `V`, 1 times, ignored; keywords are in \
+             small letters (and 1 more: `F`, 2 times)",
+        ),
         (stl.as_bytes(), "this is an STL file, not an OBJ"),
         (b"<!DOCTYPE html>\n<html><body>404</body></html>", "this is HTML or XML, not an OBJ"),
         (b"glTF\x02\x00\x00\x00", "this is a GLB file, not an OBJ"),
@@ -62,8 +74,8 @@ fn bad_faces_are_dropped_keep_their_ids_and_are_told_with_their_line() {
         (
             "f 1 2 99999999999999999999",
             1,
-            vec![(Malformed, 1)],
-            "m.obj:6: corner `99999999999999999999` is not a number, so the face is dropped",
+            vec![(OutOfRange, 1)],
+            "m.obj:6: corner `99999999999999999999` names a point past any last one, so the face is dropped",
         ),
         (
             "f -1 -2 -5",
@@ -84,8 +96,8 @@ fn bad_faces_are_dropped_keep_their_ids_and_are_told_with_their_line() {
             vec![(Malformed, 1)],
             "m.obj:6: corner `2.5` is not a number, so the face is dropped",
         ),
-        ("f 1 2", 0, vec![], "m.obj:6: a face needs three corners, not 2, so it was left out"),
-        ("f", 0, vec![], "m.obj:6: a face needs three corners, not 0, so it was left out"),
+        ("f 1 2", 0, vec![], "m.obj:6: a face of 2 needs three corners, so it was left out"),
+        ("f", 0, vec![], "m.obj:6: a face of 0 needs three corners, so it was left out"),
         ("f 1 1 2", 1, vec![(Degenerate, 1)], ""),
         ("v 2 0 0\nf 1 2 5", 1, vec![(Degenerate, 1)], ""),
         ("f 1 1 1 1", 2, vec![(Degenerate, 2)], ""),
@@ -108,7 +120,11 @@ fn bad_points_drop_their_faces_and_shift_nothing() {
         ("v 0 0 1e999", NotFinite, "a coordinate is not finite, so faces at this point are dropped"),
         ("v 1 2", Malformed, "`v` needs three numbers, so faces at this point are dropped"),
         ("v 1 two 3", Malformed, "`v` needs three numbers, so faces at this point are dropped"),
-        ("v 1,5 2,5 3,5", Malformed, "`v` needs three numbers, so faces at this point are dropped"),
+        (
+            "v 1,5 2,5 3,5",
+            Malformed,
+            "a coordinate has a comma where a number has its point, so faces at this point are dropped",
+        ),
         ("v", Malformed, "`v` needs three numbers, so faces at this point are dropped"),
     ];
     for (line, why, note) in cases {
@@ -121,7 +137,7 @@ fn bad_points_drop_their_faces_and_shift_nothing() {
     }
     // A number that 32 bits hold, but whose products they do not.
     let huge = solid("m.obj", format!("{GOOD}v 1e30 0 0\nf 1 2 5\n").as_bytes());
-    assert_eq!(counts(&huge), (2, 1, vec![(NotFinite, 1)]));
+    assert_eq!(counts(&huge), (2, 1, vec![(TooFar, 1)]));
 }
 
 #[test]
@@ -132,7 +148,7 @@ fn if_nothing_is_left_that_is_the_error() {
         error("m.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\nf 7 8 9\nf 1 1 2\n"),
         format!(
             "{head}: 1 degenerate, 2 out of range; m.obj:4: corner 9 is past the last of 3 points, so the \
-             face is dropped; m.obj:5: corner 7 is past the last of 3 points, so the face is dropped"
+             face is dropped (and 1 more: line 5)"
         )
     );
 }
@@ -172,9 +188,9 @@ fn what_is_no_face_is_left_out_and_told() {
     let scene = solid("m.obj", text.as_bytes());
     assert_eq!(counts(&scene), (1, 1, vec![]));
     let want = [
-        "m.obj: 2 free-form statements ignored",
         "m.obj: 2 line elements ignored",
         "m.obj: 1 point elements ignored",
+        "m.obj: curves and surfaces are not read: `curv` (1), `vp` (1)",
         "m.obj:11: unknown statement `facets`, 2 times, ignored",
     ];
     assert_eq!(scene.report().notes, want);
@@ -186,7 +202,17 @@ fn a_flood_of_complaints_is_cut_off_and_counted() {
     (0..5_000).for_each(|k| text += &format!("f 1 2 {}\nq{k} 1\n", k + 50));
     let scene = solid("m.obj", text.as_bytes());
     assert_eq!(counts(&scene), (5_001, 1, vec![(OutOfRange, 5_000)]));
-    assert!(scene.report().notes.len() == 100 && scene.report().unsaid > 0);
+    let notes = &scene.report().notes;
+    assert_eq!(
+        *notes,
+        [
+            "m.obj:7: unknown statement `q0`, 1 times, ignored (and 32 more: `q1`, 1 times, `q2`, 1 times, \
+             `q3`, 1 times, `q4`, 1 times, …)",
+            "m.obj:6: corner 50 is past the last of 4 points, so the face is dropped (and 4999 more: line 8, \
+             line 10, line 12, line 14, …)",
+        ]
+    );
+    assert_eq!(scene.report().unsaid, 0);
 }
 
 #[test]
@@ -216,8 +242,20 @@ fn polygons_are_cut_by_their_shape() {
         area(3),
         area(4)
     );
-    let bowtie = solid("m.obj", format!("{GOOD}f 1 3 2 4\n").as_bytes());
-    assert_eq!(bowtie.prim_count(), 3, "a border that crosses itself takes its ids all the same");
+    // One that crosses itself, with nothing left of its area as a sum, is the fan, as in other readers.
+    let bow_tie = solid("m.obj", b"v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n");
+    assert_eq!(counts(&bow_tie), (2, 2, vec![]));
+    // What stands upright on a polygon's plane is kept: a roof upon a floor.
+    let front = solid("m.obj", b"v 0 0 2\nv 2 0 2\nv 2 0 0\nv 0 0 0\nv 1 1 0\nf 1 2 3 4 5\n");
+    assert_eq!(counts(&front), (3, 3, vec![]));
+    // Corners on a straight border, at the beginning and elsewhere, cost no triangle.
+    let text = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 4 0 0\nv 4 2 0\nv 4 4 0\nv 0 4 0\nf 1 2 3 4 5 6 7\nf 2 3 4 5 \
+                6 7 1\n";
+    let straight = solid("m.obj", text.as_bytes());
+    assert_eq!((counts(&straight), straight.faces().len()), ((10, 10, vec![]), 2));
+    // A corner named twice does.
+    let twice = solid("m.obj", format!("{GOOD}f 1 2 2 3 4\n").as_bytes());
+    assert_eq!(counts(&twice), (4, 3, vec![(Degenerate, 1)]));
 }
 
 #[test]
@@ -250,7 +288,7 @@ fn a_polygon_too_long_to_be_cut_is_left_out_and_told() {
     text += "f";
     (4..n + 4).for_each(|k| text += &format!(" {k}"));
     let scene = solid("star.obj", text.as_bytes());
-    assert_eq!(counts(&scene), (n as usize - 1, 1, vec![(Malformed, n as usize - 2)]));
+    assert_eq!(counts(&scene), (n as usize - 1, 1, vec![(TooLong, n as usize - 2)]));
     assert_eq!(
         scene.report().notes,
         ["a concave polygon of 140000 corners is too long to be cut, so it was left out"]
@@ -271,10 +309,75 @@ fn far_off_models_keep_their_detail() {
     );
     let stay = LoadOptions { recenter: Recenter::Never, ..LoadOptions::default() };
     let refused = load_bytes(text, "m.obj", &stay, &Quiet).map_err(|e| e.to_string());
-    assert!(
-        matches!(&refused, Err(e) if e.contains("no triangle that can be drawn: 1 degenerate")),
-        "{refused:?}"
+    let why = "no triangle that can be drawn: 1 too small for 32-bit coordinates here; rounding to 32 bits";
+    assert!(matches!(&refused, Err(e) if e.contains(why)), "{refused:?}");
+}
+
+/// Ten slats a tenth wide, five thousand kilometers from the point where the survey's marker stands.
+#[test]
+fn a_marker_at_the_origin_does_not_take_the_detail_of_the_rest() {
+    let mut text = String::from("v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nf 1 2 3\n");
+    for k in 0..10 {
+        let y = 5_403_210.5 + 0.2 * f64::from(k);
+        for (x, y) in [(0.25, y), (2.25, y), (2.25, y + 0.1), (0.25, y + 0.1)] {
+            text += &format!("v {:.3} {y:.3} 100\n", 512_345.0 + x);
+        }
+        text += "f -4 -3 -2 -1\n";
+    }
+    let scene = solid("m.obj", text.as_bytes());
+    assert_eq!(counts(&scene), (21, 20, vec![(Rounded, 1)]));
+    let widths = scene.live().iter().map(|p| scene.prim_bounds(*p).size().y);
+    assert!(widths.into_iter().all(|w| (w - 0.1).abs() < 1e-5));
+    let notes = &scene.report().notes;
+    assert!(notes[0].starts_with("recentered: (512"), "{notes:?}");
+    assert_eq!(
+        notes[1..],
+        ["rounding to 32 bits moves points by up to 0.10 units; it changes the area of 1 faces by more \
+          than an eighth, and 1 triangles are lost by it"]
     );
+}
+
+/// What has an area in the file and none in 32 bits is not called degenerate; what has none is.
+#[test]
+fn what_rounding_takes_is_told_from_what_has_no_area() {
+    let mut text = String::new();
+    for x in ["0", "1000000", "2000000"] {
+        text += &format!("v {x} 0 0\nv {x}.01 0 0\nv {x} 0.01 0\nf -3 -2 -1\n");
+    }
+    text += "v 1000000.1 0 0\nv 1000000.2 0 0\nv 1000000.3 0 0\nf -3 -2 -1\n";
+    let scene = solid("m.obj", text.as_bytes());
+    let (ids, live, dropped) = counts(&scene);
+    assert_eq!((ids, live, dropped), (4, 1, vec![(Degenerate, 1), (Rounded, 2)]));
+    // Three points on a line, which 64 bits hold only nearly.
+    let line = "v 512345.1 5403210.11 0\nv 512345.2 5403210.12 0\nv 512345.3 5403210.13 0\nf 1 2 3\n";
+    let stay = LoadOptions { recenter: Recenter::Never, ..LoadOptions::default() };
+    let refused = load_bytes(line.as_bytes(), "m.obj", &stay, &Quiet).map_err(|e| e.to_string());
+    assert!(matches!(&refused, Err(e) if e.contains("drawn: 1 degenerate")), "{refused:?}");
+    // Two sites of their own size lose nothing with the origin in between or in one of them.
+    let two = solid(
+        "m.obj",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1000000 0 0\nv 1000000.01 0 0\nv 1000000 0.01 \
+                               0\nf 1 2 3\nf 4 5 6\n",
+    );
+    assert_eq!(counts(&two), (2, 2, vec![]));
+}
+
+/// `v x y z r g b`, as MeshLab, ZBrush and others write it; also with a weight, and in bytes.
+#[test]
+fn colors_at_points_become_materials() {
+    let red = "v -1 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
+    for color in [" 1 0 0\n", " 255 0 0\n", " 1 1 0 0\n"] {
+        let text = red.replace(" 1 0 0\n", color);
+        let scene = solid("m.obj", text.as_bytes());
+        assert_eq!(scene.color_of(PrimId(0)), [1.0, 0.0, 0.0], "{text}");
+        assert_eq!(
+            scene.report().notes,
+            ["colors at points: 1 faces have the mean color of their corners, in 1 materials"]
+        );
+    }
+    // A face at a point without a color keeps its material.
+    let scene = solid("m.obj", format!("{red}v 0 0 1\nf 1 2 4\n").as_bytes());
+    assert_eq!(scene.color_of(PrimId(1)), [0.7; 3]);
 }
 
 #[test]
