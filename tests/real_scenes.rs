@@ -53,6 +53,43 @@ fn shipped_models_load_whole() {
     }
 }
 
+/// Corners of all triangles, in order.
+fn corners(scene: &Scene<Solid>) -> Vec<[f32; 3]> {
+    let points = scene.live().iter().flat_map(|&p| scene.prim_points(p));
+    points.map(|p| p.to_array()).collect()
+}
+
+/// What another reader, `tobj`, makes of the same files: the same triangles with the same winding.
+#[test]
+fn shipped_models_are_as_another_reader_reads_them() {
+    for (name, triangles, ..) in SHIPPED {
+        let path = home().join("scenes3d").join(name).join(format!("{name}.obj"));
+        let scene = solid(&path);
+        let options = tobj::LoadOptions { triangulate: true, ..tobj::LoadOptions::default() };
+        let (models, _) = tobj::load_obj(&path, &options).expect("tobj reads it");
+        let origin = scene.origin();
+        let mut theirs: Vec<[f32; 3]> = Vec::new();
+        for mesh in models.iter().map(|m| &m.mesh) {
+            let point = |i: u32| std::array::from_fn(|a| mesh.positions[3 * i as usize + a] - origin[a]);
+            theirs.extend(mesh.indices.iter().map(|&i| point(i).map(|v: f64| v as f32)));
+        }
+        assert_eq!(theirs.len(), 3 * triangles, "{name}");
+        // Models are split by material there, so the order is compared triangle by triangle.
+        let sorted = |corners: Vec<[f32; 3]>| {
+            let mut all: Vec<_> = corners.chunks(3).map(|t| t.concat()).collect();
+            all.sort_by(|a, b| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| a.total_cmp(b))
+                    .find(|o| o.is_ne())
+                    .unwrap_or_else(|| a.len().cmp(&b.len()))
+            });
+            all
+        };
+        assert!(sorted(corners(&scene)) == sorted(theirs), "{name}: other triangles");
+    }
+}
+
 /// The scenes of Coorg and Teller's figures in space say what the figures say of the first view.
 #[test]
 fn scenes_of_figures_show_what_the_figures_show() {

@@ -41,6 +41,7 @@ pub use lanes::{Cell, Lane, lanes};
 pub use measured::{Measured, Tables, tables};
 pub use open::{Example, examples};
 pub use outline::Outline;
+pub use pick::Column;
 pub use session::{Bookmark, Session, SessionError, write_file};
 pub use shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Shown, Surface, Theme};
 pub use stage::{Reading, Recorded, SceneFacts, Stage, Staged};

@@ -24,11 +24,35 @@ impl Stage<Flat> {
             .filter(|n| n.0 > 0)
             .map_or(Subject::None, Subject::Node)
     }
-    /// For each column of the Eye's image, from left to right, the nearest segment and its view depth.
-    pub fn image(&self) -> Vec<Option<(PrimId, f32)>> {
+    /// What each column of the Eye's image shows, from left to right.
+    pub fn image(&self) -> Vec<Column> {
         let target = raster::render(&*self.scene, &self.view, self.scene.live());
-        let cell =
-            |(&item, &depth): (&u32, &f32)| (item != Target::NONE).then(|| (PrimId(item), 1.0 / depth));
-        target.item.iter().zip(&target.depth).map(cell).collect()
+        let nearest = |(&item, &depth): (&u32, &f32)| {
+            let opaque = (item != Target::NONE).then(|| (PrimId(item), 1.0 / depth));
+            Column { opaque, through: Vec::new() }
+        };
+        let mut columns: Vec<Column> = target.item.iter().zip(&target.depth).map(nearest).collect();
+        let options = raster::Options::default();
+        raster::look_through(
+            &target,
+            &self.scene,
+            &self.view,
+            &target.through,
+            &options,
+            |prim, at, depth| {
+                columns[at].through.push((prim, 1.0 / depth));
+            },
+        );
+        columns.iter_mut().for_each(|c| c.through.sort_by(|a, b| b.1.total_cmp(&a.1)));
+        columns
     }
+}
+
+/// What one pixel of the flatland Eye shows: segments and their view depths.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Column {
+    /// The nearest that is opaque.
+    pub opaque: Option<(PrimId, f32)>,
+    /// The see-through ones before it, the farthest first.
+    pub through: Vec<(PrimId, f32)>,
 }

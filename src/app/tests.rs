@@ -608,7 +608,7 @@ fn the_image_of_flatland_shows_the_nearest_segments() {
     let projection = stage.view.projection();
     let mut seen = 0;
     for (i, cell) in image.iter().enumerate().step_by(37) {
-        let Some((prim, depth)) = cell else { continue };
+        let Some((prim, depth)) = &cell.opaque else { continue };
         seen += 1;
         // The ray through the pixel's center, met by every segment one by one.
         let x = (i as f32 + 0.5) / image.len() as f32 * 2.0 - 1.0;

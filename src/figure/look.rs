@@ -108,7 +108,7 @@ fn strokes<S: Space>(scene: &Scene<S>, prim: PrimId, ends: Vec<S::Vector>) -> Ve
 }
 
 /// Distance of the two lines of a pane from its middle, of the scene's diagonal.
-const GLASS: f32 = 0.0025;
+const GLASS: f32 = 0.005;
 
 /// Boxes of the nodes entered so far. In flatland a node decided as a whole is filled; the boxes of
 /// its parents are outlines.

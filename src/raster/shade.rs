@@ -89,7 +89,7 @@ fn veils<S: Drawable>(
     prims.dedup();
     let mut veils = vec![Veil::default(); if prims.is_empty() { 0 } else { target.item.len() }];
     let mut last: Option<(PrimId, [u64; 3])> = None;
-    look_through(target, scene, view, &prims, &Options::default(), |prim, at| {
+    look_through(target, scene, view, &prims, &Options::default(), |prim, at, _| {
         let (_, color) = match &mut last {
             Some(known) if known.0 == prim => *known,
             other => *other.insert((prim, lit(prim).map(|c| (c.clamp(0.0, 1.0) * STEPS) as u64))),

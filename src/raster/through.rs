@@ -4,8 +4,8 @@ use super::{Drawable, Options, Target};
 use crate::geometry::{PrimId, View};
 use crate::scene::Scene;
 
-/// Calls `visit` with each pixel of an image in which a see-through primitive shows, and its place row by
-/// row. At equal depth it shows: what is painted on a wall is seen. Of `prims` those that are not
+/// Calls `visit` with each pixel of an image in which a see-through primitive shows, by its place row by row,
+/// and the depth `1/w` of it there. At equal depth it shows: what is painted on a wall is seen. Of `prims` those that are not
 /// see-through are passed over. The order of the calls is that of `prims`. Cost: O(covered pixels).
 ///
 /// # Panics
@@ -16,7 +16,7 @@ pub fn look_through<S: Drawable>(
     view: &View<S>,
     prims: &[PrimId],
     options: &Options,
-    mut visit: impl FnMut(PrimId, usize),
+    mut visit: impl FnMut(PrimId, usize, f32),
 ) {
     super::check_size(target, view);
     if !options.surfaces.any_through(scene) {
@@ -25,7 +25,7 @@ pub fn look_through<S: Drawable>(
     for &prim in prims.iter().filter(|p| options.surfaces.show_through(scene, **p)) {
         S::fragments(scene, view, prim, options, &mut |at, depth| {
             if depth >= target.depth[at] {
-                visit(prim, at);
+                visit(prim, at, depth);
             }
         });
     }

@@ -140,7 +140,7 @@ impl Truth {
         image: &Target,
     ) -> usize {
         let mut lacking = vec![false; self.all.item.len()];
-        look_through(&self.all, scene, view, missed, &self.options, |_, at| lacking[at] = true);
+        look_through(&self.all, scene, view, missed, &self.options, |_, at, _| lacking[at] = true);
         (0..lacking.len()).filter(|&at| lacking[at] || self.all.differs(image, at)).count()
     }
 }
@@ -154,7 +154,7 @@ fn all_visible<S: Drawable>(
 ) -> Vec<PrimId> {
     let mut seen = visible(image);
     let mut before = seen.len();
-    look_through(image, scene, view, &image.through, options, |prim, _| {
+    look_through(image, scene, view, &image.through, options, |prim, _, _| {
         // A primitive's pixels come one after the other.
         if seen[before..].last() != Some(&prim) {
             seen.push(prim);

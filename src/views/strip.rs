@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, FontId, Rangef, Rect, Sense, Stroke, pos2, vec2
 
 use super::handles::Hand;
 use super::{Answers, palette};
-use crate::app::{Command, Gesture, Stage, State};
+use crate::app::{Column, Command, Gesture, Stage, State};
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
@@ -18,8 +18,6 @@ const LOOK_GESTURE: Gesture = Gesture::MAX;
 /// Height of the strip itself.
 const STRIP: f32 = 22.0;
 
-/// What a column of the image shows: a segment and its view depth.
-type Column = Option<(PrimId, f32)>;
 /// The columns of the image, and the scene and view that they were rendered for.
 pub type Image = ((u64, View<Flat>), Vec<Column>);
 
@@ -52,7 +50,7 @@ pub fn show(
     let per_column = rect.width() / image.len().max(1) as f32;
     paint_columns(state, stage, image, &painter, rect);
     painter.rect_stroke(layout(rect).1, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
-    let distinct: std::collections::BTreeSet<_> = image.iter().flatten().map(|(p, _)| *p).collect();
+    let distinct: std::collections::BTreeSet<_> = image.iter().flat_map(seen).map(|(p, _)| p).collect();
     let plural = if distinct.len() == 1 { "" } else { "s" };
     let text = format!("{} pixels, {} segment{plural} seen", image.len(), distinct.len());
     painter.text(
@@ -67,31 +65,42 @@ pub fn show(
     super::canvas::focus_ring(state, ui, &response);
 }
 
-/// Paints each column twice: as a wall as high as it is near, and as a pixel of the strip.
+/// All that a column shows, from far to near.
+fn seen(column: &Column) -> impl Iterator<Item = (PrimId, f32)> {
+    column.opaque.into_iter().chain(column.through.iter().copied())
+}
+
+/// How much of what is behind see-through segments is covered by one.
+const VEIL: f32 = 0.3;
+
+/// Paints each column twice: as a wall as high as it is near, and as a pixel of the strip; see-through ones
+/// over what is behind them.
 fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: &egui::Painter, rect: Rect) {
     let (walls, strip) = layout(rect);
     let rim = Stroke::new(1.0, palette::panel(state).canvas);
-    let nearest = image.iter().flatten().map(|(_, d)| *d).fold(f32::INFINITY, f32::min);
+    let nearest = image.iter().flat_map(seen).map(|(_, d)| d).fold(f32::INFINITY, f32::min);
     let per_column = rect.width() / image.len().max(1) as f32;
-    for (i, cell) in image.iter().enumerate() {
-        let Some((prim, depth)) = cell else { continue };
-        let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(*prim, state.step));
-        let style = palette::role(state, role_of(known));
+    for (i, column) in image.iter().enumerate() {
         let x = rect.left() + i as f32 * per_column;
         let width = Rangef::new(x, x + per_column.max(1.0));
-        let half = walls.height() * 0.46 * (nearest / depth).sqrt();
-        let band = Rangef::new(walls.center().y - half, walls.center().y + half);
-        let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
-        // What was culled has gaps: every other pair of columns is left out.
-        let culled = matches!(known, Known::Decided(v) if v != Verdict::Visible && v != Verdict::Partial);
-        if !culled || (i / 2) % 2 == 0 {
-            painter.rect_filled(Rect::from_x_y_ranges(width, band), 0.0, faded);
-        }
-        painter.rect_filled(Rect::from_x_y_ranges(width, strip.y_range()), 0.0, style);
-        // Neighbors of one role stay apart.
-        if i == 0 || image[i - 1].is_none_or(|(p, _)| p != *prim) {
-            painter.vline(x, band, rim);
-            painter.vline(x, strip.y_range(), rim);
+        for (prim, depth) in seen(column) {
+            let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(prim, state.step));
+            let is_veil = column.opaque.is_none_or(|(p, _)| p != prim);
+            let style = palette::role(state, role_of(known)).gamma_multiply(if is_veil { VEIL } else { 1.0 });
+            let half = walls.height() * 0.46 * (nearest / depth).sqrt();
+            let band = Rangef::new(walls.center().y - half, walls.center().y + half);
+            let faded = style.gamma_multiply(0.35 + 0.65 * (nearest / depth).sqrt());
+            // What was culled has gaps: every other pair of columns is left out.
+            let culled = matches!(known, Known::Decided(v) if v != Verdict::Visible && v != Verdict::Partial);
+            if !culled || (i / 2) % 2 == 0 {
+                painter.rect_filled(Rect::from_x_y_ranges(width, band), 0.0, faded);
+            }
+            painter.rect_filled(Rect::from_x_y_ranges(width, strip.y_range()), 0.0, style);
+            // Neighbors of one role stay apart.
+            if i == 0 || seen(&image[i - 1]).all(|(p, _)| p != prim) {
+                painter.vline(x, band, rim);
+                painter.vline(x, strip.y_range(), rim);
+            }
         }
     }
     // What is selected stands below the strip, what the step is about on it.
@@ -142,8 +151,11 @@ fn interact(
     response: &egui::Response,
     answers: &mut Answers,
 ) {
-    let under =
-        |x: f32| image.get(((x - response.rect.left()) / per_column.max(1e-6)) as usize).copied().flatten();
+    // Through glass one clicks what is behind it, if there is anything.
+    let under = |x: f32| {
+        let column = image.get(((x - response.rect.left()) / per_column.max(1e-6)) as usize)?;
+        column.opaque.or(column.through.last().copied())
+    };
     if response.clicked() {
         response.request_focus();
         if let Some(at) = response.interact_pointer_pos() {

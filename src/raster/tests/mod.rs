@@ -129,7 +129,7 @@ fn shown_through<S: Drawable>(
     options: &Options,
 ) -> Vec<(PrimId, usize)> {
     let mut shown = Vec::new();
-    look_through(target, scene, view, &target.through, options, |prim, at| shown.push((prim, at)));
+    look_through(target, scene, view, &target.through, options, |prim, at, _| shown.push((prim, at)));
     shown.sort_unstable();
     shown.dedup();
     shown
@@ -204,7 +204,7 @@ fn sifted_is_the_same<S: Drawable>(
     }
     assert!(*plain == target, "{what}: sifted, {options:?}");
     assert!(hidden.iter().all(|h| !plain.item.contains(&h.0)), "{what}: what is left out shows nowhere");
-    look_through(plain, scene, view, &hidden, options, |prim, at| {
+    look_through(plain, scene, view, &hidden, options, |prim, at, _| {
         panic!("{what}: {prim} is left out and shows through at pixel {at}");
     });
 }

@@ -323,7 +323,7 @@ fn what_is_see_through_hides_nothing_and_is_seen_before_what_it_stands_in_front_
     assert_eq!(visible(&image), [PrimId(1)]);
     let options = Options::default();
     let mut seen: Vec<PrimId> = Vec::new();
-    look_through(&image, &scene, &view, scene.live(), &options, |prim, _| seen.push(prim));
+    look_through(&image, &scene, &view, scene.live(), &options, |prim, _, _| seen.push(prim));
     seen.dedup();
     assert_eq!(seen, [PrimId(0)]);
     // Taken as solid, the pane is all that shows.
@@ -334,7 +334,7 @@ fn what_is_see_through_hides_nothing_and_is_seen_before_what_it_stands_in_front_
     let scene = with_materials(soup(&[square(4.0), square(4.0)]), |p| p == 1, |_| false);
     let image = assert_equal(&scene, &view, scene.live(), BOTH_SIDES, "paint");
     let mut pixels = 0;
-    look_through(&image, &scene, &view, scene.live(), &options, |_, _| pixels += 1);
+    look_through(&image, &scene, &view, scene.live(), &options, |_, _, _| pixels += 1);
     assert_eq!(pixels, image.item.iter().filter(|i| **i == 0).count());
     // And its color is mixed with what is behind, whatever the order in which it was drawn.
     let layers = [square(2.0), square(3.0), square(4.0)];
