@@ -409,10 +409,11 @@ fn converted_scenes_are_the_same_scenes() {
         }
     }
     // Objects, groups, materials and what is see-through stay apart, whatever they are called.
-    let text = "mtllib mixed.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no two words\ng left wing\nusemtl a b\nf 1 2 3\no \
-                same\ng\nusemtl c\nf 1 2 3\ng same\no\nf 1 2 3\no same\ng\nf 3 2 1\n";
+    let text = "mtllib mixed.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no two words\ng left wing\nusemtl a b\nf 1 2 3\n\
+                o same\ng\nusemtl c\nf 1 2 3\ng same\no\nf 1 2 3\no same\ng\nf 3 2 1\n";
     fs::write(here.join("mixed.obj"), text).expect("written");
-    fs::write(here.join("mixed.mtl"), "newmtl a b\nKd 1 0 0\nnewmtl c\nKd 0 0 1\nd 0.2\n").expect("written");
+    let library = "newmtl a b\nKd 1 0 0\nnewmtl c\nKd 0 0 1\nd 0.2\n";
+    fs::write(here.join("mixed.mtl"), library).expect("written");
     let said = cullscope(&here, &["scene", "convert", "mixed.obj", "again.obj"]);
     let said = String::from_utf8_lossy(&said.stderr).into_owned();
     assert!(said.contains("1 objects are written under other names") && said.contains("`same` as `same.2`"));

@@ -8,64 +8,21 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec3};
 
 use super::merge::merge_coplanar;
+use super::mesh::{Mesh, RawFace};
 use super::polygon::{Cutter, Shape, turn_edges};
-use super::{
-    Dropped, Face, LoadOptions, Material, Object, Parts, Progress, Recenter, Report, SceneError, palette,
-};
+use super::rounding::{choose_origin, price, round, spoiled};
+use super::{Dropped, Face, LoadOptions, Parts, Progress, Report, SceneError};
 use crate::geometry::{MaterialId, ObjectId, PrimId, Solid};
 
-/// Greatest magnitude of a coordinate, world units: a product of three of them still fits 32 bits.
-pub const MAX_COORDINATE: f64 = 1e12;
 /// Most primitives of a scene: ids and three corners each must stay countable in 32 bits.
 pub const MAX_PRIMS: usize = 1 << 29;
 
 /// Corners of a polygon that take long enough to ask first whether anybody still waits.
 const LONG_WORK: usize = 4_096;
 
-/// A face of the source, in file order.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RawFace {
-    /// Past its last corner in [`Mesh::corners`]; it begins where the one before ends.
-    pub(super) end: u32,
-    /// Triangle ids that it takes: n − 2 of its n corners in the source.
-    pub(super) ids: u32,
-    pub(super) object: u32,
-    pub(super) material: u32,
-    /// Why it is not there; then it has no corners.
-    pub(super) lost: Option<Dropped>,
-}
-
-/// Polygons over shared points.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Mesh {
-    pub(super) points: Vec<DVec3>,
-    /// Color at each point, 0..1 ([`Mesh::NO_COLOR`] where there is none); empty if no point has one.
-    pub(super) colors: Vec<[f32; 3]>,
-    pub(super) corners: Vec<u32>,
-    pub(super) faces: Vec<RawFace>,
-    pub(super) objects: Vec<Object>,
-    pub(super) materials: Vec<Material>,
-}
-
-impl Mesh {
-    /// A point without a color.
-    pub(super) const NO_COLOR: [f32; 3] = [f32::NAN; 3];
-
-    /// Adds a face of these corners.
-    pub(super) fn push(&mut self, corners: &[u32], object: u32, material: u32) {
-        self.corners.extend_from_slice(corners);
-        let ids = (corners.len() as u32).saturating_sub(2);
-        self.faces.push(RawFace { end: self.corners.len() as u32, ids, object, material, lost: None });
-    }
-    /// Adds a face that is not there but takes ids.
-    pub(super) fn push_lost(&mut self, ids: u32, object: u32, material: u32, why: Dropped) {
-        self.faces.push(RawFace { end: self.corners.len() as u32, ids, object, material, lost: Some(why) });
-    }
-}
-
 /// Makes the tables of a scene out of a mesh. `name` and `source` as in [`Parts`].
 pub(super) fn assemble(
-    mut mesh: Mesh,
+    mesh: Mesh,
     name: &str,
     source: &str,
     options: &LoadOptions,
@@ -78,9 +35,6 @@ pub(super) fn assemble(
             path: source.to_owned(),
             why: format!("{count} triangles are more than the limit of {MAX_PRIMS}"),
         });
-    }
-    if !mesh.colors.is_empty() {
-        palette::paint(&mut mesh, &mut report);
     }
     let stopped = || SceneError::Cancelled(source.to_owned());
     progress.report(0.0, "choosing the origin");
@@ -98,28 +52,8 @@ pub(super) fn assemble(
     } else {
         (0..points.len() as u32).collect()
     };
-    let mut cut = Cut { prims: Vec::with_capacity(count), ..Cut::default() };
-    let source_of = Source { mesh: &mesh, points: &points, usable: &usable, same_as: &same_as, options };
-    let mut start = 0;
-    for (k, face) in mesh.faces.iter().enumerate() {
-        if k % 65_536 == 0 {
-            progress.report(0.2 + 0.8 * k as f32 / mesh.faces.len() as f32, "cutting polygons");
-            if progress.cancelled() {
-                return Err(stopped());
-            }
-        }
-        let corners = &mesh.corners[start..face.end as usize];
-        start = face.end as usize;
-        if corners.len() > LONG_WORK && progress.cancelled() {
-            return Err(stopped());
-        }
-        if !cut.face(face, corners, &source_of) {
-            let count = corners.len();
-            report.note_each("polygon: too long", format_args!("{count} corners"), || {
-                format!("a concave polygon of {count} corners is too long to be cut, so it was left out")
-            });
-        }
-    }
+    let taken = Source { mesh: &mesh, points: &points, usable: &usable, same_as: &same_as, options };
+    let cut = Cut::all(&taken, count, &mut report, progress).ok_or_else(stopped)?;
     let spoiled = spoiled(&mesh, origin, progress).ok_or_else(stopped)?;
     if spoiled > 0 {
         let lost = cut.dropped.get(&Dropped::Rounded).copied().unwrap_or(0);
@@ -149,138 +83,6 @@ pub(super) fn assemble(
         merge_coplanar(&mut parts, progress);
     }
     Ok(parts)
-}
-
-/// What to subtract: nothing, unless 32-bit coordinates would lose detail. `None` when cancelled.
-///
-/// A model whose middle is farther away than [`FAR`] times its extent goes to the origin as a whole. Else, if
-/// there are faces that rounding spoils, the middle of the bounds and the median of the faces are tried (the
-/// median is where most of a model is that has a marker or another site far off), and what spoils the fewest
-/// is taken if that saves more than one face in [`WORTH`]. Rounded, so that short decimals stay short.
-fn choose_origin(mesh: &Mesh, recenter: Recenter, progress: &dyn Progress) -> Option<DVec3> {
-    /// At 16 extents from the origin, 4 of the 24 bits of a coordinate are spent on the distance.
-    const FAR: f64 = 16.0;
-    const WORTH: usize = 100;
-    if recenter == Recenter::Never {
-        return Some(DVec3::ZERO);
-    }
-    let usable = mesh.points.iter().filter(|p| p.abs().max_element() <= MAX_COORDINATE);
-    let (low, high) = usable.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));
-    let (center, extent) = ((low + high) * 0.5, (high - low).max_element());
-    if !center.is_finite() || extent <= 0.0 {
-        return Some(DVec3::ZERO);
-    }
-    let middle = on_grid(center, extent);
-    if recenter == Recenter::Always || center.abs().max_element() > FAR * extent {
-        return Some(middle);
-    }
-    let lost = spoiled(mesh, DVec3::ZERO, progress)?;
-    if lost * WORTH < mesh.faces.len() || lost == 0 {
-        return Some(DVec3::ZERO);
-    }
-    let mut best = (lost, DVec3::ZERO);
-    for origin in [middle, median(mesh)] {
-        let count = spoiled(mesh, origin, progress)?;
-        if count < best.0 {
-            best = (count, origin);
-        }
-    }
-    let saved = lost - best.0;
-    Some(if saved > 0 && saved * WORTH >= mesh.faces.len() { best.1 } else { DVec3::ZERO })
-}
-
-/// A point on a grid as wide as the power of two at or below `width`: the exponent bits alone.
-fn on_grid(point: DVec3, width: f64) -> DVec3 {
-    let grid = f64::from_bits(width.to_bits() & 0x7ff0_0000_0000_0000);
-    let point = (point / grid).round() * grid;
-    if point.is_finite() { point } else { DVec3::ZERO }
-}
-
-/// The corners of each face, in order.
-fn rings(mesh: &Mesh) -> impl Iterator<Item = &[u32]> {
-    let mut start = 0;
-    mesh.faces.iter().map(move |face| {
-        let ring = &mesh.corners[start..face.end as usize];
-        start = face.end as usize;
-        ring
-    })
-}
-
-/// The median of the faces' first corners, an axis at a time; on a grid of 64 extents of the face next to it.
-fn median(mesh: &Mesh) -> DVec3 {
-    let at = |c: u32| mesh.points[c as usize];
-    let firsts = rings(mesh).filter_map(|ring| ring.first().map(|c| at(*c)));
-    let mut firsts: Vec<DVec3> = firsts.filter(|p| p.abs().max_element() <= MAX_COORDINATE).collect();
-    if firsts.is_empty() {
-        return DVec3::ZERO;
-    }
-    let half = firsts.len() / 2;
-    let middle = DVec3::from_array([0, 1, 2].map(|axis| {
-        firsts.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
-        firsts[half][axis]
-    }));
-    let near = rings(mesh)
-        .filter(|ring| !ring.is_empty())
-        .min_by(|a, b| {
-            let distance = |ring: &[u32]| at(ring[0]).distance_squared(middle);
-            distance(a).total_cmp(&distance(b))
-        })
-        .unwrap_or_default();
-    let extent = near.iter().map(|c| (at(*c) - at(near[0])).abs().max_element()).fold(0.0, f64::max);
-    if extent > 0.0 { on_grid(middle, 64.0 * extent) } else { middle }
-}
-
-/// How many faces rounding to 32 bits relative to `origin` spoils. `None` when cancelled.
-fn spoiled(mesh: &Mesh, origin: DVec3, progress: &dyn Progress) -> Option<usize> {
-    let mut count = 0;
-    for (k, ring) in rings(mesh).enumerate() {
-        if k % 65_536 == 0 && progress.cancelled() {
-            return None;
-        }
-        count += usize::from(is_spoiled(ring, |c| mesh.points[c as usize] - origin));
-    }
-    Some(count)
-}
-
-/// Whether the vector area of a polygon changes by more than an eighth when its corners are rounded to 32
-/// bits.
-fn is_spoiled(ring: &[u32], place: impl Fn(u32) -> DVec3) -> bool {
-    let &[first, second, _, ..] = ring else { return false };
-    let (start, rounded) = (place(first), place(first).as_vec3().as_dvec3());
-    let sides = |c: u32| (place(c) - start, place(c).as_vec3().as_dvec3() - rounded);
-    let mut before = sides(second);
-    let (mut exact, mut found) = (DVec3::ZERO, DVec3::ZERO);
-    for &corner in &ring[2..] {
-        let next = sides(corner);
-        exact += before.0.cross(next.0);
-        found += before.1.cross(next.1);
-        before = next;
-    }
-    64.0 * (found - exact).length_squared() > exact.length_squared()
-}
-
-/// What rounding costs, in words.
-fn price(points: &[DVec3], origin: DVec3, spoiled: usize, lost: usize) -> String {
-    let usable = points.iter().map(|p| *p - origin).filter(|p| p.abs().max_element() <= MAX_COORDINATE);
-    let shift = |p: DVec3| (p.as_vec3().as_dvec3() - p).abs().max_element();
-    let greatest = usable.map(shift).fold(0.0, f64::max);
-    // One digit that is not zero.
-    let digits = (-greatest.max(1e-30).log10()).ceil().max(0.0) as usize;
-    format!(
-        "rounding to 32 bits moves points by up to {greatest:.digits$} units; it changes the area of \
-         {spoiled} faces by more than an eighth, and {lost} triangles are lost by it"
-    )
-}
-
-/// 32-bit points, and which of them may be used. `+ 0.0` turns −0 into 0, so that equal points have equal
-/// bits.
-fn round(points: &[DVec3], origin: DVec3) -> (Vec<Vec3>, Vec<bool>) {
-    let rounded = points.iter().map(|p| {
-        let p = *p - origin;
-        let usable = p.abs().max_element() <= MAX_COORDINATE && p.is_finite();
-        (if usable { p.as_vec3() + Vec3::ZERO } else { Vec3::ZERO }, usable)
-    });
-    rounded.unzip()
 }
 
 /// For each point the least index of a point at the same place. `None` when cancelled.
@@ -369,6 +171,27 @@ struct Cut {
 }
 
 impl Cut {
+    /// The triangles of all faces; `None` when cancelled.
+    fn all(source: &Source, count: usize, report: &mut Report, progress: &dyn Progress) -> Option<Self> {
+        let mut cut = Self { prims: Vec::with_capacity(count), ..Self::default() };
+        let faces = &source.mesh.faces;
+        for (k, (face, corners)) in faces.iter().zip(source.mesh.rings()).enumerate() {
+            if k % 65_536 == 0 {
+                progress.report(0.2 + 0.8 * k as f32 / faces.len() as f32, "cutting polygons");
+            }
+            if (k % 65_536 == 0 || corners.len() > LONG_WORK) && progress.cancelled() {
+                return None;
+            }
+            if !cut.face(face, corners, source) {
+                let count = corners.len();
+                report.note_each("polygon: too long", format_args!("{count} corners"), || {
+                    format!("a concave polygon of {count} corners is too long to be cut, so it was left out")
+                });
+            }
+        }
+        Some(cut)
+    }
+
     /// Adds the triangles of a face; `false` if it is too long to be cut.
     fn face(&mut self, face: &RawFace, corners: &[u32], source: &Source) -> bool {
         let first = self.prims.len();

@@ -11,9 +11,9 @@ use glam::{DVec2, DVec3, Vec2};
 use serde::Deserialize;
 
 use super::about::{About, Expectation};
-use super::assemble::MAX_COORDINATE;
 use super::json::{Step, from_slice, line_of};
 use super::mtl::GRAY;
+use super::rounding::MAX_COORDINATE;
 use super::source::stem;
 use super::{Dropped, LoadOptions, Material, Object, Parts, Pose, Report, Scene, SceneError, views};
 use crate::geometry::{Flat, MaterialId, ObjectId, PrimId, ViewPath};

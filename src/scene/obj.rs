@@ -10,9 +10,10 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::assemble::{Mesh, RawFace, assemble};
+use super::assemble::assemble;
+use super::mesh::{Mesh, RawFace};
 use super::text::{Lines, is_decimal_comma, keyword, name_of, number, without_mark, words};
-use super::{Dropped, LoadOptions, Object, Part, Parts, Progress, Report, SceneError, mtl};
+use super::{Dropped, LoadOptions, Object, Part, Parts, Progress, Report, SceneError, mtl, palette};
 use crate::geometry::Solid;
 
 /// Reads OBJ text. Without a `folder` no material file is opened.
@@ -49,6 +50,9 @@ pub(super) fn read(
     let Pass { mut mesh, mut report, material_names, libraries, .. } = pass;
     let home = folder.map(|folder| mtl::Home { folder, model: name });
     mesh.materials = mtl::resolve(&material_names, &libraries, home, &mut report);
+    if !mesh.colors.is_empty() {
+        palette::paint(&mut mesh, &mut report);
+    }
     assemble(mesh, name, source, options, report, &Part { whole: progress, start: 0.6, length: 0.4 })
 }
 

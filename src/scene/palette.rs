@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use super::assemble::Mesh;
+use super::mesh::Mesh;
 use super::mtl::GRAY;
 use super::{Material, Report};
 
@@ -29,10 +29,7 @@ struct Pot {
 /// material without a color of its own, [`GRAY`], counts as white). What lets light through stays.
 pub(super) fn paint(mesh: &mut Mesh, report: &mut Report) {
     let mut means: Vec<(u32, [f32; 3])> = Vec::new();
-    let mut start = 0;
-    for (k, face) in mesh.faces.iter().enumerate() {
-        let corners = &mesh.corners[start..face.end as usize];
-        start = face.end as usize;
+    for (k, corners) in mesh.rings().enumerate() {
         let mut sum = [0.0f32; 3];
         for &corner in corners {
             let color = mesh.colors.get(corner as usize).copied().unwrap_or(Mesh::NO_COLOR);

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::scene::assemble::{Mesh, RawFace};
+use crate::scene::mesh::{Mesh, RawFace};
 use crate::scene::{Material, Object};
 
 /// Where shapes go: into a mesh, or only into a count.

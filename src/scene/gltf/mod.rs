@@ -34,7 +34,8 @@ use self::paint::Palette;
 use self::shape::Shape;
 use self::skin::Skin;
 use self::tree::{Stand, Tree, turn};
-use super::assemble::{Mesh, assemble};
+use super::assemble::assemble;
+use super::mesh::Mesh;
 use super::{Dropped, LoadOptions, Object, Part, Parts, Pose, Progress, Report, SceneError};
 use crate::geometry::{Aabb, Solid};
 
