@@ -108,12 +108,12 @@ fn broken_files_are_refused() {
         (changed("\"children\":[1]", "\"children\":[1,1]"), "m.gltf: node 1 is in the tree twice"),
         (
             changed("\"indices\":1", "\"indices\":1,\"mode\":1"),
-            "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes); 1 primitive of points or lines \
+            "m.gltf: it has no triangles in its scene (1 mesh, 2 nodes); 1 primitive of points or lines \
              left out (mesh 0)",
         ),
         (
             changed("\"nodes\":[0]", "\"nodes\":[]"),
-            "m.gltf: it has no triangles in its scene (1 meshes, 2 nodes); 1 mesh is shown by no node of the \
+            "m.gltf: it has no triangles in its scene (1 mesh, 2 nodes); 1 mesh is shown by no node of the \
              scene (mesh 0)",
         ),
         (
@@ -305,4 +305,22 @@ fn a_rigid_animation_becomes_a_motion() {
     let grown = solid("m.gltf", animated("scale").as_bytes());
     assert_eq!(grown.frame_count(), 1);
     assert_eq!(grown.report().notes, ["1 object scaled by the animation stands still (`wall`)"]);
+}
+
+#[test]
+fn a_chunk_that_is_not_padded_is_followed_at_once() {
+    // Section 4.4.3.1 asks for padding; some writers leave it out, others do not count it.
+    let good = glb();
+    let length = u32::from_le_bytes([good[12], good[13], good[14], good[15]]) as usize;
+    assert_eq!(length % 4, 0);
+    for (spaces, padding) in [(1, 0), (2, 0), (1, 3), (2, 2)] {
+        let mut bytes = good[..20 + length].to_vec();
+        bytes.extend(vec![b' '; spaces]);
+        bytes[12..16].copy_from_slice(&((length + spaces) as u32).to_le_bytes());
+        bytes.extend(vec![0; padding]);
+        bytes.extend(&good[20 + length..]);
+        let whole = (bytes.len() as u32).to_le_bytes();
+        bytes[8..12].copy_from_slice(&whole);
+        assert_eq!(counts(&solid("m.glb", &bytes)), (2, 2, vec![]), "{spaces} {padding}");
+    }
 }

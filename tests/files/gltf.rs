@@ -215,12 +215,16 @@ fn what_a_file_is_not_is_said() {
     web.json["buffers"] = json!([{"byteLength": 60, "uri": "https://example.com/a.bin"}]);
     let one = br#"{"asset":{"version":"1.0"},"scenes":{"s":{"nodes":["n"]}},"nodes":{"n":{"meshes":[]}}}"#;
     let pointer = b"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 36\n";
-    let cases: [(&[u8], &str); 5] = [
+    let cases: [(&[u8], &str); 6] = [
         (one, "m.gltf: glTF 1.0 is not supported, only 2"),
         (
             &web.text(),
             "m.gltf: buffer file https://example.com/a.bin: it is an address on the web, and nothing is \
              fetched; put `a.bin` beside the model and name it there",
+        ),
+        (
+            br#"{"asset":{"version":1,"generator":"old"},"nodes":{},"meshes":{}}"#,
+            "m.gltf: glTF 1 is not supported, only 2",
         ),
         (pointer, "m.gltf: is a Git LFS pointer, not the file itself; `git lfs pull` brings the file"),
         (b"\x1f\x8b\x08\0", "m.gltf: is compressed with gzip; unpack it first (`gunzip`)"),
@@ -266,10 +270,8 @@ fn only_the_first_buffer_may_be_the_binary_chunk() {
         glb.extend(kind);
         glb.extend(part);
     }
-    assert_eq!(
-        error("m.glb", &glb),
-        "m.glb: buffer 1 has no URI, and only buffer 0 may be the binary chunk of a GLB"
-    );
+    let said = error("m.glb", &glb);
+    assert_eq!(said, "m.glb: buffer 1 has no URI, and only buffer 0 may be the binary chunk of a GLB");
 }
 
 #[test]

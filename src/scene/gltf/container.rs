@@ -27,9 +27,9 @@ pub(super) fn open<'a>(
     }
     let read: Result<Gltf, SceneError> = json::from_slice(utf8.as_bytes(), source);
     let version = match &read {
-        Ok(gltf) => gltf.asset.version.clone(),
+        Ok(gltf) => gltf.asset.version(),
         // Another version has other types, which is then the better reason.
-        Err(_) => serde_json::from_str::<Head>(&utf8).map(|h| h.asset.version).unwrap_or_default(),
+        Err(_) => serde_json::from_str::<Head>(&utf8).map(|h| h.asset.version()).unwrap_or_default(),
     };
     let major = version.split('.').next().unwrap_or_default();
     if !matches!(major, "" | "2") {
@@ -69,8 +69,11 @@ fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
             b"BIN\0" if blob.is_none() => blob = Some(chunk),
             _ => {}
         }
-        // Chunks are padded to four bytes.
-        at += 8 + (size as usize).next_multiple_of(4);
+        // Chunks end at a multiple of four bytes. Some writers forget to pad, others to count the padding.
+        at += 8 + size as usize;
+        if bytes.get(at + 4..at + 8) != Some(b"BIN\0") {
+            at = at.next_multiple_of(4);
+        }
     }
     text.map(|t| (t, blob)).ok_or_else(|| "the GLB has no JSON chunk".into())
 }

@@ -47,7 +47,18 @@ pub(super) struct Gltf {
 #[derive(Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Asset {
-    pub(super) version: String,
+    version: Value,
+}
+
+impl Asset {
+    /// The version, which old files give as a number; empty if there is none.
+    pub(super) fn version(&self) -> String {
+        match &self.version {
+            Value::String(version) => short(version),
+            Value::Number(version) => version.to_string(),
+            _ => String::new(),
+        }
+    }
 }
 
 /// What tells a file of another version, whose other parts have other shapes.

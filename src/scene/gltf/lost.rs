@@ -43,7 +43,7 @@ const HARMLESS: &[&str] = &[
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "KHR_physics_",
-    "KHR_techniques_webgl",
+    "KHR_technique",
     "KHR_texture_",
     "KHR_xmp",
     "MSFT_lod",
@@ -156,7 +156,14 @@ impl Lost {
     }
 }
 
-/// "1 thing", "2 things".
+/// "1 light", "2 lights", "2 meshes".
 pub(super) fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+    let ending = if count == 1 {
+        ""
+    } else if thing.ends_with('h') {
+        "es"
+    } else {
+        "s"
+    };
+    format!("{count} {thing}{ending}")
 }

@@ -96,8 +96,8 @@ pub(super) fn read(
 
 /// Why there is nothing to show: what there is, and the first of what was noticed.
 fn why_empty(gltf: &Gltf, report: &Report) -> String {
-    let (meshes, nodes) = (gltf.meshes.len(), gltf.nodes.len());
-    let mut why = format!("it has no triangles in its scene ({meshes} meshes, {nodes} nodes)");
+    let (meshes, nodes) = (counted(gltf.meshes.len(), "mesh"), counted(gltf.nodes.len(), "node"));
+    let mut why = format!("it has no triangles in its scene ({meshes}, {nodes})");
     for note in report.notes.iter().take(3) {
         why += "; ";
         why += note;

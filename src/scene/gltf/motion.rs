@@ -11,6 +11,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 
 use super::data::{Data, components};
 use super::file::{Animation, Channel, Gltf, Index, Interpolation};
+use super::lost::counted;
 use super::tree::{Stand, Tree, local, turn};
 use crate::scene::{Pose, Progress, Report};
 
@@ -210,10 +211,10 @@ impl Curves<'_, '_> {
             }
             curves.entry(node).or_default().push(self.read(animation, channel, property)?);
         }
-        for (count, what) in [(shapes, "of morph targets"), (pointers, "of other properties than nodes have")]
-        {
+        for (count, what) in [(shapes, "for morph targets"), (pointers, "for what is no node")] {
             if count > 0 {
-                report.note(format!("{count} channels of the animation {what} left out"));
+                let channels = counted(count, "channel");
+                report.note(format!("{channels} of the animation {what} left out"));
             }
         }
         Ok(curves)
