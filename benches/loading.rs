@@ -1,5 +1,5 @@
-//! How fast a model of a million triangles is read, beside `tobj` and `gltf` alone, which check less and make no
-//! scene: in turn, out of memory, medians.
+//! How fast a model of a million triangles is read, beside `tobj` and `gltf` alone, which check less and make
+//! no scene: in turn, out of memory, medians.
 //! `cargo bench --no-default-features --bench loading`.
 
 use std::fmt::Write as _;

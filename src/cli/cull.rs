@@ -139,8 +139,8 @@ fn moving_frames<S: World>(
     Ok(all)
 }
 
-/// Every frame of some views twice: timed, then counted, each time from no memory, so that what a method keeps from frame
-/// to frame is what it would keep.
+/// Every frame of some views twice: timed, then counted, each time from no memory, so that what a method
+/// keeps from frame to frame is what it would keep.
 fn frames<S: World>(
     args: &Args,
     scene: &Scene<S>,

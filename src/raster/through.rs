@@ -5,8 +5,9 @@ use crate::geometry::{PrimId, View};
 use crate::scene::Scene;
 
 /// Calls `visit` with each pixel of an image in which a see-through primitive shows, by its place row by row,
-/// and the depth `1/w` of it there. At equal depth it shows: what is painted on a wall is seen. Of `prims` those that are not
-/// see-through are passed over. The order of the calls is that of `prims`. Cost: O(covered pixels).
+/// and the depth `1/w` of it there. At equal depth it shows: what is painted on a wall is seen. Of `prims`
+/// those that are not see-through are passed over. The order of the calls is that of `prims`. Cost: O(covered
+/// pixels).
 ///
 /// # Panics
 /// If the image has not the view's size.
