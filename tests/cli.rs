@@ -416,10 +416,8 @@ fn converted_scenes_are_the_same_scenes() {
     fs::write(here.join("mixed.mtl"), library).expect("written");
     let said = cullscope(&here, &["scene", "convert", "mixed.obj", "again.obj"]);
     let said = String::from_utf8_lossy(&said.stderr).into_owned();
-    assert!(said.contains("1 objects are written under other names") && said.contains("`same` as `same.2`"));
-    assert!(
-        said.contains("1 materials are see-through, by how much is not known; written with `d 0.5`: `c`")
-    );
+    assert!(said.contains("and on a line: 1 object (`same` as `same.2`)"));
+    assert!(said.contains("`d 0.5`, since how see-through is not known: 1 material (`c`)"));
     let written = fs::read_to_string(here.join("again.obj")).expect("written");
     let lines: Vec<&str> = written.lines().filter(|l| "ogu".contains(&l[..1])).collect();
     assert_eq!(

@@ -100,10 +100,11 @@ fn losses(scene: &Scene<Solid>, names: &Names) -> Vec<String> {
         .filter(|(o, (name, group))| o.name != *name || o.group != *group)
         .map(|(o, (name, _))| format!("`{}` as `{name}`", on_a_line(&o.name)))
         .collect();
-    let listed = |what: &str, list: Vec<String>| {
-        let more = if list.len() > 4 { ", …" } else { "" };
+    let listed = |what: &str, noun: &str, list: Vec<String>| {
+        let (count, more) = (list.len(), if list.len() > 4 { ", …" } else { "" });
+        let noun = if count == 1 { noun.to_owned() } else { format!("{noun}s") };
         let first = list.iter().take(4).cloned().collect::<Vec<_>>().join(", ");
-        (!list.is_empty()).then(|| format!("{} {what}: {first}{more}", list.len()))
+        (count > 0).then(|| format!("{what}: {count} {noun} ({first}{more})"))
     };
     let quoted = |name: &String| format!("`{}`", on_a_line(name));
     let moving = objects.iter().filter(|o| o.motion.is_some()).map(|o| quoted(&o.name)).collect();
@@ -113,14 +114,11 @@ fn losses(scene: &Scene<Solid>, names: &Names) -> Vec<String> {
         scene.materials().iter().filter(|m| keep(m)).map(|m| quoted(&m.name)).collect()
     };
     let lines = [
-        listed("objects are written under other names, to stay apart and on their line", renamed),
-        listed("objects move, which OBJ cannot say; they are written as they stand at rest", moving),
-        listed("objects have no triangle, so they are not written", empty),
-        listed(
-            "materials are see-through, by how much is not known; written with `d 0.5`",
-            of(|m| m.see_through),
-        ),
-        listed("materials are two-sided, which OBJ cannot say", of(|m| m.two_sided)),
+        listed("written under another name, to stay apart and on a line", "object", renamed),
+        listed("written at rest, since OBJ holds no motion", "object", moving),
+        listed("not written, since nothing of it is drawn", "object", empty),
+        listed("written with `d 0.5`, since how see-through is not known", "material", of(|m| m.see_through)),
+        listed("two-sided, which OBJ cannot say", "material", of(|m| m.two_sided)),
     ];
     lines.into_iter().flatten().collect()
 }

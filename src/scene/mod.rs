@@ -369,7 +369,18 @@ impl From<Scene<Solid>> for AnyScene {
 
 fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
     use crate::geometry::Vector;
-    let mut hash = Sha256::new();
+    /// Hands the hash whole blocks: a call for every number would take longer than the hashing.
+    struct Blocks(Sha256, Vec<u8>);
+    impl Blocks {
+        fn update(&mut self, bytes: impl AsRef<[u8]>) {
+            self.1.extend_from_slice(bytes.as_ref());
+            if self.1.len() > 1 << 15 {
+                self.0.update(&self.1);
+                self.1.clear();
+            }
+        }
+    }
+    let mut hash = Blocks(Sha256::new(), Vec::new());
     hash.update(S::NAME);
     for p in &parts.points {
         (0..S::Vector::AXES).for_each(|a| hash.update(p.get(a).to_le_bytes()));
@@ -387,7 +398,8 @@ fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
             hash.update([u8::from(material.see_through), u8::from(material.two_sided)]);
         }
     }
-    hash.finalize().into()
+    hash.0.update(&hash.1);
+    hash.0.finalize().into()
 }
 
 /// A view that frames the whole scene: from the front, right and above in space; from below in flatland. Its

@@ -12,6 +12,7 @@ use glam::DVec3;
 
 use super::assemble::assemble;
 use super::mesh::{Mesh, RawFace};
+use super::report::counted;
 use super::text::{Lines, is_decimal_comma, keyword, name_of, number, without_mark, words};
 use super::{Dropped, LoadOptions, Object, Part, Parts, Progress, Report, SceneError, mtl, palette};
 use crate::geometry::Solid;
@@ -144,13 +145,13 @@ impl<'a> Pass<'a> {
             b"g" => self.rename(|n| n.1 = rest.to_vec()),
             b"usemtl" => self.use_material(rest),
             b"mtllib" => self.libraries.push((line, name_of(rest))),
-            b"l" => *self.ignored.entry("line elements").or_default() += 1,
-            b"p" => *self.ignored.entry("point elements").or_default() += 1,
+            b"l" => *self.ignored.entry("line element").or_default() += 1,
+            b"p" => *self.ignored.entry("point element").or_default() += 1,
             b"vp" | b"curv" | b"curv2" | b"surf" | b"deg" | b"cstype" | b"bmat" | b"step" | b"parm"
             | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"mg" => {
                 *self.curves.entry(key.to_vec()).or_default() += 1
             }
-            b"usemap" | b"maplib" => *self.ignored.entry("statements on textures").or_default() += 1,
+            b"usemap" | b"maplib" => *self.ignored.entry("texture statement").or_default() += 1,
             b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"shadow_obj" | b"trace_obj" | b"ctech"
             | b"stech" => {}
             _ => self.unknown_statement(line, key),
@@ -324,7 +325,7 @@ impl<'a> Pass<'a> {
 
     fn tell(&mut self) {
         for (what, count) in std::mem::take(&mut self.ignored) {
-            self.report.note(format!("{}: {count} {what} ignored", self.source));
+            self.report.note(format!("{}: {} ignored", self.source, counted(count, what)));
         }
         if !self.curves.is_empty() {
             let told = self.curves.iter().map(|(key, count)| format!("`{}` ({count})", name_of(key)));
@@ -336,7 +337,8 @@ impl<'a> Pass<'a> {
             self.note(
                 line,
                 format_args!(
-                    "not UTF-8 from here on in {count} lines; names are shown as far as they can be"
+                    "not UTF-8 from here on in {}; names are shown as far as they can be",
+                    counted(count, "line")
                 ),
             );
         }
@@ -347,9 +349,14 @@ impl<'a> Pass<'a> {
             let is_known = matches!(small.as_slice(), b"v" | b"f" | b"o" | b"g" | b"usemtl" | b"mtllib");
             let hint = if is_known { "; keywords are in small letters" } else { "" };
             let (source, key) = (self.source, name_of(key));
-            self.report.note_each("obj: unknown", format_args!("`{key}`, {count} times"), || {
-                format!("{source}:{line}: unknown statement `{key}`, {count} times, ignored{hint}")
-            });
+            self.report.note_each(
+                "obj: unknown",
+                format_args!("`{key}` in {}", counted(*count, "line")),
+                || {
+                    let lines = counted(*count, "line");
+                    format!("{source}:{line}: unknown statement `{key}` in {lines} ignored{hint}")
+                },
+            );
         }
     }
 
@@ -373,7 +380,7 @@ impl<'a> Pass<'a> {
         }
         let mut report = self.report.clone();
         report.settle();
-        format!("it has no faces ({} points){}", self.mesh.points.len(), report.reasons())
+        format!("it has no faces ({}){}", counted(self.mesh.points.len(), "point"), report.reasons())
     }
 }
 

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use super::mesh::Mesh;
 use super::mtl::GRAY;
+use super::report::counted;
 use super::{Material, Report};
 
 /// Colors that stay as they are.
@@ -70,9 +71,9 @@ pub(super) fn paint(mesh: &mut Mesh, report: &mut Report) {
         }
     }
     report.note(format!(
-        "colors at points: {} faces have the mean color of their corners, in {} materials",
-        means.len(),
-        pots.len()
+        "colors at points: the mean of the corners for {}, in {}",
+        counted(means.len(), "face"),
+        counted(pots.len(), "material")
     ));
 }
 
@@ -121,10 +122,7 @@ mod tests {
         let (mesh, report) = painted(&[red, [0.5, 0.25, 1.0], red], Material::new("default", GRAY));
         let of = |k: usize| mesh.materials[mesh.faces[k].material as usize].color;
         assert_eq!((of(0), of(1), of(2), mesh.materials.len()), (red, [0.5, 0.25, 1.0], red, 3));
-        assert_eq!(
-            report.notes,
-            ["colors at points: 3 faces have the mean color of their corners, in 2 materials"]
-        );
+        assert_eq!(report.notes, ["colors at points: the mean of the corners for 3 faces, in 2 materials"]);
         let glass = Material { see_through: true, ..Material::new("glass", [0.5, 1.0, 1.0]) };
         let (mesh, _) = painted(&[red], glass);
         let tinted = &mesh.materials[mesh.faces[0].material as usize];

@@ -127,6 +127,18 @@ impl Report {
     }
 }
 
+/// "1 light", "2 lights", "2 meshes".
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    let ending = if count == 1 {
+        ""
+    } else if thing.ends_with('h') {
+        "es"
+    } else {
+        "s"
+    };
+    format!("{count} {thing}{ending}")
+}
+
 /// Why a scene was refused. Displays as one line that says what, where and why.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {

@@ -3,10 +3,12 @@
 use glam::{DVec3, Vec3};
 
 use super::mesh::Mesh;
+use super::report::counted;
 use super::{Progress, Recenter};
 
 /// Greatest magnitude of a coordinate, world units: a product of three of them still fits 32 bits.
 pub const MAX_COORDINATE: f64 = 1e12;
+
 /// What to subtract: nothing, unless 32-bit coordinates would lose detail. `None` when cancelled.
 ///
 /// A model whose middle is farther away than [`FAR`] times its extent goes to the origin as a whole. Else, if
@@ -114,8 +116,10 @@ pub(super) fn price(points: &[DVec3], origin: DVec3, spoiled: usize, lost: usize
     // One digit that is not zero.
     let digits = (-greatest.max(1e-30).log10()).ceil().max(0.0) as usize;
     format!(
-        "rounding to 32 bits moves points by up to {greatest:.digits$} units; it changes the area of \
-         {spoiled} faces by more than an eighth, and {lost} triangles are lost by it"
+        "rounding to 32 bits moves points by up to {greatest:.digits$} units; that changes the area of {} by \
+         more than an eighth, and takes {}",
+        counted(spoiled, "face"),
+        counted(lost, "triangle")
     )
 }
 

@@ -19,17 +19,17 @@ fn files_without_a_face_are_refused_with_a_guess_at_what_they_are() {
         (b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "it has no faces (3 points)"),
         (
             b"v 0 0 0\nv 1 0 0\nl 1 2\np 1\n",
-            "it has no faces (2 points): m.obj: 1 line elements ignored; m.obj: 1 point elements ignored",
+            "it has no faces (2 points): m.obj: 1 line element ignored; m.obj: 1 point element ignored",
         ),
         (
             b"v 0 0 0\nf 1 1\nf 1\n",
-            "it has no faces (1 points): m.obj:2: a face of 2 needs three corners, so it was left out (and 1 \
+            "it has no faces (1 point): m.obj:2: a face of 2 needs three corners, so it was left out (and 1 \
              more: line 3)",
         ),
         (
             b"V 0 0 0\nF 1 1 1\nF 1 1 1\n",
-            "it has no faces (0 points): m.obj:1: unknown statement `V`, 1 times, ignored; keywords are in \
-             small letters (and 1 more: `F`, 2 times)",
+            "it has no faces (0 points): m.obj:1: unknown statement `V` in 1 line ignored; keywords are in \
+             small letters (and 1 more: `F` in 2 lines)",
         ),
         (stl.as_bytes(), "this is an STL file, not an OBJ"),
         (b"<!DOCTYPE html>\n<html><body>404</body></html>", "this is HTML or XML, not an OBJ"),
@@ -189,9 +189,9 @@ fn what_is_no_face_is_left_out_and_told() {
     assert_eq!(counts(&scene), (1, 1, vec![]));
     let want = [
         "m.obj: 2 line elements ignored",
-        "m.obj: 1 point elements ignored",
+        "m.obj: 1 point element ignored",
         "m.obj: curves and surfaces are not read: `curv` (1), `vp` (1)",
-        "m.obj:11: unknown statement `facets`, 2 times, ignored",
+        "m.obj:11: unknown statement `facets` in 2 lines ignored",
     ];
     assert_eq!(scene.report().notes, want);
 }
@@ -206,8 +206,8 @@ fn a_flood_of_complaints_is_cut_off_and_counted() {
     assert_eq!(
         *notes,
         [
-            "m.obj:7: unknown statement `q0`, 1 times, ignored (and 32 more: `q1`, 1 times, `q2`, 1 times, \
-             `q3`, 1 times, `q4`, 1 times, …)",
+            "m.obj:7: unknown statement `q0` in 1 line ignored (and 32 more: `q1` in 1 line, `q2` in 1 line, \
+             `q3` in 1 line, `q4` in 1 line, …)",
             "m.obj:6: corner 50 is past the last of 4 points, so the face is dropped (and 4999 more: line 8, \
              line 10, line 12, line 14, …)",
         ]
@@ -332,8 +332,8 @@ fn a_marker_at_the_origin_does_not_take_the_detail_of_the_rest() {
     assert!(notes[0].starts_with("recentered: (512"), "{notes:?}");
     assert_eq!(
         notes[1..],
-        ["rounding to 32 bits moves points by up to 0.10 units; it changes the area of 1 faces by more \
-          than an eighth, and 1 triangles are lost by it"]
+        ["rounding to 32 bits moves points by up to 0.10 units; that changes the area of 1 face by more \
+          than an eighth, and takes 1 triangle"]
     );
 }
 
@@ -372,7 +372,7 @@ fn colors_at_points_become_materials() {
         assert_eq!(scene.color_of(PrimId(0)), [1.0, 0.0, 0.0], "{text}");
         assert_eq!(
             scene.report().notes,
-            ["colors at points: 1 faces have the mean color of their corners, in 1 materials"]
+            ["colors at points: the mean of the corners for 1 face, in 1 material"]
         );
     }
     // A face at a point without a color keeps its material.

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DMat4, DVec3};
 
 use super::file::{Gltf, Index, Perspective, short};
-use super::lost::counted;
 use super::tree::Tree;
 use crate::geometry::{Aabb, Eye, Solid, View, ViewPath};
 use crate::scene::Report;
+use crate::scene::report::counted;
 
 /// Longer side of a camera's image, pixels.
 const LONGER_SIDE: f64 = 1024.0;

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::file::{Gltf, Image, Lenient, Skin, Texture, TextureSampler};
 use crate::scene::Report;
+use crate::scene::report::counted;
 
 /// Extensions that are read.
 const READ: &[&str] = &[
@@ -154,16 +155,4 @@ impl Lost {
             report.note(format!("{said} ({names}{more})"));
         }
     }
-}
-
-/// "1 light", "2 lights", "2 meshes".
-pub(super) fn counted(count: usize, thing: &str) -> String {
-    let ending = if count == 1 {
-        ""
-    } else if thing.ends_with('h') {
-        "es"
-    } else {
-        "s"
-    };
-    format!("{count} {thing}{ending}")
 }

@@ -28,7 +28,7 @@ use glam::{DMat4, DVec3};
 
 use self::data::Data;
 use self::file::{Gltf, Index, short};
-use self::lost::{Lost, Sentence, counted};
+use self::lost::{Lost, Sentence};
 use self::motion::Clip;
 use self::paint::Palette;
 use self::shape::Shape;
@@ -36,6 +36,7 @@ use self::skin::Skin;
 use self::tree::{Stand, Tree, turn};
 use super::assemble::assemble;
 use super::mesh::Mesh;
+use super::report::counted;
 use super::{Dropped, LoadOptions, Object, Part, Parts, Pose, Progress, Report, SceneError};
 use crate::geometry::{Aabb, Solid};
 

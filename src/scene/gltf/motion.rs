@@ -11,8 +11,8 @@ use glam::{DMat3, DMat4, DQuat, DVec3, Vec3};
 
 use super::data::{Data, components};
 use super::file::{Animation, Channel, Gltf, Index, Interpolation};
-use super::lost::counted;
 use super::tree::{Stand, Tree, local, turn};
+use crate::scene::report::counted;
 use crate::scene::{Pose, Progress, Report};
 
 /// Frames of a second of animation.
