@@ -459,6 +459,13 @@ fn figures_are_written_the_same_each_time() {
             .map(|out| fs::read(here.join(out).join(format!("{name}.{extension}"))).expect("a figure"));
         assert!(a == b && String::from_utf8_lossy(&a).starts_with(magic), "{extension}");
     }
+    let written = |text: &str| {
+        done(&here, &["figure", name, "--text", text, "--out", "text"]);
+        fs::read_to_string(here.join("text").join(name).with_extension("svg")).expect("a figure")
+    };
+    let (fonts, paths) = (written("fonts"), written("paths"));
+    assert!(fonts.contains("<text") && fonts.contains("@font-face") && !fonts.contains("--text"));
+    assert!(!paths.contains("<text") && !paths.contains("<style") && paths.contains("--text paths"));
     assert!(refused(&here, &["figure", &name[1..]], 2).contains(&format!("did you mean `{name}`?")));
     refused(&here, &["figure"], 2);
     refused(&here, &["figure", "--all", name], 2);

@@ -2,20 +2,22 @@
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::PathBuf;
+use std::{fs, io};
 
 use super::error::reason;
 use super::progress::Bar;
 use super::{CliError, output, suggest};
 use crate::papers::{self, Figure};
-use crate::render::{self, Format, Theme};
+use crate::render::{self, Format, SvgOptions, Theme};
 use crate::scene::Progress;
 
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  cullscope figure coorg-teller-figure-4 --format svg,pdf --out figures\n  \
-                  cullscope figure --list\n  cullscope figure --all"
+                  cullscope figure --list\n  cullscope figure --all\n\n\
+                  For LaTeX write pdf and use \\includegraphics. With the svg package TeX sets the text: \
+                  it runs out of the page, and signs like _ and % stop TeX."
 )]
 pub(super) struct Args {
     /// Which figures; --list names them
@@ -33,6 +35,9 @@ pub(super) struct Args {
     /// Colors
     #[arg(long, value_enum, default_value = "print")]
     theme: Colors,
+    /// Letters in SVG files; PDF files carry their fonts, PNG files have none
+    #[arg(long, value_enum, default_value = "fonts")]
+    text: Letters,
     /// Folder for the files; it is made if it is missing
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
@@ -43,6 +48,14 @@ enum Colors {
     Light,
     Dark,
     Print,
+}
+
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+enum Letters {
+    /// Text that can be found and edited; where our font is not read, in a similar one
+    Fonts,
+    /// Outlines: the same in every program, but no longer text
+    Paths,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
@@ -61,7 +74,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Colors::Print => Theme::Print,
     };
     let formats: BTreeSet<Format> = args.format.iter().copied().collect();
-    fs::create_dir_all(&args.out).map_err(|e| CliError::work(args.out.display().to_string(), reason(&e)))?;
+    fs::create_dir_all(&args.out).map_err(|e| {
+        let taken = e.kind() == io::ErrorKind::AlreadyExists;
+        let why = if taken { "this is a file, not a folder".into() } else { reason(&e) };
+        CliError::work(args.out.display().to_string(), why)
+    })?;
     let bar = Bar::new();
     for (i, figure) in figures.iter().enumerate() {
         bar.report(i as f32 / figures.len() as f32, "making figures");
@@ -69,10 +86,18 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             return Err(CliError::Interrupted);
         }
         let drawing = figure.drawing(&|role| theme.flat_linear(role))?;
-        let recipe = format!("cullscope figure {} --theme {}", figure.name, theme.name());
+        let outline_text = args.text == Letters::Paths;
+        let letters = if outline_text { " --text paths" } else { "" };
+        let recipe = format!("cullscope figure {} --theme {}{letters}", figure.name, theme.name());
         for format in &formats {
-            let bytes = render::export(&drawing, *format, theme, &recipe)
-                .map_err(|e| CliError::work(figure.name, e.to_string()))?;
+            let bytes = match format {
+                Format::Svg => {
+                    let options = SvgOptions { outline_text, metadata: Some(&recipe) };
+                    render::svg(&drawing, theme, &options).into_bytes()
+                }
+                Format::Pdf | Format::Png => render::export(&drawing, *format, theme, &recipe)
+                    .map_err(|e| CliError::work(figure.name, e.to_string()))?,
+            };
             let path = args.out.join(format!("{}.{}", figure.name, format.name()));
             output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
             output::print(format!("{}\n", path.display()).as_bytes())?;

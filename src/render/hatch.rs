@@ -1,7 +1,7 @@
-//! Hatches as clipped lines and dots, for readers that have no patterns of their own.
+//! Hatches as clipped lines and dots: not every program that opens a figure knows patterns.
 //!
-//! The phase is fixed to the paper, so the hatches of neighboring areas run on into each other and agree with
-//! the `<pattern>` of an SVG file. Any simple polygon will do. Cost: lines inside the window times corners.
+//! The phase is fixed to the paper, so the hatches of neighboring areas run on into each other. Any
+//! simple polygon will do. Cost: lines inside the window times corners.
 
 use glam::{Vec2, vec2};
 

@@ -1,10 +1,13 @@
-//! Drawings as PDF 1.7: one page, vectors, our fonts embedded, text that can be searched and copied.
+//! Drawings as PDF 1.5, which pdfTeX takes without a warning: one page, vectors, our fonts embedded, text
+//! that can be searched and copied.
 //!
 //! The same drawing gives the same bytes: no date is written, and the document's id is a hash of its content.
 //! The recipe is an embedded file, as plain bytes, so that it can be read back without a PDF reader.
 
 use glam::Vec2;
+use krilla::SerializeSettings;
 use krilla::color::rgb;
+use krilla::configure::{ConfigurationBuilder, PdfVersion};
 use krilla::embed::{AssociationKind, EmbeddedFile, MimeType};
 use krilla::geom::{Path, PathBuilder, Point, Size, Transform};
 use krilla::image::Image;
@@ -21,6 +24,7 @@ use crate::drawing::{Drawing, Font, Pixels, metrics};
 use super::RenderError;
 use super::hatch::hatching;
 use super::piece::{self, Line, Paint, Piece, Shape};
+use super::png::enlarged;
 use super::theme::{HATCH_WIDTH_PT, Hatch, Look, Rgb};
 
 /// Name of the embedded file with the recipe.
@@ -40,7 +44,12 @@ pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> 
     }
     let settings = PageSettings::from_wh(size.x, size.y)
         .ok_or(RenderError::Page { width_pt: size.x, height_pt: size.y })?;
-    let mut document = Document::new();
+    let configuration = ConfigurationBuilder::new()
+        .with_version(PdfVersion::Pdf15)
+        .finish()
+        .map_err(|e| RenderError::Pdf(format!("{e:?}")))?;
+    let mut document =
+        Document::new_with(SerializeSettings { configuration, ..SerializeSettings::default() });
     document.set_metadata(about(drawing));
     let fonts = Font::ALL
         .map(|f| PdfFont::new(Data::from(metrics::font_bytes(f)), 0))
@@ -211,11 +220,10 @@ impl Canvas<'_> {
 
     fn image(&mut self, min: Vec2, max: Vec2, pixels: &Pixels) {
         let Some(size) = Size::from_wh(max.x - min.x, max.y - min.y) else { return };
+        let seen = Pixels { rgba: self.look.see(&pixels.rgba).into(), ..*pixels };
+        let Pixels { width, height, rgba } = enlarged(&seen, max - min);
         self.surface.push_transform(&Transform::from_translate(min.x, min.y));
-        self.surface.draw_image(
-            Image::from_rgba8(self.look.see(&pixels.rgba).into_owned(), pixels.width, pixels.height),
-            size,
-        );
+        self.surface.draw_image(Image::from_rgba8(rgba.to_vec(), width, height), size);
         self.surface.pop();
     }
 }

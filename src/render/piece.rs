@@ -11,8 +11,8 @@ use crate::drawing::{Anchor, Drawing, Font, Item, Layer, Mark, Pixels, Role, met
 
 use super::theme::{Hatch, Look, Rgb, SIGN_PT, Style};
 
-/// Why a shape is there; also its CSS class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+/// Why a shape is there; also its class in SVG files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Halo,
     Area,
@@ -106,7 +106,7 @@ pub(super) fn each_piece(
     }
 }
 
-/// The paint of a part of a role: what the CSS of an SVG file says in words.
+/// The paint of a part of a role.
 pub(super) fn paint(part: Part, style: &Style) -> Paint {
     let none = Paint { fill: None, hatch: None, stroke: None };
     let line = Stroke { color: style.stroke, width_pt: style.width_pt, dash: style.dash };

@@ -1,4 +1,10 @@
-//! Drawings as SVG 1.1 text: named groups for layers, one class a role, sizes in millimeters.
+//! Drawings as SVG 1.1 text: named groups for layers, sizes in millimeters.
+//!
+//! Paint stands in presentation attributes (SVG 1.1, 6.1) on an element, or on a group of equal ones that
+//! follow each other: there are programs that read no style sheet, or no rule of two classes. Each carries
+//! its part and its role as classes all the same, for authors who restyle a figure. Hatches are lines, not
+//! patterns, and images are linked by `xlink:href`, for the same reason; the only thing in `<style>` is our
+//! fonts, which browsers read.
 //!
 //! The same drawing gives the same bytes: coordinates have two decimals (0.01 pt is 3.5 µm), ids come from
 //! names, and nothing is dated. The recipe stands in `<metadata>`. Text stays text in a subset of our fonts
@@ -11,13 +17,14 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use glam::Vec2;
 
-use crate::drawing::{Anchor, Drawing, Font, Layer, Pixels, Role, Subject, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Pixels, Subject, metrics};
 
 use super::face;
+use super::hatch::hatching;
 use super::number::number;
-use super::piece::{self, Line, Paint, Part, Piece, Shape, Stroke};
-use super::png::png_pixels;
-use super::theme::{HATCH_PT, HATCH_WIDTH_PT, Hatch, Look, Rgb};
+use super::piece::{self, Line, Paint, Piece, Shape, Stroke};
+use super::png::{enlarged, png_pixels};
+use super::theme::{HATCH_WIDTH_PT, Hatch, Look, Rgb};
 
 /// Millimeters in a point.
 const MM_PER_PT: f32 = 25.4 / 72.0;
@@ -38,21 +45,23 @@ pub fn svg(drawing: &Drawing, look: impl Into<Look>, options: &SvgOptions) -> St
 
 /// The same with or without fonts inside; our own rasterizer has them anyway.
 pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: bool) -> String {
+    let size = drawing.size_pt.max(Vec2::ONE);
     let mut writer = Writer {
         look,
+        size,
         outline_text: options.outline_text,
         body: String::new(),
-        parts: BTreeSet::new(),
+        run: Run::default(),
         chars: BTreeMap::new(),
     };
     writer.layers(drawing);
-    let size = drawing.size_pt.max(Vec2::ONE);
     let (w, h) = (number(size.x), number(size.y));
     let mut out = String::with_capacity(writer.body.len() + 4096);
     let _ = writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {w} {h}\" \
-         role=\"img\" aria-labelledby=\"title description\">",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+         width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
+         aria-labelledby=\"title description\">",
         number(size.x * MM_PER_PT),
         number(size.y * MM_PER_PT),
     );
@@ -61,20 +70,49 @@ pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: 
     if let Some(recipe) = options.metadata {
         let _ = writeln!(out, "<metadata id=\"recipe\">{}</metadata>", escape(recipe));
     }
-    writer.style(embed, &mut out);
-    writer.patterns(&mut out);
+    if embed {
+        fonts(&writer.chars, &mut out);
+    }
     let _ = writeln!(out, "<rect id=\"paper\" width=\"{w}\" height=\"{h}\" fill=\"{}\"/>", hex(look.paper()));
     out.push_str(&writer.body);
     out.push_str("</svg>\n");
     out
 }
 
+/// The fonts that a file carries, each with the characters that it uses.
+fn fonts(chars: &BTreeMap<Font, BTreeSet<char>>, out: &mut String) {
+    let mut faces = String::new();
+    for (font, chars) in chars {
+        if let Some(file) = face::subset(*font, chars) {
+            let _ = writeln!(
+                faces,
+                "@font-face {{ font-family: \"{}\"; font-weight: {}; src: \
+                 url(data:font/ttf;base64,{}) format(\"truetype\"); }}",
+                metrics::family(*font),
+                metrics::weight(*font),
+                BASE64.encode(file)
+            );
+        }
+    }
+    if !faces.is_empty() {
+        let _ = write!(out, "<style>\n{faces}</style>\n");
+    }
+}
+
+/// Elements that follow each other and have the same attributes.
+#[derive(Default)]
+struct Run {
+    attributes: String,
+    /// The names of the elements, and what stands behind the shared attributes.
+    elements: Vec<(&'static str, String)>,
+}
+
 struct Writer {
     look: Look,
+    size: Vec2,
     outline_text: bool,
     body: String,
-    /// What the style sheet must define.
-    parts: BTreeSet<(Role, Part)>,
+    run: Run,
     /// What the fonts must have.
     chars: BTreeMap<Font, BTreeSet<char>>,
 }
@@ -82,175 +120,161 @@ struct Writer {
 impl Writer {
     fn layers(&mut self, drawing: &Drawing) {
         let mut open: Option<Layer> = None;
-        piece::each_piece(drawing, self.look, |item, piece, _| {
+        piece::each_piece(drawing, self.look, |item, piece, paint| {
             if open != Some(item.layer) {
+                self.end_run();
                 self.body.push_str(if open.is_some() { "</g>\n" } else { "" });
                 let _ = writeln!(self.body, "<g id=\"layer-{}\">", item.layer.name());
                 open = Some(item.layer);
             }
-            self.piece(piece, &subject(item.subject));
+            self.piece(piece, paint, &subject(item.subject));
         });
+        self.end_run();
         self.body.push_str(if open.is_some() { "</g>\n" } else { "" });
     }
 
-    fn piece(&mut self, piece: &Piece, subject: &str) {
-        self.parts.insert((piece.role, piece.part));
-        let class = format!("class=\"{} {}\"{subject}", piece.part.name(), piece.role.name());
+    /// Adds an element; what it shares with its neighbors is written once.
+    fn element(&mut self, name: &'static str, attributes: &str, rest: String) {
+        if self.run.attributes != attributes {
+            self.end_run();
+            attributes.clone_into(&mut self.run.attributes);
+        }
+        self.run.elements.push((name, rest));
+    }
+
+    fn end_run(&mut self) {
+        let Run { attributes, elements } = std::mem::take(&mut self.run);
         let body = &mut self.body;
-        match &piece.shape {
-            Shape::Path { points, closed } => {
-                let name = if *closed { "polygon" } else { "polyline" };
-                let _ = write!(body, "<{name} {class} points=\"");
-                for (i, p) in points.iter().enumerate() {
-                    let gap = if i == 0 { "" } else { " " };
-                    let _ = write!(body, "{gap}{},{}", number(p.x), number(p.y));
-                }
-                body.push_str("\"/>\n");
+        if let [(name, rest)] = &elements[..] {
+            let _ = writeln!(body, "<{name}{attributes}{rest}");
+        } else if !elements.is_empty() {
+            let _ = writeln!(body, "<g{attributes}>");
+            for (name, rest) in &elements {
+                let _ = writeln!(body, "<{name}{rest}");
             }
-            Shape::Circle { at, radius_pt } => {
-                let _ = writeln!(
-                    body,
-                    "<circle {class} cx=\"{}\" cy=\"{}\" r=\"{}\"/>",
-                    number(at.x),
-                    number(at.y),
-                    number(*radius_pt)
-                );
-            }
-            Shape::Text(line) if self.outline_text => {
-                let _ = write!(body, "<path {class} d=\"");
-                for (_, glyph, x) in piece::glyphs(line) {
-                    face::outline(line.font, glyph.id, Vec2::new(x, line.at.y), line.size_pt, body);
-                }
-                body.push_str("\"/>\n");
-            }
-            Shape::Text(line) => self.text(line, piece, subject),
-            Shape::Image { min, max, pixels } => {
-                let size = *max - *min;
-                let seen = Pixels { rgba: self.look.see(&pixels.rgba).into(), ..**pixels };
-                let _ = writeln!(
-                    body,
-                    "<image{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" \
-                     preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" \
-                     href=\"data:image/png;base64,{}\"/>",
-                    number(min.x),
-                    number(min.y),
-                    number(size.x),
-                    number(size.y),
-                    BASE64.encode(png_pixels(&seen)),
-                );
-            }
+            body.push_str("</g>\n");
         }
     }
 
-    fn text(&mut self, line: &Line, piece: &Piece, subject: &str) {
+    fn piece(&mut self, piece: &Piece, paint: &Paint, subject: &str) {
+        let class = format!(" class=\"{} {}\"", piece.part.name(), piece.role.name());
+        let painted = || class.clone() + &attributes(paint);
+        match &piece.shape {
+            Shape::Path { points, .. } if let Some((hatch, color)) = paint.hatch => {
+                self.hatch(points, hatch, color, &class, subject);
+            }
+            Shape::Path { points, closed } => {
+                let points: Vec<String> =
+                    points.iter().map(|p| format!("{},{}", number(p.x), number(p.y))).collect();
+                let points = points.join(" ");
+                if *closed {
+                    // MuPDF leaves a `<polygon>` open.
+                    self.element("path", &painted(), format!("{subject} d=\"M{points}Z\"/>"));
+                } else {
+                    self.element("polyline", &painted(), format!("{subject} points=\"{points}\"/>"));
+                }
+            }
+            Shape::Circle { at, radius_pt } => {
+                self.element("circle", &painted(), circle(subject, *at, *radius_pt));
+            }
+            Shape::Text(line) if self.outline_text => {
+                let mut rest = format!("{subject} d=\"");
+                for (_, glyph, x) in piece::glyphs(line) {
+                    face::outline(line.font, glyph.id, Vec2::new(x, line.at.y), line.size_pt, &mut rest);
+                }
+                rest.push_str("\"/>");
+                self.element("path", &painted(), rest);
+            }
+            Shape::Text(line) => self.text(line, &painted(), subject),
+            Shape::Image { min, max, pixels } => self.image([*min, *max], pixels, subject),
+        }
+    }
+
+    fn text(&mut self, line: &Line, painted: &str, subject: &str) {
         self.chars.entry(line.font).or_default().extend(line.text.chars());
+        let weight = if metrics::weight(line.font) > 400 { " font-weight=\"bold\"" } else { "" };
+        let family = metrics::families(line.font);
         let anchor = match line.anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        // XML readers fold spaces; indentation and columns need theirs.
-        let spaced = line.text.starts_with(' ') || line.text.ends_with(' ') || line.text.contains("  ");
-        let _ = writeln!(
-            self.body,
-            "<text class=\"{} {} {}\"{subject} x=\"{}\" y=\"{}\" font-size=\"{}\"{anchor}{}>{}</text>",
-            piece.part.name(),
-            piece.role.name(),
-            line.font.name(),
-            number(line.at.x),
+        // XML readers fold spaces, and not all heed `xml:space`: an indentation is a place further right.
+        let words = if line.anchor == Anchor::Start { line.text.trim_start_matches(' ') } else { line.text };
+        let indentation = (line.text.len() - words.len()) as f32 * metrics::glyph(line.font, ' ').advance;
+        let spaced = words.starts_with(' ') || words.ends_with(' ') || words.contains("  ");
+        // MuPDF reads fonts on the element alone.
+        let rest = format!(
+            "{subject} x=\"{}\" y=\"{}\" font-family=\"{family}\" font-size=\"{}\"{weight}{anchor}{}>\
+             {}</text>",
+            number(line.at.x + indentation * line.size_pt),
             number(line.at.y),
             number(line.size_pt),
             if spaced { " xml:space=\"preserve\"" } else { "" },
-            escape(line.text),
+            escape(words),
         );
+        self.element("text", painted, rest);
     }
 
-    /// The style sheet: fonts, then one rule for each part of each role that occurs.
-    fn style(&self, embed: bool, out: &mut String) {
-        out.push_str("<style>\n");
-        for (font, chars) in &self.chars {
-            let (family, weight) = (metrics::family(*font), metrics::weight(*font));
-            if let Some(file) = face::subset(*font, chars).filter(|_| embed) {
-                let data = BASE64.encode(file);
-                let _ = writeln!(
-                    out,
-                    "@font-face {{ font-family: \"{family}\"; font-weight: {weight}; src: \
-                     url(data:font/ttf;base64,{data}) format(\"truetype\"); }}"
-                );
+    /// The lines of a hatch as one path, or its dots.
+    fn hatch(&mut self, points: &[Vec2], hatch: Hatch, color: Rgb, class: &str, subject: &str) {
+        let found = hatching(points, hatch, [Vec2::ZERO, self.size]);
+        if !found.lines.is_empty() {
+            let mut rest = format!("{subject} d=\"");
+            for [a, b] in &found.lines {
+                let _ = write!(rest, "M{} {}L{} {}", number(a.x), number(a.y), number(b.x), number(b.y));
             }
-            let generic = if *font == Font::Mono { "monospace" } else { "sans-serif" };
-            let _ = writeln!(
-                out,
-                ".{} {{ font-family: \"{family}\", {generic}; font-weight: {weight}; font-kerning: none; \
-                 font-variant-ligatures: none; }}",
-                font.name()
+            rest.push_str("\"/>");
+            let stroke = Some(Stroke { color, width_pt: HATCH_WIDTH_PT, dash: &[] });
+            let paint = Paint { fill: None, hatch: None, stroke };
+            self.element("path", &format!("{class}{}", attributes(&paint)), rest);
+        }
+        let paint = Paint { fill: Some((color, 1.0)), hatch: None, stroke: None };
+        for at in found.dots {
+            self.element(
+                "circle",
+                &format!("{class}{}", attributes(&paint)),
+                circle(subject, at, HATCH_WIDTH_PT),
             );
         }
-        for (role, part) in &self.parts {
-            if *part != Part::Image {
-                let rule = rule(*role, &piece::paint(*part, &self.look.style(*role)));
-                let _ = writeln!(out, ".{}.{} {{ {rule} }}", part.name(), role.name());
-            }
-        }
-        out.push_str("</style>\n");
     }
 
-    fn patterns(&self, out: &mut String) {
-        let hatched: Vec<Role> =
-            self.parts.iter().filter(|(_, part)| *part == Part::Hatch).map(|(role, _)| *role).collect();
-        if hatched.is_empty() {
-            return;
-        }
-        out.push_str("<defs>\n");
-        for role in hatched {
-            let style = self.look.style(role);
-            let (s, half, width, color) =
-                (number(HATCH_PT), number(HATCH_PT / 2.0), number(HATCH_WIDTH_PT), hex(style.stroke));
-            let _ = write!(
-                out,
-                "<pattern id=\"hatch-{}\" patternUnits=\"userSpaceOnUse\" width=\"{s}\" height=\"{s}\" \
-                 patternTransform=\"rotate(45)\">",
-                role.name()
-            );
-            let _ = match style.hatch {
-                Hatch::None => Ok(()),
-                Hatch::Diagonal => {
-                    write!(out, "<path d=\"M{half} 0V{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>")
-                }
-                Hatch::Falling => {
-                    write!(out, "<path d=\"M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\"/>")
-                }
-                Hatch::Cross => write!(
-                    out,
-                    "<path d=\"M{half} 0V{s}M0 {half}H{s}\" stroke=\"{color}\" stroke-width=\"{width}\" \
-                     fill=\"none\"/>"
-                ),
-                Hatch::Dots => {
-                    write!(out, "<circle cx=\"{half}\" cy=\"{half}\" r=\"{width}\" fill=\"{color}\"/>")
-                }
-            };
-            out.push_str("</pattern>\n");
-        }
-        out.push_str("</defs>\n");
+    fn image(&mut self, [min, max]: [Vec2; 2], pixels: &Pixels, subject: &str) {
+        let size = max - min;
+        let seen = Pixels { rgba: self.look.see(&pixels.rgba).into(), ..*pixels };
+        let rest = format!(
+            "{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
+             style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{}\"/>",
+            number(min.x),
+            number(min.y),
+            number(size.x),
+            number(size.y),
+            BASE64.encode(png_pixels(&enlarged(&seen, size))),
+        );
+        self.element("image", "", rest);
     }
 }
 
-/// The CSS declarations of a paint.
-fn rule(role: Role, paint: &Paint) -> String {
-    let fill = match (paint.hatch, paint.fill) {
-        (Some(_), _) => format!("fill: url(#hatch-{});", role.name()),
-        (None, Some((color, 1.0))) => format!("fill: {};", hex(color)),
-        (None, Some((color, alpha))) => format!("fill: {}; fill-opacity: {};", hex(color), number(alpha)),
-        (None, None) => "fill: none;".to_owned(),
+fn circle(subject: &str, at: Vec2, radius_pt: f32) -> String {
+    format!("{subject} cx=\"{}\" cy=\"{}\" r=\"{}\"/>", number(at.x), number(at.y), number(radius_pt))
+}
+
+/// A paint as presentation attributes.
+fn attributes(paint: &Paint) -> String {
+    let mut out = match paint.fill {
+        Some((color, 1.0)) => format!(" fill=\"{}\"", hex(color)),
+        Some((color, alpha)) => format!(" fill=\"{}\" fill-opacity=\"{}\"", hex(color), number(alpha)),
+        None => " fill=\"none\"".to_owned(),
     };
-    let Some(Stroke { color, width_pt, dash }) = paint.stroke else { return format!("{fill} stroke: none;") };
-    let mut rule =
-        format!("{fill} stroke: {}; stroke-width: {}; stroke-linejoin: round;", hex(color), number(width_pt));
-    if !dash.is_empty() {
-        let lengths: Vec<String> = dash.iter().map(|d| number(*d)).collect();
-        let _ = write!(rule, " stroke-dasharray: {};", lengths.join(" "));
+    if let Some(Stroke { color, width_pt, dash }) = paint.stroke {
+        let (color, width) = (hex(color), number(width_pt));
+        let _ = write!(out, " stroke=\"{color}\" stroke-width=\"{width}\" stroke-linejoin=\"round\"");
+        if !dash.is_empty() {
+            let lengths: Vec<String> = dash.iter().map(|d| number(*d)).collect();
+            let _ = write!(out, " stroke-dasharray=\"{}\"", lengths.join(" "));
+        }
     }
-    rule
+    out
 }
 
 fn subject(subject: Subject) -> String {

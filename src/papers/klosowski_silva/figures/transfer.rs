@@ -96,7 +96,7 @@ fn arithmetic(transfer: &Transfer, name: char) -> Vec<String> {
     } else {
         format!(
             "     The ray from the center of {name} to the Eye leaves through another side: not star-shaped, \
-             2 × {:.2} = {:.2} with the penalty.",
+             penalized: 2 × {:.2} = {:.2}.",
             n.sum(),
             n.solidity
         )
