@@ -50,7 +50,7 @@ fn glb(scene: &Scene<Solid>) -> Vec<u8> {
         "buffers": [{"byteLength": points.len() + indices.len()}],
     })
     .to_string();
-    while json.len() % 4 != 0 {
+    while !json.len().is_multiple_of(4) {
         json.push(' ');
     }
     let blob = [points, indices].concat();
@@ -98,7 +98,8 @@ fn gltf_alone(bytes: &[u8]) -> usize {
 fn main() {
     let made = load("generate:city?polygons=1000000", &LoadOptions::default(), &Quiet).expect("a city");
     let AnyScene::Solid(scene) = made else { panic!("a model in space") };
-    let pairs: [(&str, &str, Vec<u8>, fn(&[u8]) -> usize); 2] =
+    type Alone = fn(&[u8]) -> usize;
+    let pairs: [(&str, &str, Vec<u8>, Alone); 2] =
         [("m.obj", "tobj", obj(&scene), tobj_alone), ("m.glb", "gltf", glb(&scene), gltf_alone)];
     for (source, peer, bytes, alone) in &pairs {
         assert_eq!(ours(bytes, source), alone(bytes), "{source}: both read the same triangles");
