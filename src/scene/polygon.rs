@@ -37,9 +37,16 @@ pub(super) const MAX_CONCAVE: usize = 1 << 17;
 /// some 100 roundings of a 32-bit coordinate, well below what a pixel shows.
 const PLANAR: f64 = 1e-5;
 
+/// Most times that what is left over of a border is cut in its turn; what is left then becomes a fan.
+const DEEPEST: u8 = 8;
+/// Most passes over the triangles without area of a polygon.
+const PASSES: usize = 32;
+
 /// Reusable tables of the cutter.
 #[derive(Default)]
 pub(super) struct Cutter {
+    /// How many borders are around the one that is cut.
+    depth: u8,
     earcut: Option<Earcut<f64>>,
     flat: Vec<[f64; 2]>,
     /// Corner numbers of the triangles, three each.
@@ -70,7 +77,7 @@ impl Cutter {
         }
         if n == 4 {
             self.quadrilateral();
-        } else if !self.clip_ears() || !self.span_rest(corners) {
+        } else if self.depth > DEEPEST || !self.clip_ears() || !self.span_rest(corners) {
             self.triangles.clear();
             self.fan(n);
         }
@@ -113,7 +120,7 @@ impl Cutter {
         if self.triangles.len() == 3 * (n - 2) {
             return true;
         }
-        let mut inner = Self::default();
+        let mut inner = Self { depth: self.depth + 1, ..Self::default() };
         for ring in loops(n as u32, &self.triangles) {
             // Ears that were not found at all leave the border as it was.
             if ring.len() >= n {
@@ -200,37 +207,37 @@ pub(super) fn turn_edges(triangles: &mut [[u32; 3]], corners: &[DVec3], alive: i
             owner.insert(side, t);
         });
     }
-    loop {
+    // A fan over a straight border opens from one of its ends: each pass goes the other way.
+    for _ in 0..PASSES {
         let before = dead.len();
-        // From the last: a fan over a straight border opens from its far end.
-        for k in (0..dead.len()).rev() {
-            let t = dead[k];
+        dead.reverse();
+        dead.retain(|&t| {
             let length = |(a, b): (u32, u32)| corners[a as usize].distance_squared(corners[b as usize]);
             let around = sides(triangles[t]);
             let longer = |a: usize, b: usize| if length(around[b]) > length(around[a]) { b } else { a };
             let longest = longer(longer(0, 1), 2);
             let (u, v) = around[longest];
             let p = triangles[t][(longest + 2) % 3];
-            let Some(&other) = owner.get(&(v, u)).filter(|o| **o != t) else { continue };
+            let Some(&other) = owner.get(&(v, u)).filter(|o| **o != t) else { return true };
             let c = triangles[other].iter().copied().find(|c| *c != u && *c != v);
-            let Some(c) = c.filter(|c| *c != p) else { continue };
+            let Some(c) = c.filter(|c| *c != p) else { return true };
             let turned = [[p, u, c], [c, v, p]];
-            if turned.iter().all(|t| alive(*t)) && alive(triangles[other]) {
-                (triangles[t], triangles[other]) = (turned[0], turned[1]);
-                for (t, corners) in [(t, turned[0]), (other, turned[1])] {
-                    sides(corners).into_iter().for_each(|side| {
-                        owner.insert(side, t);
-                    });
-                }
-                owner.remove(&(u, v));
-                owner.remove(&(v, u));
-                dead.swap_remove(k);
+            if !(turned.iter().all(|t| alive(*t)) && alive(triangles[other])) {
+                return true;
             }
-        }
+            (triangles[t], triangles[other]) = (turned[0], turned[1]);
+            for (t, corners) in [(t, turned[0]), (other, turned[1])] {
+                sides(corners).into_iter().for_each(|side| {
+                    owner.insert(side, t);
+                });
+            }
+            owner.remove(&(u, v));
+            owner.remove(&(v, u));
+            false
+        });
         if dead.is_empty() || dead.len() == before {
             return;
         }
-        dead.sort_unstable();
     }
 }
 
@@ -329,6 +336,24 @@ mod tests {
         let mut cutter = Cutter::default();
         assert_eq!(cutter.cut(&corners), Shape::Bent);
         assert_eq!(cutter.triangles, [0, 1, 2, 0, 2, 3]);
+    }
+
+    #[test]
+    fn a_long_straight_border_takes_no_long_time() {
+        // The fan begins in the middle of a straight border of many corners: it opens from both ends.
+        let n = 20_000;
+        let mut corners: Vec<DVec3> = (n / 2..=n).map(|k| DVec3::new(f64::from(k), 0.0, 0.0)).collect();
+        corners.extend([DVec3::new(f64::from(n), 9.0, 0.0), DVec3::new(0.0, 9.0, 0.0)]);
+        corners.extend((0..n / 2).map(|k| DVec3::new(f64::from(k), 0.0, 0.0)));
+        let mut cutter = Cutter::default();
+        assert_eq!(cutter.cut(&corners), Shape::Convex);
+        let triangles = cutter.triangles.as_chunks_mut::<3>().0;
+        let calls = std::cell::Cell::new(0);
+        turn_edges(triangles, &corners, |t| {
+            calls.set(calls.get() + 1);
+            area(&corners, &t) > 0.0
+        });
+        assert!(triangles.iter().all(|t| area(&corners, t) > 0.0) && calls.get() < 10 * n, "{calls:?}");
     }
 
     fn cut(corners: &[[f64; 3]]) -> (Vec<u32>, f64) {
