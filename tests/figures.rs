@@ -140,7 +140,8 @@ fn painted(text: &str, zoom: f32, fonts: Option<&OsStr>) -> Pixels {
         ::png::Decoder::new(std::io::Cursor::new(output.stdout)).read_info().expect("a PNG file");
     let mut rgba = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut rgba).expect("a picture");
-    assert_eq!((info.color_type, info.bit_depth), (::png::ColorType::Rgba, ::png::BitDepth::Eight));
+    let kind = (info.color_type, info.bit_depth);
+    assert_eq!(kind, (::png::ColorType::Rgba, ::png::BitDepth::Eight), "what librsvg writes");
     Pixels { width: info.width, height: info.height, rgba: rgba.into() }
 }
 
