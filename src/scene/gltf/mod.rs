@@ -30,14 +30,14 @@ use self::data::Data;
 use self::file::{Gltf, Index, short};
 use self::lost::{Lost, Sentence};
 use self::motion::Clip;
-use self::paint::Palette;
+use self::paint::{Alpha, Materials};
 use self::shape::Shape;
 use self::skin::Skin;
 use self::tree::{Stand, Tree, turn};
 use super::assemble::assemble;
 use super::mesh::Mesh;
 use super::report::counted;
-use super::{Dropped, LoadOptions, Object, Part, Parts, Pose, Progress, Report, SceneError};
+use super::{Dropped, LoadOptions, Object, Part, Parts, Pose, Progress, Report, SceneError, palette};
 use crate::geometry::{Aabb, Solid};
 
 /// Points, corners and instances that every file may multiply to: some gigabytes of tables. A longer file may
@@ -78,13 +78,16 @@ pub(super) fn read(
     let mut reader = Reader::new(&gltf, &data, &tree);
     reader.nodes(source, progress)?;
     reader.tell(&mut report);
-    let Reader { mut mesh, palette, placed, skinned, .. } = reader;
+    let Reader { mut mesh, materials, placed, skinned, .. } = reader;
     if mesh.faces.is_empty() {
         return Err(format(why_empty(&gltf, &report)));
     }
-    mesh.materials = palette.materials;
+    mesh.materials = materials.made;
     lost::left_out(&gltf, &mut report);
     let clip = Clip::read(&gltf, &data, &tree, &mut report);
+    if !mesh.colors.is_empty() {
+        palette::paint(&mut mesh, &mut report);
+    }
     let part = Part { whole: progress, start: 0.5, length: 0.5 };
     let mut parts = assemble(mesh, name, source, options, report, &part)?;
     let moved = Moved { gltf: &gltf, tree: &tree, placed: &placed, skinned: &skinned };
@@ -114,7 +117,7 @@ struct Reader<'a> {
     data: &'a Data<'a>,
     tree: &'a Tree,
     mesh: Mesh,
-    palette: Palette,
+    materials: Materials,
     lost: Lost,
     /// The node with which each object moves, if it does not follow joints.
     placed: Vec<Option<Index>>,
@@ -143,7 +146,7 @@ impl<'a> Reader<'a> {
             data,
             tree,
             mesh: Mesh::default(),
-            palette: Palette::default(),
+            materials: Materials::default(),
             lost: Lost::default(),
             placed: Vec::new(),
             skinned: Vec::new(),
@@ -346,12 +349,18 @@ impl<'a> Reader<'a> {
         self.mesh.points.extend(points);
         self.mesh.corners.reserve(3 * shape.triangles.len());
         self.mesh.faces.reserve(shape.triangles.len());
-        let mut last = shape.tints.first().copied().flatten();
-        let mut material = self.palette.id(self.gltf, shape.material, last);
-        for (k, corners) in shape.triangles.iter().enumerate() {
-            let tint = shape.tints.get(k).copied().flatten();
-            if tint != last {
-                (last, material) = (tint, self.palette.id(self.gltf, shape.material, tint));
+        if !shape.colors.is_empty() {
+            self.mesh.colors.resize(base as usize, Mesh::NO_COLOR);
+            self.mesh.colors.extend(shape.colors.iter().map(|[r, g, b, _]| [*r, *g, *b].map(|c| c as f32)));
+        }
+        let alpha = Alpha::of(self.gltf, shape.material);
+        let lets_through = |i: &u32| shape.colors.get(*i as usize).is_some_and(|c| alpha.lets_through(c[3]));
+        let mut last = false;
+        let mut material = self.materials.id(self.gltf, shape.material, last);
+        for corners in &shape.triangles {
+            let through = corners.iter().any(lets_through);
+            if through != last {
+                (last, material) = (through, self.materials.id(self.gltf, shape.material, through));
             }
             if corners.iter().any(|i| *i as usize >= count) {
                 self.mesh.push_lost(1, object, material, Dropped::OutOfRange);

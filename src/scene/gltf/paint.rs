@@ -1,7 +1,7 @@
 //! Materials: color, what light comes through, and whether there is a back (glTF 2.0, section 3.9).
 //!
-//! A surface has one color here. Where a mesh has colors at its points, each triangle takes their mean, out
-//! of a palette of [`LEVELS`] a channel, so that materials stay few. See-through is what is blended or cut
+//! A surface has one color here; where a mesh has colors at its points, each triangle takes their mean later
+//! ([`crate::scene::palette`]). See-through is what is blended or cut
 //! out by an alpha below 1 (of the factor or of a point) or by a texture that may hold one (any but a JPEG),
 //! and what transmits light. Light that is only scattered (KHR_materials_diffuse_transmission) shows nothing
 //! of what is behind.
@@ -11,27 +11,20 @@ use std::collections::BTreeMap;
 use super::file::{AlphaMode, Base, Gltf, Image, Index, Material, TextureUse};
 use crate::scene::mtl::GRAY;
 
-/// Levels of a channel of the palette, evenly spaced in the square root of the linear color.
-const LEVELS: f32 = 8.0;
-
-/// Mean color of a triangle's corners as levels, and whether a corner's alpha is below 1 (of a mask: lets
-/// through).
-pub(super) type Tint = [u8; 4];
-
 /// The materials that were used so far.
 #[derive(Default)]
-pub(super) struct Palette {
-    ids: BTreeMap<(Option<Index>, Option<Tint>), u32>,
-    pub(super) materials: Vec<crate::scene::Material>,
+pub(super) struct Materials {
+    ids: BTreeMap<(Option<Index>, bool), u32>,
+    pub(super) made: Vec<crate::scene::Material>,
 }
 
-impl Palette {
-    /// The material of a triangle that points tint, or of a surface.
-    pub(super) fn id(&mut self, gltf: &Gltf, material: Option<Index>, tint: Option<Tint>) -> u32 {
-        let next = self.materials.len() as u32;
-        let id = *self.ids.entry((material, tint)).or_insert(next);
+impl Materials {
+    /// The material of a triangle, through whose points light may come.
+    pub(super) fn id(&mut self, gltf: &Gltf, material: Option<Index>, through: bool) -> u32 {
+        let next = self.made.len() as u32;
+        let id = *self.ids.entry((material, through)).or_insert(next);
         if id == next {
-            self.materials.push(make(gltf, material, tint));
+            self.made.push(make(gltf, material, through));
         }
         id
     }
@@ -55,27 +48,16 @@ impl Alpha {
     }
 
     /// Whether a point of this alpha lets light through.
-    fn lets_through(&self, alpha: f64) -> bool {
+    pub(super) fn lets_through(&self, alpha: f64) -> bool {
         match self.mode {
             AlphaMode::Opaque => false,
             AlphaMode::Mask => alpha * self.factor < self.cutoff,
             AlphaMode::Blend => alpha * self.factor < 1.0,
         }
     }
-
-    /// What the colors of three corners come to.
-    pub(super) fn tint(&self, corners: [[f64; 4]; 3]) -> Tint {
-        let mut tint = [0; 4];
-        for (k, level) in tint[..3].iter_mut().enumerate() {
-            let mean = corners.iter().map(|c| c[k]).sum::<f64>() / 3.0;
-            *level = (mean.clamp(0.0, 1.0).sqrt() * f64::from(LEVELS - 1.0)).round() as u8;
-        }
-        tint[3] = u8::from(corners.iter().any(|c| self.lets_through(c[3])));
-        tint
-    }
 }
 
-fn make(gltf: &Gltf, index: Option<Index>, tint: Option<Tint>) -> crate::scene::Material {
+fn make(gltf: &Gltf, index: Option<Index>, through: bool) -> crate::scene::Material {
     let material = index.map(|i| gltf.materials.get(i as usize).and_then(|m| m.0.as_ref().ok()));
     let own = material.flatten();
     let factor = own.map_or([1.0; 4], |m| base(m).base_color_factor.unwrap_or([1.0; 4]));
@@ -83,17 +65,10 @@ fn make(gltf: &Gltf, index: Option<Index>, tint: Option<Tint>) -> crate::scene::
         None => "default".to_owned(),
         Some(i) => own.and_then(|m| m.name.as_deref()).map_or(format!("material_{i}"), super::file::short),
     };
-    let level = |k: u8| (f32::from(k) / (LEVELS - 1.0)).powi(2);
-    let (name, color) = match tint {
-        Some([r, g, b, _]) => {
-            (format!("{name}_{r}{g}{b}"), [level(r) * factor[0], level(g) * factor[1], level(b) * factor[2]])
-        }
-        None if own.is_none() => (name, GRAY),
-        None => (name, [factor[0], factor[1], factor[2]]),
-    };
+    let color = if own.is_none() { GRAY } else { [factor[0], factor[1], factor[2]] };
     let color = color.map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { GRAY[0] });
     crate::scene::Material {
-        see_through: own.is_some_and(|m| see_through(gltf, m)) || tint.is_some_and(|t| t[3] > 0),
+        see_through: through || own.is_some_and(|m| see_through(gltf, m)),
         two_sided: own.is_some_and(|m| m.double_sided),
         ..crate::scene::Material::new(name, color)
     }

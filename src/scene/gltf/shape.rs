@@ -7,7 +7,6 @@ use super::codec::{self, Unpacked};
 use super::data::{Data, components};
 use super::file::{Gltf, Index, Primitive, attribute};
 use super::lost::{Lost, Sentence};
-use super::paint::{Alpha, Tint};
 use super::skin::Influences;
 
 /// A primitive in the coordinates of its mesh.
@@ -15,8 +14,8 @@ pub(super) struct Shape {
     pub(super) points: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) material: Option<Index>,
-    /// Of each triangle, where points have colors. A triangle whose corners are not there has none.
-    pub(super) tints: Vec<Option<Tint>>,
+    /// Linear color and alpha at each point; empty if it has none.
+    pub(super) colors: Vec<[f64; 4]>,
     /// What its points follow, if that was asked for and is there.
     pub(super) influences: Influences,
 }
@@ -39,10 +38,6 @@ const NO_POSITIONS: Sentence =
 const SPARE: Sentence = [
     "1 primitive ends with corners that make no triangle",
     "# primitives end with corners that make no triangle",
-];
-const TINTED: Sentence = [
-    "1 primitive with colors at points, shown as one color a triangle",
-    "# primitives with colors at points, shown as one color a triangle",
 ];
 const UNTINTED: Sentence = [
     "1 primitive with colors at points that cannot be read",
@@ -83,19 +78,13 @@ impl Reader<'_> {
             lost.add(SPARE, at, mesh);
         }
         let triangles = triangles(mode, corners);
-        let tints = match self.tints(&from, &triangles, count) {
-            Ok(tints) => tints,
-            Err(_) => {
-                lost.add(UNTINTED, at, mesh);
-                Vec::new()
-            }
-        };
-        if !tints.is_empty() {
-            lost.add(TINTED, at, mesh);
-        }
+        let colors = self.colors(&from, count).unwrap_or_else(|_| {
+            lost.add(UNTINTED, at, mesh);
+            Vec::new()
+        });
         let influences = if self.skinned { self.influences(&from, count)? } else { Vec::new() };
         let points = points.into_iter().map(DVec3::from_array).collect();
-        Ok(Some(Shape { points, triangles, material: primitive.material, tints, influences }))
+        Ok(Some(Shape { points, triangles, material: primitive.material, colors, influences }))
     }
 
     /// Draco data, where that is all there is: an accessor with a view holds the same unpacked.
@@ -134,14 +123,10 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn tints(
-        &self,
-        from: &Source,
-        triangles: &[[u32; 3]],
-        count: usize,
-    ) -> Result<Vec<Option<Tint>>, String> {
+    /// The colors at the points.
+    fn colors(&self, from: &Source, count: usize) -> Result<Vec<[f64; 4]>, String> {
         let Some(accessor) = attribute(&from.primitive.attributes, "COLOR_0")? else { return Ok(Vec::new()) };
-        let (shape, alpha) = (self.data.accessor(accessor)?, Alpha::of(self.gltf, from.primitive.material));
+        let shape = self.data.accessor(accessor)?;
         if from.unpacked.is_none() && shape.count != count {
             return Err("it has another number of colors than of points".into());
         }
@@ -151,9 +136,10 @@ impl Reader<'_> {
                 from.vectors::<3>("COLOR_0", accessor)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
             }
         };
-        let color = |corner: u32| colors.get(corner as usize).copied();
-        let tint = |t: &[u32; 3]| Some(alpha.tint([color(t[0])?, color(t[1])?, color(t[2])?]));
-        Ok(triangles.iter().map(tint).collect())
+        if colors.len() != count {
+            return Err("it has another number of colors than of points".into());
+        }
+        Ok(colors)
     }
 
     /// Every set of joints with its weights.
