@@ -112,7 +112,7 @@ mod tests {
             assert_eq!([large.width % width, large.height % height], [0, 0], "{width} × {height}");
             assert!(u64::from(large.width) * u64::from(large.height) <= MOST_PIXELS, "{width} × {height}");
             let smeared = size_pt / Vec2::new(large.width as f32, large.height as f32);
-            let hard = smeared.is_nan() || smeared.max_element() < 0.6;
+            let hard = smeared.is_nan() || smeared.max_element() <= 0.6;
             assert!(hard || width > 200, "{width} × {height}: {smeared}");
             for (x, y) in
                 (0..large.width).flat_map(|x| [0, large.height / 2, large.height - 1].map(|y| (x, y)))
