@@ -486,6 +486,14 @@ fn converted_scenes_are_the_same_scenes() {
         fs::read(here.join("out.json")).expect("written"),
         fs::read(here.join("again.json")).expect("written")
     );
+    // Glass stays glass.
+    let window = shipped("scenes2d/shop_window.json");
+    done(&here, &["scene", "convert", &window, "window.json"]);
+    let surfaces = |scene: &str| {
+        let info = json(&done(&here, &["scene", "info", scene, "--json"]));
+        [info["see_through"].as_u64(), info["two_sided"].as_u64()]
+    };
+    assert_eq!([surfaces(&window), surfaces("window.json")], [[Some(2); 2]; 2]);
     refused(&here, &["scene", "convert", "boxes.obj", "out.json"], 2);
     refused(&here, &["scene", "convert", "walls.json", "out.obj"], 2);
 }

@@ -348,14 +348,19 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
         let key = entry.card().key;
         let (mut unseen, mut culled) = (0, 0);
         for scene in scenes {
-            for settings in [Settings::default(), Settings::of(&[("backface-culling", "true")])] {
+            let ways: [&[(&str, &str)]; 3] =
+                [&[], &[("backface-culling", "true")], &[("see-through", "solid")]];
+            // Where nothing is see-through, solid is nothing new.
+            for pairs in &ways[..2 + usize::from(scene.has_see_through())] {
+                let settings = Settings::of(pairs);
                 let surfaces = settings.surfaces();
                 let mut run = ready(*entry, scene, &settings);
                 let mut truth = Truth::new(scene, surfaces, 1, [1.0; 3]);
                 for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
                     let list = run.cull(&view);
                     let mut target = Target::new(&view);
-                    list.draw(&mut target, scene, &view, &Options::default());
+                    let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
+                    list.draw(&mut target, scene, &view, &options);
                     let judged = truth.judge(scene, &view, &list.prims, &target);
                     if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());

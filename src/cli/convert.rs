@@ -221,6 +221,17 @@ fn head(scene: &Scene<Flat>, objects: &[Vec<u32>]) -> Map<String, Json> {
     head.insert("object_names".into(), names.iter().map(|n| Json::from(&**n)).collect());
     head.insert("colors".into(), colors(scene, &names, objects));
     head.insert("motions".into(), motions(scene, &names));
+    let of = |is: fn(&Scene<Flat>, PrimId) -> bool| {
+        let has = |prims: &&Vec<u32>| prims.first().is_some_and(|p| is(scene, PrimId(*p)));
+        names
+            .iter()
+            .zip(objects)
+            .filter(|(_, prims)| has(prims))
+            .map(|(name, _)| Json::from(&**name))
+            .collect()
+    };
+    head.insert("see_through".into(), of(|scene, p| scene.is_see_through(p)));
+    head.insert("two_sided".into(), of(|scene, p| scene.is_two_sided(p)));
     for path in scene.paths().iter().filter(|p| p.name == "eyes" || p.name == "walk") {
         let stand = |v: &View<Flat>| {
             let (p, d) = (v.eye.position, v.eye.target - v.eye.position);

@@ -20,7 +20,7 @@ use crate::measure::timed;
 use crate::method::surfaces_of;
 use crate::raster::{Options, Target, shade};
 use crate::render::{Theme, png_pixels};
-use crate::scene::{Progress, Scene, Surfaces};
+use crate::scene::{Progress, Scene};
 use crate::truth::Truth;
 
 #[derive(clap::Args)]
@@ -153,11 +153,8 @@ fn frames<S: World>(
     let background = Theme::Print.flat_linear(Role::Paper);
     let mut truth = args.truth.then(|| Truth::new(scene, surfaces, args.threads as usize, background));
     let mut target = Target::default();
-    let options = Options {
-        threads: args.threads as usize,
-        surfaces: Surfaces { one_sided: false, ..surfaces },
-        ..Options::default()
-    };
+    let options =
+        Options { threads: args.threads as usize, surfaces: surfaces.both_sides(), ..Options::default() };
     let mut frames = Vec::with_capacity(which.len());
     run.forget();
     for (i, view) in which.clone().zip(&views[which.clone()]) {

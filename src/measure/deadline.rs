@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use super::timing::{Stopwatch, timed};
 use crate::geometry::{PrimId, View};
-use crate::method::{Budget, DrawList, KnobValue, Limit, Recording, Run, Tally};
+use crate::method::{Budget, DrawList, KnobValue, Limit, Recording, Run, Tally, surfaces_of};
 use crate::raster::{Drawable, Options, Target};
 use crate::scene::Scene;
 
@@ -52,12 +52,13 @@ pub fn frame_within<S: Drawable>(
         // Memory is fetched before the clock starts.
         image.clear(view);
     }
+    let options = Options { surfaces: surfaces_of(&run.knobs()).both_sides(), ..Options::default() };
     let watch = Stopwatch::start();
     image.clear(view);
     let canvas = RefCell::new(Canvas { image, watch, longest_ms: 0.0, asked_ms: watch.elapsed_ms() });
     let limit = |prims: &[PrimId]| {
         let mut canvas = canvas.borrow_mut();
-        S::draw(&mut canvas.image, scene, view, prims, &Options::default());
+        S::draw(&mut canvas.image, scene, view, prims, &options);
         let now = canvas.watch.elapsed_ms();
         canvas.longest_ms = canvas.longest_ms.max(now - canvas.asked_ms);
         canvas.asked_ms = now;

@@ -13,6 +13,10 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
+    /// The same for primitives of which those that turn away were left out already.
+    pub fn both_sides(self) -> Self {
+        Self { one_sided: false, ..self }
+    }
     /// Whether a live primitive is not there for an eye, since it turns its back.
     #[inline]
     pub fn leave_out<S: Space>(self, scene: &Scene<S>, prim: PrimId, eye: S::Vector) -> bool {

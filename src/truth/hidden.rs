@@ -121,7 +121,7 @@ impl<'a, S: Drawable> Sight<'a, S> {
         let is_there = |p: &PrimId| !surfaces.leave_out(scene, *p, view.eye.position);
         let prims: Vec<PrimId> = scene.live().iter().copied().filter(is_there).collect();
         let mut image = Target::new(view);
-        let options = Options { surfaces: Surfaces { one_sided: false, ..surfaces }, ..Options::default() };
+        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
         S::draw_reference(&mut image, scene, view, &prims, &options);
         let mut seen = vec![false; scene.prim_count()];
         all_visible(&image, scene, view, &options).iter().for_each(|p| seen[p.at()] = true);

@@ -81,12 +81,11 @@ impl Truth {
         background: [f32; 3],
     ) -> Self {
         // Sides are told by the one rule that methods use, so the rasterizer draws both.
-        let surfaces_drawn = Surfaces { one_sided: false, ..surfaces };
         Self {
             prims: scene.live().to_vec(),
             facing: Vec::new(),
             surfaces,
-            options: Options { threads, surfaces: surfaces_drawn, ..Options::default() },
+            options: Options { threads, surfaces: surfaces.both_sides(), ..Options::default() },
             all: Target::default(),
             background,
         }

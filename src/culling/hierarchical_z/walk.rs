@@ -19,7 +19,7 @@ use crate::index::{Octree, OctreeNode};
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::Options;
-use crate::scene::{Scene, Surfaces};
+use crate::scene::Scene;
 
 /// Buffers that frames reuse. A copy of the memory does not hold them.
 #[derive(Default)]
@@ -96,7 +96,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             // The rasterizer need not look for back faces, since each cube's primitives are tested as they
             // are gathered.
             options: Options {
-                surfaces: Surfaces { one_sided: false, ..params.surfaces },
+                surfaces: params.surfaces.both_sides(),
                 threads: threads(),
                 ..Options::default()
             },

@@ -12,26 +12,29 @@
 use crate::culling::depth::{Answer, Buffer, Faces, Nobody, footprint, hides};
 use crate::geometry::{Aabb, Footprint, PixelRect, PrimId, View};
 use crate::raster::{Options, PyramidCell};
-use crate::scene::Scene;
+use crate::scene::{Scene, Surfaces};
 
 /// The z-buffer of a frame.
 pub struct Rest<S: Faces> {
     buffer: Buffer<S>,
     /// How many of the frame's primitives it holds.
     drawn: usize,
+    options: Options,
 }
 
 impl<S: Faces> Rest<S> {
-    pub fn new(view: &View<S>) -> Self {
+    /// For primitives that are known to face the eye where that matters.
+    pub fn new(view: &View<S>, surfaces: Surfaces) -> Self {
         let mut buffer = Buffer::default();
         buffer.clear(view);
-        Self { buffer, drawn: 0 }
+        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
+        Self { buffer, drawn: 0, options }
     }
     /// Draws what was added to the frame's primitives.
     pub fn catch_up(&mut self, scene: &Scene<S>, prims: &[PrimId]) {
         if self.drawn < prims.len() {
             // Those that the pyramid hides are not drawn, which changes no pixel.
-            self.buffer.draw(scene, &prims[self.drawn..], &Options::default());
+            self.buffer.draw(scene, &prims[self.drawn..], &self.options);
             self.drawn = prims.len();
         }
     }
@@ -43,14 +46,14 @@ impl<S: Faces> Rest<S> {
     /// Draws these primitives, not yet among the frame's, and returns the hidden ones of them.
     pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId]) -> &[PrimId] {
         self.buffer.refresh_all();
-        self.buffer.draw(scene, prims, &Options::default())
+        self.buffer.draw(scene, prims, &self.options)
     }
     /// What [`Rest::draw`] compared for a primitive: its nearest depth, and the farthest that is drawn where
     /// it would show, `1/w`. `None` where the view volume cuts it or it covers no pixel.
     pub fn depths(&self, scene: &Scene<S>, prim: PrimId) -> Option<[f32; 2]> {
         // Right also after the primitive was drawn, as long as it is no single pixel: until the pyramid is
         // refreshed it holds what it held.
-        let (extent, held) = self.buffer.operands(scene, prim, &Options::default())?;
+        let (extent, held) = self.buffer.operands(scene, prim, &self.options)?;
         Some([extent.nearest, held])
     }
     /// Begins to find out what part of the image can still change.

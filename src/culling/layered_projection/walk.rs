@@ -147,7 +147,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             reported: 0,
             ended: false,
             rank: 0,
-            rest: (params.queries || params.quality > 0).then(|| Rest::new(view)),
+            rest: (params.queries || params.quality > 0).then(|| Rest::new(view, params.surfaces)),
             queries: false,
             out,
             watch,

@@ -8,7 +8,7 @@ use crate::geometry::{PrimId, View};
 use crate::measure::experiment::{ExperimentError, Setup, World};
 use crate::measure::table::Cell;
 use crate::raster::{Options, Target, shade};
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Scene, Surfaces};
 use crate::truth::{Truth, missing};
 
 /// What long work says it does while answers are compared.
@@ -22,6 +22,7 @@ pub struct Judge<'a, S: World> {
     /// Every how many views [`Judge::each`] compares; 0: never.
     every: usize,
     truth: Truth,
+    surfaces: Surfaces,
     view: Option<View<S>>,
     visible: Vec<PrimId>,
     /// The exact image as shown; empty until it is compared with.
@@ -70,10 +71,12 @@ impl Checked {
 impl<'a, S: World> Judge<'a, S> {
     /// Of a scene, whose surfaces are taken as the experiment's settings say.
     pub fn new(scene: &'a Arc<Scene<S>>, setup: &Setup) -> Self {
+        let surfaces = setup.settings.surfaces();
         Self {
             scene,
+            surfaces,
             every: setup.check_every,
-            truth: Truth::new(scene, setup.settings.surfaces(), 1, BACKGROUND),
+            truth: Truth::new(scene, surfaces, 1, BACKGROUND),
             view: None,
             visible: Vec::new(),
             exact: Vec::new(),
@@ -106,7 +109,7 @@ impl<'a, S: World> Judge<'a, S> {
         if self.exact.is_empty() {
             self.exact = shade(self.truth.image(), &**self.scene, view, BACKGROUND);
         }
-        draw(&mut self.target, self.scene, view, drawn);
+        draw(&mut self.target, self.scene, view, drawn, self.surfaces);
         let image = shade(&self.target, &**self.scene, view, BACKGROUND);
         let wrong = self.exact.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a != b).collect();
         Difference { found, coverage_percent, wrong }
@@ -141,8 +144,15 @@ impl<'a, S: World> Judge<'a, S> {
     }
 }
 
-/// Draws on one thread.
-pub fn draw<S: World>(target: &mut Target, scene: &Scene<S>, view: &View<S>, prims: &[PrimId]) {
+/// Draws, on one thread, primitives that are known to face the eye where that matters.
+pub fn draw<S: World>(
+    target: &mut Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    prims: &[PrimId],
+    surfaces: Surfaces,
+) {
     target.clear(view);
-    S::draw(target, scene, view, prims, &Options::default());
+    let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
+    S::draw(target, scene, view, prims, &options);
 }

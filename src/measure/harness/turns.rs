@@ -5,7 +5,7 @@ use super::ready::checkpoint;
 use crate::geometry::{PrimId, View};
 use crate::measure::experiment::{ExperimentError, World};
 use crate::measure::timing::{median, timed};
-use crate::method::Run;
+use crate::method::{Run, surfaces_of};
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
 
@@ -68,8 +68,9 @@ pub fn frame<S: World>(
     view: &View<S>,
     target: &mut Target,
 ) -> (Vec<PrimId>, [f64; 2]) {
+    let surfaces = surfaces_of(&run.knobs());
     let (list, cull_ms) = timed(|| run.cull(view).prims);
-    let ((), draw_ms) = timed(|| draw(target, scene, view, &list));
+    let ((), draw_ms) = timed(|| draw(target, scene, view, &list, surfaces));
     (list, [cull_ms, draw_ms])
 }
 
