@@ -6,10 +6,11 @@ use cullscope::culling::Methods;
 use cullscope::drawing::Subject;
 use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
 use cullscope::method::{self, Film, Settings};
-use cullscope::raster::{Drawable, render};
+use cullscope::raster::{Drawable, pick, render};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, Surfaces, load, random_views};
 use cullscope::truth::Truth;
 use cullscope::truth::certificate::{Certificate, Checker, Claim, certificates, check_film};
+use glam::DVec3;
 
 const WHITE: [f32; 3] = [1.0; 3];
 
@@ -26,6 +27,77 @@ fn street() -> Arc<Scene<Flat>> {
     match load(path, &LoadOptions::default(), &Quiet).expect("a street") {
         AnyScene::Flat(scene) => scene,
         AnyScene::Solid(_) => panic!("the street is flat"),
+    }
+}
+
+/// Which primitive each pixel of a view shows, in f64 and on no grid: a ray through the pixel's center meets a
+/// triangle where it lies on one side of the three planes through the eye and an edge.
+fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> {
+    let projection = view.projection();
+    let (eye, rows) = (projection.eye.as_dvec3(), projection.rows.map(|row| row.as_dvec3()));
+    let (near, far) = (f64::from(view.eye.near), f64::from(view.eye.far));
+    let half = [f64::from(view.width) * 0.5, f64::from(view.height) * 0.5];
+    let mut shown = vec![(1.0 / far, None); (view.width * view.height) as usize];
+    for &prim in scene.live() {
+        let corners = scene.prim_points(prim).map(|p| {
+            let r = p.as_dvec3() - eye;
+            DVec3::new(rows[0].dot(r), rows[1].dot(r), rows[2].dot(r))
+        });
+        let [a, b, c]: [DVec3; 3] = corners.collect::<Vec<_>>().try_into().expect("three corners");
+        if a.z.max(b.z).max(c.z) < near {
+            continue;
+        }
+        // The pixels of its box, or all where it reaches behind the near plane.
+        let is_bounded = a.z.min(b.z).min(c.z) >= near;
+        let range = |axis: usize, sign: f64, pixels: u32| {
+            let places = [a, b, c].map(|v| half[axis] * (1.0 + sign * v[axis] / v.z));
+            let (low, high) =
+                (places.iter().fold(f64::MAX, |l, p| l.min(*p)), places.iter().fold(0f64, |h, p| h.max(*p)));
+            if is_bounded { low.max(0.0) as u32..pixels.min(high as u32 + 1) } else { 0..pixels }
+        };
+        let (sides, volume) = ([a.cross(b), b.cross(c), c.cross(a)], a.cross(b).dot(c));
+        for y in range(1, -1.0, view.height) {
+            for x in range(0, 1.0, view.width) {
+                let [across, down] = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+                let ray = DVec3::new(across / half[0] - 1.0, 1.0 - down / half[1], 1.0);
+                let [p, q, r] = sides.map(|side| side.dot(ray));
+                if p.min(q).min(r) < 0.0 && p.max(q).max(r) > 0.0 {
+                    continue;
+                }
+                let depth = (p + q + r) / volume;
+                let at = &mut shown[(y * view.width + x) as usize];
+                if depth > at.0 && depth <= 1.0 / near {
+                    *at = (depth, Some(prim));
+                }
+            }
+        }
+    }
+    shown.into_iter().map(|(_, prim)| prim).collect()
+}
+
+#[test]
+fn what_pixels_show_agrees_with_exact_arithmetic() {
+    // Of ten views along the path those in which depth planes through snapped corners let faces that are seen
+    // nearly edge-on win whole rows: 259 and 271 pixels of a million, and now 4 and 16. In the city edges alone
+    // are moved.
+    for (source, numbers, least_share) in
+        [("generate:building", [2, 7], 0.999_98), ("generate:city", [0, 2], 0.9999)]
+    {
+        let Ok(AnyScene::Solid(scene)) = load(source, &LoadOptions::default(), &Quiet) else {
+            panic!("{source} stands in space")
+        };
+        let path = &scene.paths()[0].views;
+        for number in numbers {
+            let view = View { width: 1024, height: 1024, ..path[number * path.len() / 10] };
+            let exact = exact_items(&scene, &view);
+            let image = render(&scene, &view, scene.live());
+            let same = (0..exact.len())
+                .filter(|&at| pick(&image, at as u32 % view.width, at as u32 / view.width) == exact[at])
+                .count();
+            let share = same as f64 / exact.len() as f64;
+            assert!(share >= least_share, "{source}, view {number}: {share} of the pixels are alike");
+            assert!(exact.iter().flatten().count() > exact.len() / 2, "the view shows too little");
+        }
     }
 }
 

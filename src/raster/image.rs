@@ -182,14 +182,14 @@ impl Frame<'_> {
             };
             // All three corners beyond one plane: the cheap test, which drops most. The exact side of the eye
             // comes second, since it is slow.
-            if a.outside & b.outside & c.outside & REJECTS != 0
+            if a.outside() & b.outside() & c.outside() & REJECTS != 0
                 || self.surfaces.one_sided && !self.shows_front(prim, corners)
             {
                 continue;
             }
             // Sides of the image need no clipping: the pixel box is cut to the window. The near plane does,
             // and the guard band, which is wider than any image; so clipping is rare.
-            if (a.outside | b.outside | c.outside) & NEEDS_CLIP == 0 {
+            if (a.outside() | b.outside() | c.outside()) & NEEDS_CLIP == 0 {
                 setups.extend(Setup::new([a, b, c], prim.0, true, &self.window));
             } else {
                 self.set_up_clipped(prim, corners, setups);

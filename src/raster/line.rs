@@ -133,7 +133,7 @@ fn clipped(
     let clip = points.map(|p| camera.clip(p));
     let [a, b] = clip.map(|c| camera.vertex(c));
     // In the order of cost, as for triangles.
-    if a.outside & b.outside & REJECTS != 0 {
+    if a.outside() & b.outside() & REJECTS != 0 {
         return None;
     }
     let [p, q] = points.map(|p| p.as_dvec2());
@@ -143,7 +143,7 @@ fn clipped(
     {
         return None;
     }
-    if (a.outside | b.outside) & NEEDS_CLIP == 0 {
+    if (a.outside() | b.outside()) & NEEDS_CLIP == 0 {
         return Some(([a, b], true));
     }
     // Two ends are left, or none.

@@ -48,7 +48,7 @@ fn draw_triangle(target: &mut Target, v: [Vertex; 3], id: u32) {
         return;
     }
     // From the corners as given: which of two equally far vertices it starts from is part of the formula.
-    let plane = Plane::of([&v[0], &v[1], &v[2]], area);
+    let plane = Plane::of([&v[0], &v[1], &v[2]]);
     let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
     // A pixel more than needed on each side; `covers` decides.
     let range = |low: i32, high: i32, size: u32| (low / 256 - 1).max(0)..(high / 256 + 2).min(size as i32);

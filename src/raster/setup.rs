@@ -4,16 +4,25 @@
 //! 256 grid steps apart an edge function changes by multiples of 256 from center to center, so its low 8 bits
 //! never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
 //!
+//! Corners are snapped for coverage alone. The depth plane goes through the places where they were: one through
+//! snapped corners would be tilted, and a face seen nearly edge-on would win whole rows from its neighbors.
+//! Over the snapped triangle that plane differs from the corners' depths, mixed, by what it changes along the
+//! way that a corner was moved, half a grid step an axis at most. Where that exceeds [`DEPTH_TILT`] of the
+//! depth, the plane goes through the snapped corners instead. So what covers a pixel's center has the depth
+//! there, but for that share, of a point of the primitive that belongs within half a grid step of it; without
+//! the bound a face seen edge-on could come before what hides it.
+//!
 //! In the order of cost: the box drops triangles between pixel centers, the area drops flat ones, then come
 //! the plane and the three edges.
 
+use super::DEPTH_TILT;
 use super::vertex::{CENTER, SUBPIXEL_BITS, Vertex};
 use crate::geometry::PixelRect;
 
 /// Depth over the image: `1/w` is linear there. Grid steps; larger is nearer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
-    /// Where the depth is `z`: the farthest vertex, so that distant pixels lose nothing to near ones.
+    /// Where the depth is `z`: the farthest vertex as snapped, so that distant pixels lose nothing to near ones.
     pub x: i32,
     /// Row of that vertex.
     pub y: i32,
@@ -31,13 +40,16 @@ pub(super) struct Plane {
 
 /// Slopes above this would overflow over the guard band; they come only with near planes below 1e-20.
 const STEEPEST: f32 = 1e28;
+/// An area below this share of its own two terms is not trusted: it is rounded by 2⁻⁵² of them, so that above
+/// it what the slopes are divided by is right to 2⁻²⁴, as are the depths.
+const FLAT: f64 = 1.0 / (1u64 << 28) as f64;
 
 impl Plane {
-    /// The plane through three vertices with twice the signed area `area`, not zero.
+    /// The plane through three vertices whose places on the grid span an area.
     #[inline(always)]
-    pub fn of(v: [&Vertex; 3], area: i64) -> Self {
+    pub fn of(v: [&Vertex; 3]) -> Self {
         let [a, b, c] = v;
-        // From the farthest vertex; all three orders turn the same way, so `area` keeps its sign.
+        // From the farthest vertex; all three orders turn the same way.
         let (o, p, q) = if c.z < a.z.min(b.z) {
             (c, a, b)
         } else if b.z < a.z {
@@ -45,31 +57,41 @@ impl Plane {
         } else {
             (a, b, c)
         };
-        // Cramer's rule for the two slopes, in f64, where coordinates and the area are exact.
-        let (pz, qz) = (f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z));
-        let per_area = 1.0 / area as f64;
-        let dx = (pz * f64::from(q.y - o.y) - qz * f64::from(p.y - o.y)) * per_area;
-        let dy = (qz * f64::from(p.x - o.x) - pz * f64::from(q.x - o.x)) * per_area;
-        Self::new(*o, dx as f32, dy as f32, o.z, p.z.max(q.z))
+        let rise = [f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z)];
+        let (rest, high) = (o.rest(), p.z.max(q.z));
+        let (slope, is_clear) = slopes(unsnapped(o, p), unsnapped(o, q), rise);
+        if is_clear && is_gentle(slope, o.z) {
+            // Pixels measure from the snapped vertex, where the plane has another depth than at its place.
+            let z = (f64::from(o.z) - slope[0] * rest[0]) - slope[1] * rest[1];
+            return Self::new(o, z as f32, slope, high);
+        }
+        let (slope, _) = slopes(snapped(o, p), snapped(o, q), rise);
+        Self::new(o, o.z, slope, high)
     }
-    /// The plane of a flatland segment between vertices of different columns.
+    /// The plane of a flatland segment between vertices of different columns; the same, one dimension down.
     pub fn of_segment(a: Vertex, b: Vertex) -> Self {
         let (o, p) = if b.z < a.z { (b, a) } else { (a, b) };
-        let dx = (f64::from(p.z) - f64::from(o.z)) / f64::from(p.x - o.x);
-        Self::new(o, dx as f32, 0.0, o.z, p.z)
+        let rise = f64::from(p.z) - f64::from(o.z);
+        let slope = [rise / unsnapped(&o, &p)[0], 0.0];
+        if is_gentle(slope, o.z) {
+            return Self::new(&o, (f64::from(o.z) - slope[0] * o.rest()[0]) as f32, slope, p.z);
+        }
+        Self::new(&o, o.z, [rise / snapped(&o, &p)[0], 0.0], p.z)
     }
+    /// The plane with depth `z` at the snapped place of its farthest vertex.
     #[inline(always)]
-    fn new(at: Vertex, dx: f32, dy: f32, low: f32, high: f32) -> Self {
+    fn new(at: &Vertex, z: f32, slope: [f64; 2], high: f32) -> Self {
+        let [dx, dy] = [slope[0] as f32, slope[1] as f32];
         // Without its slopes a plane has the depth of the farthest vertex: too far, so it hides nothing that
         // it should not.
         let usable = dx.abs().max(dy.abs()) < STEEPEST;
         Self {
             x: at.x,
             y: at.y,
-            z: at.z,
+            z,
             dx: if usable { dx } else { 0.0 },
             dy: if usable { dy } else { 0.0 },
-            low,
+            low: at.z,
             high,
         }
     }
@@ -78,6 +100,40 @@ impl Plane {
     pub fn at_row(&self, y: i32) -> f32 {
         self.z + self.dy * (center(y) - self.y) as f32
     }
+}
+
+/// From one vertex to another on the grid.
+#[inline(always)]
+fn snapped(from: &Vertex, to: &Vertex) -> [f64; 2] {
+    [f64::from(to.x - from.x), f64::from(to.y - from.y)]
+}
+
+/// The same between the places before snapping: exact, for they are multiples of 2⁻¹⁰ steps below 2²⁴.
+#[inline(always)]
+fn unsnapped(from: &Vertex, to: &Vertex) -> [f64; 2] {
+    let ([x, y], a, b) = (snapped(from, to), from.rest(), to.rest());
+    [x + (b[0] - a[0]), y + (b[1] - a[1])]
+}
+
+/// Slopes of the plane that rises by two amounts on the ways to two places, and whether these span an area
+/// clearly.
+#[inline(always)]
+fn slopes(p: [f64; 2], q: [f64; 2], rise: [f64; 2]) -> ([f64; 2], bool) {
+    // Cramer's rule in f64. Between snapped places products and area are exact.
+    let (one, other) = (p[0] * q[1], p[1] * q[0]);
+    let area = one - other;
+    let per_area = 1.0 / area;
+    let dx = (rise[0] * q[1] - rise[1] * p[1]) * per_area;
+    let dy = (rise[1] * p[0] - rise[0] * q[0]) * per_area;
+    ([dx, dy], area.abs() > FLAT * (one.abs() + other.abs()))
+}
+
+/// Whether half a grid step along each axis changes the depth by at most [`DEPTH_TILT`] of the least, so at no
+/// corner by more.
+#[inline(always)]
+fn is_gentle(slope: [f64; 2], low: f32) -> bool {
+    // Slopes without an area are not numbers, and gentle neither.
+    (slope[0].abs() + slope[1].abs()) * 0.5 <= DEPTH_TILT * f64::from(low)
 }
 
 /// Grid coordinate of a pixel's center.
@@ -179,7 +235,7 @@ impl Setup {
         if area == 0 {
             return None;
         }
-        let plane = Plane::of(v, area);
+        let plane = Plane::of(v);
         // Turned to run clockwise on the screen, so that the inside of every edge is positive.
         let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
         let (x, y) = (center(x0), center(y0));

@@ -2,8 +2,10 @@
 //!
 //! Projection runs in f64 on the f32 rows of the view's [`Projection`](crate::geometry::Projection),
 //! relative to the eye, so it is exact to about 2⁻⁵⁰ and the snap to 1/256 pixel is the one error that
-//! counts. Clipping (near plane and guard band) also runs in f64, in clip space, and cuts an edge from
-//! its lesser end whichever triangle it belongs to, so that neighbors keep sharing their edges.
+//! counts. What the snap takes is kept, in parts of 2⁻¹⁸ pixel: corners are moved for coverage alone, and
+//! depth planes go through the places where they were. Clipping (near plane and guard band) also runs in f64,
+//! in clip space, and cuts an edge from its lesser end whichever triangle it belongs to, so that neighbors keep
+//! sharing their edges.
 
 use crate::geometry::{Space, Vector, View};
 
@@ -18,7 +20,12 @@ const GUARD: f64 = 16384.0 * (1 << SUBPIXEL_BITS) as f64;
 /// A point in clip space: x, y, w. Flatland has y = 0.
 pub(super) type Clip = [f64; 3];
 
-/// A vertex on the pixel grid.
+/// Parts of a grid step that the place before snapping is kept to: 2⁻¹⁸ pixel.
+const REST_PARTS: f64 = 1024.0;
+/// Bits of each of the two rests, which lie within ±512.
+const REST_BITS: i32 = 12;
+
+/// A vertex on the pixel grid. Sixteen bytes, so that loops over points store whole vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Vertex {
     /// Column, grid steps.
@@ -27,8 +34,32 @@ pub(super) struct Vertex {
     pub y: i32,
     /// 1/w.
     pub z: f32,
-    /// Which planes it lies outside of; bits below.
-    pub outside: u32,
+    /// From the low end: which planes it lies outside of, the rest of the column, that of the row.
+    packed: u32,
+}
+
+impl Vertex {
+    #[inline(always)]
+    fn new(at: [f64; 2], z: f32, outside: u32) -> Self {
+        let (x, rest_x) = snap(at[0]);
+        let (y, rest_y) = snap(at[1]);
+        let rests = (rest_x as u32 & ((1 << REST_BITS) - 1)) << (32 - 2 * REST_BITS)
+            | (rest_y as u32) << (32 - REST_BITS);
+        Self { x, y, z, packed: rests | outside }
+    }
+    /// Which planes it lies outside of: a bit each, below.
+    #[inline(always)]
+    pub fn outside(&self) -> u32 {
+        self.packed & ((1 << (32 - 2 * REST_BITS)) - 1)
+    }
+    /// Where its place before snapping lies from `(x, y)`: within half a grid step an axis.
+    #[inline(always)]
+    pub fn rest(&self) -> [f64; 2] {
+        // Shifts to the upper end and back bring the signs along.
+        let (x, y) =
+            ((self.packed << REST_BITS) as i32 >> (32 - REST_BITS), self.packed as i32 >> (32 - REST_BITS));
+        [f64::from(x) * (1.0 / REST_PARTS), f64::from(y) * (1.0 / REST_PARTS)]
+    }
 }
 
 /// Nearer than the near plane: has no place on the grid.
@@ -97,12 +128,7 @@ impl Camera {
             u32::from(x < -w) | u32::from(x > w) << 1 | u32::from(y < -w) << 2 | u32::from(y > w) << 3;
         let outside = sides | u32::from(beyond_far) << 4 | u32::from(near) << 5 | u32::from(off_grid) << 6;
         let on_grid = outside & NEEDS_CLIP == 0;
-        Vertex {
-            x: if on_grid { round(at[0]) } else { 0 },
-            y: if on_grid { round(at[1]) } else { 0 },
-            z,
-            outside,
-        }
+        Vertex::new([if on_grid { at[0] } else { 0.0 }, if on_grid { at[1] } else { 0.0 }], z, outside)
     }
 
     /// Grid coordinates before snapping, and depth.
@@ -143,8 +169,8 @@ impl Camera {
 
     /// The vertex of a corner of a clipped polygon.
     pub fn clipped_vertex(&self, corner: Clip) -> Vertex {
-        let ([x, y], z) = self.place(corner);
-        Vertex { x: round(x), y: round(y), z, outside: 0 }
+        let (at, z) = self.place(corner);
+        Vertex::new(at, z, 0)
     }
 }
 
@@ -201,11 +227,15 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// Nearest integer, ties to even, for |v| < 2⁵⁰: the sum's last mantissa bit is worth one.
+/// A coordinate on the grid and what the snap took from it, in parts of a step. Both to nearest, ties to even,
+/// for |v| < 2⁵⁰.
 #[inline(always)]
-fn round(v: f64) -> i32 {
-    const ONES: f64 = (3u64 << 51) as f64;
+fn snap(v: f64) -> (i32, i32) {
     // At 1.5 · 2⁵² neighbors of f64 are 1 apart: the sum rounds, and its low bits are the integer, negative
     // ones in two's complement.
-    (v + ONES).to_bits() as i32
+    const ONES: f64 = (3u64 << 51) as f64;
+    let sum = v + ONES;
+    // Both differences are exact, so the rest is a function of the place alone.
+    let rest = (v - (sum - ONES)) * REST_PARTS;
+    (sum.to_bits() as i32, (rest + ONES).to_bits() as i32)
 }

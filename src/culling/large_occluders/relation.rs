@@ -20,14 +20,15 @@
 //! s·min(sin ψ, h/|r|) or more. As
 //! `|r|·sin ψ` is P's distance from the supporting plane, the condition is
 //! `s · min(distance, h) ≥ |r| · lateral`, plus what f64 rounds (see [`ROUNDING`]).
-//! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping tilts it by at most 2ε·px/h;
-//! so
-//! `s ≥ lateral + DEPTH_ROUNDING·(h + thickness)` keeps it in front; where boxes hold parts of primitives the
-//! share is greater (see `walk`).
+//! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping moves it by at most 2ε·px/h.
+//! A fragment of either may be off by [`DEPTH_TILT`] of its depth, since planes go on a little beyond edges. So
+//! `s ≥ lateral + (2·DEPTH_TILT + DEPTH_ROUNDING)·(h + thickness)` keeps it in front; where boxes hold parts of
+//! primitives the share is greater (see `walk`).
 
 use super::occluders::Occluders;
 use super::space::{Point, Shape, corner};
 use crate::geometry::{Aabb, View};
+use crate::raster::DEPTH_TILT;
 
 /// δ of the margin in pixels: 1/128, where 2ε is 1/181.
 const SNAP_PX: f64 = 1.0 / 128.0;
@@ -211,7 +212,7 @@ impl Margin {
         let secant = (1.0 + Self::spread(view).powi(2)).sqrt();
         Self {
             lateral: SNAP_PX * 2.0 * tan / f64::from(pixels),
-            depth: DEPTH_ROUNDING,
+            depth: 2.0 * DEPTH_TILT + DEPTH_ROUNDING,
             height: f64::from(view.eye.near) * secant * 1.01,
         }
     }
@@ -428,7 +429,7 @@ impl<S: Shape> Relation<S> {
             // on the distance behind the occluder's plane.
             _ => {
                 let lateral = margin.lateral * depth.max(0.0);
-                let front = lateral + DEPTH_ROUNDING * (eye_side.height + thickness + s);
+                let front = lateral + margin.depth * (eye_side.height + thickness + s);
                 Reason::Near(front.max(eye_side.reach * lateral / eye_side.height))
             }
         }

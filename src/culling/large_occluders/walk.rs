@@ -25,7 +25,8 @@ use crate::scene::Scene;
 /// By how much, relative to its distance, an occluder must be nearer than a part of a primitive that reaches
 /// out of its box.
 const PARTS_DEPTH: f64 = 1.0 / (1u32 << 11) as f64;
-/// [`Walk::is_edge_on`]: 2⁻²⁴ · (6 · 768 + 8) is below [`PARTS_DEPTH`].
+/// [`Walk::is_edge_on`]: 2⁻²⁴ · (6 · 768 + 8) and twice [`crate::raster::DEPTH_TILT`], together, are below
+/// [`PARTS_DEPTH`].
 const EDGE_ON: f64 = 768.0;
 
 /// One traversal.
@@ -478,7 +479,7 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Whether the eye sees a primitive so much from its edge that the depth of a part of it may be off by
     /// more than the margin of [`PARTS_DEPTH`].
     ///
-    /// The rasterizer's depth is `z + dx·X + dy·Y` in 32 bits, X and Y from the farthest corner. The sum of
+    /// The rasterizer's depth is `z + dx·X + dy·Y` in 32 bits, X and Y from the farthest corner as snapped. The sum of
     /// the terms' amounts exceeds the depth itself, along the plane's horizon, by at most `(1 + t)·L/H`: H
     /// the distance of the eye from the plane, L the longest edge, t the tangent of the angle from the line
     /// of sight to a corner of the image. Each term is rounded a few times by 2⁻²⁴. In flatland there is but

@@ -1,5 +1,7 @@
 //! The rules an image keeps: edges shared without gap or overlap, order, subsets, rays, the frustum.
 
+use super::super::setup::{Plane, area};
+use super::super::vertex::{Camera, Vertex};
 use super::*;
 use crate::geometry::{Frustum, FrustumTest};
 
@@ -149,6 +151,51 @@ fn fans_across_the_near_plane_and_off_screen_are_watertight() {
             assert!(changes <= 2, "round {round}: column {x} has a gap");
         }
     }
+}
+
+#[test]
+fn depth_planes_go_through_unsnapped_corners_unless_they_would_go_far_off() {
+    let dice = &mut Dice::new(16);
+    let view = straight_view(1024, 0.1, 1e4);
+    let camera = Camera::new(&view);
+    let (mut through, mut steep) = (0, 0);
+    for round in 0..20_000 {
+        // Far from the eye and up to a few pixels wide: gentle ones, and ones that run into the depth.
+        let middle = at_px(1024, 512.0, 512.0, f64::from(dice.between(5.0, 500.0)));
+        let deep = Vec3::new(0.05, 0.05, [0.05, 5.0, 200.0][round % 3]);
+        let corners = [(); 3].map(|()| middle + dice.point(1.0) * deep);
+        let vertices = corners.map(|p| camera.vertex(camera.clip(p)));
+        let v = [&vertices[0], &vertices[1], &vertices[2]];
+        if area(v) == 0 || v.iter().any(|v| v.outside() != 0) {
+            continue;
+        }
+        let plane = Plane::of(v);
+        let off = |v: &Vertex, [x, y]: [f64; 2]| {
+            let across = f64::from(plane.dx) * (f64::from(v.x - plane.x) + x);
+            let down = f64::from(plane.dy) * (f64::from(v.y - plane.y) + y);
+            // Slopes are rounded to 24 bits.
+            let rounding = (across.abs() + down.abs() + f64::from(plane.z)) * 2f64.powi(-22);
+            (f64::from(plane.z) + across + down - f64::from(v.z), rounding)
+        };
+        // Over the snapped triangle its depth is nowhere far from that of the corners, mixed.
+        for v in v {
+            let (off, rounding) = off(v, [0.0; 2]);
+            assert!(off.abs() <= DEPTH_TILT * f64::from(v.z) + rounding, "round {round}: {off} off {}", v.z);
+        }
+        let is_through = v.iter().all(|v| {
+            let (off, rounding) = off(v, v.rest());
+            off.abs() <= rounding
+        });
+        let slope = (f64::from(plane.dx).abs() + f64::from(plane.dy).abs()) * 0.5;
+        // Those through the snapped corners are steep, or as thin as the grid.
+        assert!(
+            is_through || slope > DEPTH_TILT * f64::from(plane.low) || area(v).abs() < 1 << 12,
+            "{round}"
+        );
+        through += usize::from(is_through);
+        steep += usize::from(!is_through);
+    }
+    assert!(through > 5000 && steep > 500, "{through} go through their corners, {steep} do not");
 }
 
 #[test]
