@@ -30,8 +30,8 @@ fn street() -> Arc<Scene<Flat>> {
     }
 }
 
-/// Which primitive each pixel of a view shows, in f64 and on no grid: a ray through the pixel's center meets a
-/// triangle where it lies on one side of the three planes through the eye and an edge.
+/// Which primitive each pixel of a view shows, in f64 and on no grid: a ray through the pixel's center meets
+/// a triangle where it lies on one side of the three planes through the eye and an edge.
 fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> {
     let projection = view.projection();
     let (eye, rows) = (projection.eye.as_dvec3(), projection.rows.map(|row| row.as_dvec3()));
@@ -78,8 +78,8 @@ fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> 
 #[test]
 fn what_pixels_show_agrees_with_exact_arithmetic() {
     // Of ten views along the path those in which depth planes through snapped corners let faces that are seen
-    // nearly edge-on win whole rows: 259 and 271 pixels of a million, and now 4 and 16. In the city edges alone
-    // are moved.
+    // nearly edge-on win whole rows: 259 and 271 pixels of a million, and now 4 and 16. In the city edges
+    // alone are moved.
     for (source, numbers, least_share) in
         [("generate:building", [2, 7], 0.999_98), ("generate:city", [0, 2], 0.9999)]
     {

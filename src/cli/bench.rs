@@ -14,7 +14,7 @@ use crate::culling::hierarchical_z_parts::{METHOD, Obscurer};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::method::Settings;
-use crate::raster::{Drawable, Options, Target};
+use crate::raster::{Answer, Boxes, Clusters, Drawable, Isa, Options, Target, Tiles};
 use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, Surfaces};
 
 #[derive(clap::Subcommand)]
@@ -43,8 +43,8 @@ pub(super) struct Args {
     /// Image size in pixels
     #[arg(long, value_name = "WxH", value_parser = super::paper::size)]
     size: [u32; 2],
-    /// The method
-    #[arg(long, value_name = "METHOD", default_value = METHOD, value_parser = [METHOD])]
+    /// The method, or `tiles`: the depth structure by itself, clusters of occluders drawn front to back
+    #[arg(long, value_name = "METHOD", default_value = METHOD, value_parser = [METHOD, TILES])]
     method: String,
     /// A parameter of the method; may be given several times [default: coherence=false backface-culling=true]
     #[arg(long, value_name = "KEY=VALUE")]
@@ -62,6 +62,9 @@ pub(super) struct Args {
     dump_vis: Option<PathBuf>,
 }
 
+/// Stands for the depth structure where a method is named.
+const TILES: &str = "tiles";
+
 /// How many times finer the image is on whose samples `false` is counted.
 const FINER: u32 = 2;
 
@@ -74,6 +77,9 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
     );
     settings.0.extend(methods::settings(&args.set)?.0);
     // Words that are off are told before files are read.
+    if args.method == TILES && !args.set.is_empty() {
+        return Err(CliError::words("--set", "tiles have no parameters: leave it out"));
+    }
     <Solid as Methods>::method(&args.method).map(|m| m.knobs(&settings)).transpose()?;
     let AnyScene::Solid(mesh) = scene::open(&args.mesh, &LoadOptions::default())? else {
         return Err(CliError::work(&args.mesh, "a flatland scene; occluders must be triangles in space"));
@@ -91,8 +97,11 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
             .map_err(|why| CliError::work(format!("{} line {}", args.cams.display(), i + 1), why))
     });
     let views = views.collect::<Result<Vec<_>, _>>()?;
-    let Some(mut occluders) = Obscurer::new(&mesh, &settings, &Quiet)? else {
-        return Err(CliError::Interrupted);
+    let mut occluders = if args.method == TILES {
+        Occluders::in_tiles(&mesh, &boxes)
+    } else {
+        let cubes = Obscurer::new(&mesh, &settings, &Quiet)?;
+        Occluders::Cubes(Box::new(cubes.ok_or(CliError::Interrupted)?))
     };
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
@@ -152,6 +161,57 @@ fn view(c: &[f64], eye: Vec3, all: &Aabb<Vec3>, [width, height]: [u32; 2]) -> Re
     eye.fault().map_or(Ok(View { eye, width, height }), |why| Err(why.to_owned()))
 }
 
+/// What draws occluders and answers.
+enum Occluders {
+    /// The method's octree.
+    Cubes(Box<Obscurer<Solid>>),
+    /// The depth structure by itself.
+    Tiles(Box<InTiles>),
+}
+
+/// Clusters of occluders, the tiles that they are drawn into, and the boxes to ask for.
+struct InTiles {
+    clusters: Clusters,
+    tiles: Tiles,
+    boxes: Boxes,
+    answers: Vec<Answer>,
+}
+
+/// Back faces are culled.
+const ONE_SIDED: Surfaces = Surfaces { one_sided: true, solid: false };
+
+impl Occluders {
+    fn in_tiles(mesh: &Scene<Solid>, boxes: &[Aabb<Vec3>]) -> Self {
+        Self::Tiles(Box::new(InTiles {
+            clusters: Clusters::new(mesh, ONE_SIDED, [mesh.live()]),
+            tiles: Tiles::default(),
+            boxes: Boxes::new(boxes.iter().copied()),
+            answers: Vec::new(),
+        }))
+    }
+    fn render(&mut self, view: &View<Solid>) {
+        match self {
+            Self::Cubes(cubes) => _ = cubes.render(view, true),
+            Self::Tiles(all) => {
+                all.tiles.clear(view, true);
+                all.tiles.draw(&all.clusters, ONE_SIDED.one_sided, Isa::best());
+            }
+        }
+    }
+    /// Asks for all boxes; `None`: out of view.
+    fn hides(&mut self, bounds: &[Aabb<Vec3>]) -> Vec<Option<bool>> {
+        match self {
+            Self::Cubes(cubes) => bounds.iter().map(|b| cubes.hides(b)).collect(),
+            Self::Tiles(all) => {
+                all.tiles.hides_all(&all.boxes, true, Isa::best(), &mut all.answers);
+                let hidden =
+                    |&answer: &Answer| (answer != Answer::Outside).then_some(answer == Answer::Hidden);
+                all.answers.iter().map(hidden).collect()
+            }
+        }
+    }
+}
+
 /// What came out.
 struct Measured {
     render_ms: f64,
@@ -161,7 +221,7 @@ struct Measured {
 }
 
 fn measure(
-    occluders: &mut Obscurer<Solid>,
+    occluders: &mut Occluders,
     mesh: &Arc<Scene<Solid>>,
     views: &[View<Solid>],
     boxes: &[Aabb<Vec3>],
@@ -173,8 +233,8 @@ fn measure(
         let (mut render, mut query) = (Vec::new(), Vec::new());
         let mut answers = Vec::new();
         for _ in 0..repeat {
-            render.push(timed(|| occluders.render(view, true)).1);
-            let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(b)).collect::<Vec<_>>());
+            render.push(timed(|| occluders.render(view)).1);
+            let (all, ms) = timed(|| occluders.hides(boxes));
             query.push(ms);
             answers = all;
         }
@@ -201,11 +261,7 @@ fn wrongly_hidden(
         mesh,
         &fine,
         mesh.live(),
-        &Options {
-            surfaces: Surfaces { one_sided: true, ..Surfaces::default() },
-            threads: 0,
-            ..Options::default()
-        },
+        &Options { surfaces: ONE_SIDED, threads: 0, ..Options::default() },
     );
     let hidden = boxes.iter().zip(answers).filter(|(_, a)| **a == Some(true)).map(|(b, _)| b);
     hidden.filter(|b| shows(&fine, b, &image)).count()

@@ -278,11 +278,14 @@ pub(super) fn fragments(
     }
 }
 
-/// The triangles of what clipping leaves of a triangle, as a fan.
+/// The triangles of what clipping leaves of a triangle, as a fan from its least corner: the same ones
+/// wherever the triangle's corners begin and whichever way round they run.
 pub(super) fn clip(camera: &Camera, corners: [Clip; 3]) -> impl Iterator<Item = [Vertex; 3]> {
     let polygon = camera.clipped(&corners);
+    let corners = polygon.corners();
+    let least = (1..corners.len()).fold(0, |least, i| if corners[i] < corners[least] { i } else { least });
     let mut fan = [Vertex::default(); 8];
-    for (to, &from) in fan.iter_mut().zip(polygon.corners()) {
+    for (to, &from) in fan.iter_mut().zip(corners.iter().cycle().skip(least).take(corners.len())) {
         *to = camera.clipped_vertex(from);
     }
     (2..polygon.corners().len()).map(move |i| [fan[0], fan[i - 1], fan[i]])

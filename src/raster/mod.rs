@@ -2,8 +2,8 @@
 //!
 //! What it is: for each pixel center the nearest primitive that covers it. Vertices are projected in
 //! f64 and snapped to a grid of 1/256 pixel; coverage is decided by exact integer edge functions with
-//! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone, in the plane
-//! through its vertices as they were before snapping.
+//! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone, in the
+//! plane through its vertices as they were before snapping.
 //! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
 //! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
 //! primitives that were hidden changes no byte. [`mod@reference`] does the same in the plainest code.
@@ -27,6 +27,7 @@ mod stand_in;
 #[cfg(test)]
 mod tests;
 mod through;
+mod tiles;
 mod vertex;
 
 pub use pyramid::{Pyramid, PyramidCell};
@@ -35,6 +36,7 @@ pub use simd::Isa;
 pub use srgb::{srgb, srgb_bytes};
 pub use stand_in::StandIn;
 pub use through::look_through;
+pub use tiles::{Answer, Boxes, Clusters, Tiles};
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::{Scene, Surfaces};
@@ -125,11 +127,11 @@ impl std::fmt::Debug for Target {
     }
 }
 
-/// How much of its depth a fragment may differ by from a point of its primitive that belongs within half a grid
-/// step, in both directions, of the pixel's center; besides the rounding of 32 bits. It is never nearer than the
-/// nearest of the primitive's vertices, nor farther than the farthest. (A plane through unsnapped vertices is
-/// right at the centers that the primitive covers and goes on beyond its edges to those that its snapped image
-/// covers besides; see `setup`. Nearly all that are seen change less than this.)
+/// How much of its depth a fragment may differ by from a point of its primitive that belongs within half a
+/// grid step, in both directions, of the pixel's center; besides the rounding of 32 bits. It is never nearer
+/// than the nearest of the primitive's vertices, nor farther than the farthest. (A plane through unsnapped
+/// vertices is right at the centers that the primitive covers and goes on beyond its edges to those that its
+/// snapped image covers besides; see `setup`. Nearly all that are seen change less than this.)
 pub const DEPTH_TILT: f64 = 1.0 / (1u32 << 14) as f64;
 
 /// How to draw. None of it but `surfaces` and `window` changes the image.

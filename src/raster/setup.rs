@@ -4,13 +4,13 @@
 //! 256 grid steps apart an edge function changes by multiples of 256 from center to center, so its low 8 bits
 //! never matter and `E >> 8` has the sign of `E` at every center and steps by the edge itself.
 //!
-//! Corners are snapped for coverage alone. The depth plane goes through the places where they were: one through
-//! snapped corners would be tilted, and a face seen nearly edge-on would win whole rows from its neighbors.
-//! Over the snapped triangle that plane differs from the corners' depths, mixed, by what it changes along the
-//! way that a corner was moved, half a grid step an axis at most. Where that exceeds [`DEPTH_TILT`] of the
-//! depth, the plane goes through the snapped corners instead. So what covers a pixel's center has the depth
-//! there, but for that share, of a point of the primitive that belongs within half a grid step of it; without
-//! the bound a face seen edge-on could come before what hides it.
+//! Corners are snapped for coverage alone. The depth plane goes through the places where they were: one
+//! through snapped corners would be tilted, and a face seen nearly edge-on would win whole rows from its
+//! neighbors. Over the snapped triangle that plane differs from the corners' depths, mixed, by what it
+//! changes along the way that a corner was moved, half a grid step an axis at most. Where that exceeds
+//! [`DEPTH_TILT`] of the depth, the plane goes through the snapped corners instead. So what covers a pixel's
+//! center has the depth there, but for that share, of a point of the primitive that belongs within half a
+//! grid step of it; without the bound a face seen edge-on could come before what hides it.
 //!
 //! In the order of cost: the box drops triangles between pixel centers, the area drops flat ones, then come
 //! the plane and the three edges.
@@ -22,7 +22,8 @@ use crate::geometry::PixelRect;
 /// Depth over the image: `1/w` is linear there. Grid steps; larger is nearer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plane {
-    /// Where the depth is `z`: the farthest vertex as snapped, so that distant pixels lose nothing to near ones.
+    /// Where the depth is `z`: the farthest vertex as snapped, so that distant pixels lose nothing to near
+    /// ones.
     pub x: i32,
     /// Row of that vertex.
     pub y: i32,
@@ -50,9 +51,9 @@ impl Plane {
     pub fn of(v: [&Vertex; 3]) -> Self {
         let [a, b, c] = v;
         // From the farthest vertex; all three orders turn the same way.
-        let (o, p, q) = if c.z < a.z.min(b.z) {
+        let (o, p, q) = if is_farther(c, a) && is_farther(c, b) {
             (c, a, b)
-        } else if b.z < a.z {
+        } else if is_farther(b, a) {
             (b, c, a)
         } else {
             (a, b, c)
@@ -70,7 +71,7 @@ impl Plane {
     }
     /// The plane of a flatland segment between vertices of different columns; the same, one dimension down.
     pub fn of_segment(a: Vertex, b: Vertex) -> Self {
-        let (o, p) = if b.z < a.z { (b, a) } else { (a, b) };
+        let (o, p) = if is_farther(&b, &a) { (b, a) } else { (a, b) };
         let rise = f64::from(p.z) - f64::from(o.z);
         let slope = [rise / unsnapped(&o, &p)[0], 0.0];
         if is_gentle(slope, o.z) {
@@ -102,6 +103,13 @@ impl Plane {
     }
 }
 
+/// Whether a vertex is farther than another; of equally far ones by their places, so that a plane does not
+/// depend on which corner of its triangle comes first.
+#[inline(always)]
+fn is_farther(a: &Vertex, b: &Vertex) -> bool {
+    a.z < b.z || a.z == b.z && (a.x, a.y, a.packed) < (b.x, b.y, b.packed)
+}
+
 /// From one vertex to another on the grid.
 #[inline(always)]
 fn snapped(from: &Vertex, to: &Vertex) -> [f64; 2] {
@@ -128,8 +136,8 @@ fn slopes(p: [f64; 2], q: [f64; 2], rise: [f64; 2]) -> ([f64; 2], bool) {
     ([dx, dy], area.abs() > FLAT * (one.abs() + other.abs()))
 }
 
-/// Whether half a grid step along each axis changes the depth by at most [`DEPTH_TILT`] of the least, so at no
-/// corner by more.
+/// Whether half a grid step along each axis changes the depth by at most [`DEPTH_TILT`] of the least, so at
+/// no corner by more.
 #[inline(always)]
 fn is_gentle(slope: [f64; 2], low: f32) -> bool {
     // Slopes without an area are not numbers, and gentle neither.

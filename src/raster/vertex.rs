@@ -4,8 +4,8 @@
 //! relative to the eye, so it is exact to about 2⁻⁵⁰ and the snap to 1/256 pixel is the one error that
 //! counts. What the snap takes is kept, in parts of 2⁻¹⁸ pixel: corners are moved for coverage alone, and
 //! depth planes go through the places where they were. Clipping (near plane and guard band) also runs in f64,
-//! in clip space, and cuts an edge from its lesser end whichever triangle it belongs to, so that neighbors keep
-//! sharing their edges.
+//! in clip space, and cuts an edge from its lesser end whichever triangle it belongs to, so that neighbors
+//! keep sharing their edges.
 
 use crate::geometry::{Space, Vector, View};
 
@@ -15,7 +15,7 @@ pub(super) const SUBPIXEL_BITS: i32 = 8;
 pub(super) const CENTER: i32 = 1 << (SUBPIXEL_BITS - 1);
 /// Half the side of the guard band about the middle of the image, grid steps: 16384 pixels. Inside it
 /// coordinate differences stay below 2²³, exact in f32, and edge functions below 2⁴⁸.
-const GUARD: f64 = 16384.0 * (1 << SUBPIXEL_BITS) as f64;
+pub(super) const GUARD: f64 = 16384.0 * (1 << SUBPIXEL_BITS) as f64;
 
 /// A point in clip space: x, y, w. Flatland has y = 0.
 pub(super) type Clip = [f64; 3];
@@ -27,6 +27,7 @@ const REST_BITS: i32 = 12;
 
 /// A vertex on the pixel grid. Sixteen bytes, so that loops over points store whole vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
 pub(super) struct Vertex {
     /// Column, grid steps.
     pub x: i32,
@@ -35,7 +36,7 @@ pub(super) struct Vertex {
     /// 1/w.
     pub z: f32,
     /// From the low end: which planes it lies outside of, the rest of the column, that of the row.
-    packed: u32,
+    pub packed: u32,
 }
 
 impl Vertex {
@@ -72,14 +73,16 @@ pub(super) const NEEDS_CLIP: u32 = NEAR | OFF_GRID;
 pub(super) const REJECTS: u32 = OFF_GRID - 1;
 
 /// The view's projection to the pixel grid.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Camera {
-    eye: [f64; 3],
-    rows: [[f64; 3]; 3],
+    pub eye: [f64; 3],
+    /// Rows of x, y and w of clip space.
+    pub rows: [[f64; 3]; 3],
     /// Middle of the image, grid steps.
-    middle: [f64; 2],
-    near: f64,
-    depth_far: f32,
+    pub middle: [f64; 2],
+    pub near: f64,
+    /// Depth of the far plane.
+    pub depth_far: f32,
 }
 
 impl Camera {
@@ -227,8 +230,8 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// A coordinate on the grid and what the snap took from it, in parts of a step. Both to nearest, ties to even,
-/// for |v| < 2⁵⁰.
+/// A coordinate on the grid and what the snap took from it, in parts of a step. Both to nearest, ties to
+/// even, for |v| < 2⁵⁰.
 #[inline(always)]
 fn snap(v: f64) -> (i32, i32) {
     // At 1.5 · 2⁵² neighbors of f64 are 1 apart: the sum rounds, and its low bits are the integer, negative

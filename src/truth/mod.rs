@@ -5,10 +5,11 @@
 //! right if its image is that of the whole scene, byte for byte, see-through primitives that are visible
 //! included.
 //!
-//! So "visible" is said of a resolution, and of a grid: the rasterizer moves corners to 1/256 pixel, as graphics
-//! hardware does. Against exact arithmetic on the same centers of pixels that changes 1 pixel in 100,000 of the
-//! building that is generated and 7 of the city, nearly all on shared edges; but a primitive that shows in a
-//! single pixel may owe it to the grid. Where many are thinner than a pixel (`generate:thin-slabs`) a grid of
+//! So "visible" is said of a resolution, and of a grid: the rasterizer moves corners to 1/256 pixel, as
+//! graphics hardware does. Against exact arithmetic on the same centers of pixels that changes 1 pixel in
+//! 100,000 of the building that is generated and 7 of the city, nearly all on shared edges; but a primitive
+//! that shows in a single pixel may owe it to the grid. Where many are thinner than a pixel
+//! (`generate:thin-slabs`) a grid of
 //! 1/16 pixel changes 18 % of what is visible.
 
 pub mod certificate;

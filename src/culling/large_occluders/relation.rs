@@ -21,9 +21,9 @@
 //! `|r|·sin ψ` is P's distance from the supporting plane, the condition is
 //! `s · min(distance, h) ≥ |r| · lateral`, plus what f64 rounds (see [`ROUNDING`]).
 //! Depth: at the pixel, the occluder is nearer by s/(h·w) in 1/w, and snapping moves it by at most 2ε·px/h.
-//! A fragment of either may be off by [`DEPTH_TILT`] of its depth, since planes go on a little beyond edges. So
-//! `s ≥ lateral + (2·DEPTH_TILT + DEPTH_ROUNDING)·(h + thickness)` keeps it in front; where boxes hold parts of
-//! primitives the share is greater (see `walk`).
+//! A fragment of either may be off by [`DEPTH_TILT`] of its depth, since planes go on a little beyond edges.
+//! So `s ≥ lateral + (2·DEPTH_TILT + DEPTH_ROUNDING)·(h + thickness)` keeps it in front; where boxes hold
+//! parts of primitives the share is greater (see `walk`).
 
 use super::occluders::Occluders;
 use super::space::{Point, Shape, corner};

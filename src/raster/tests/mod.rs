@@ -4,6 +4,7 @@ mod equal;
 mod limits;
 mod pyramid;
 mod rules;
+mod tiles;
 
 use glam::{DVec3, Vec2, Vec3};
 

@@ -1,0 +1,199 @@
+//! Tiles: their exact depths are those of the image, what they claim is never nearer, instruction sets leave
+//! no trace, and no box is called hidden that owns a pixel.
+
+use super::*;
+use crate::geometry::{Aabb, Vector};
+
+const SETS: [Isa; 3] = [Isa::Portable, Isa::Avx2, Isa::Avx512];
+
+/// A scene of everything that tiles treat apart: boxes that pair to quadrangles, bent pairs, slivers,
+/// triangles from less than a pixel to far beyond the image, some of them before and behind the eye.
+fn mixed(dice: &mut Dice, count: usize) -> Scene<Solid> {
+    let (mut points, mut prims) = (Vec::new(), Vec::<[u32; 3]>::new());
+    for _ in 0..count {
+        let first = points.len() as u32;
+        let size = [0.02, 0.3, 3.0, 30.0][dice.below(4) as usize];
+        let at = Vec3::new(dice.signed(8.0), dice.signed(8.0), dice.between(-20.0, 3.0));
+        match dice.below(4) {
+            0 => {
+                let half = Vec3::new(dice.unit(), dice.unit(), dice.unit()) * size;
+                points
+                    .extend((0..8).map(|k| {
+                        at + half * Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32)
+                    }));
+                let faces =
+                    [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+                prims.extend(
+                    faces
+                        .iter()
+                        .flat_map(|f| [[f[0], f[1], f[2]], [f[0], f[2], f[3]]].map(|t| t.map(|c| c + first))),
+                );
+            }
+            1 => {
+                let (u, v) = (dice.point(size), dice.point(size));
+                let bend = dice.point(size * 0.1);
+                points.extend([at, at + u, at + u + v + bend, at + v]);
+                prims.extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|c| c + first)));
+            }
+            2 => {
+                let (along, off) = (dice.point(size), dice.point(size * 0.001));
+                points.extend([at, at + along, at + along * dice.unit() + off]);
+                prims.push([first, first + 1, first + 2]);
+            }
+            _ => {
+                points.extend([at, at + dice.point(size), at + dice.point(size)]);
+                prims.push([first, first + 1, first + 2]);
+            }
+        }
+    }
+    with_materials(scene_of(points, prims), |at| at % 17 == 3, |at| at % 5 < 2)
+}
+fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
+    let position = dice.point(3.0);
+    let eye = Eye {
+        position,
+        target: position + Vec3::new(dice.signed(0.5), dice.signed(0.5), -1.0),
+        up: Vec3::Y,
+        fov: dice.between(0.3, 2.2),
+        near: 0.05,
+        far: 60.0,
+    };
+    View { eye, width, height }
+}
+fn sizes(round: u32) -> (u32, u32) {
+    [(64, 64), (97, 53), (33, 130), (1, 1), (320, 200), (700, 40)][round as usize % 6]
+}
+fn drawn(scene: &Scene<Solid>, view: &View<Solid>, surfaces: Surfaces, isa: Isa) -> Tiles {
+    // Groups of all sizes: clusters of a few primitives, and some that are split.
+    let groups: Vec<&[PrimId]> = scene.live().chunks(37).collect();
+    let clusters = Clusters::new(scene, surfaces, groups);
+    let mut tiles = Tiles::default();
+    tiles.clear(view, true);
+    tiles.draw(&clusters, surfaces.one_sided, isa);
+    tiles
+}
+fn image(scene: &Scene<Solid>, view: &View<Solid>, surfaces: Surfaces) -> Target {
+    let mut target = Target::new(view);
+    Solid::draw(&mut target, scene, view, scene.live(), &Options { surfaces, ..Options::default() });
+    target
+}
+
+/// The plain reference is the image itself, which equals [`mod@super::super::reference`].
+#[test]
+fn exact_depths_are_those_of_the_image_on_every_instruction_set() {
+    let mut dice = Dice::new(71);
+    for round in 0..ROUNDS {
+        let scene = mixed(&mut dice, 20 + round as usize * 7 % 400);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let surfaces = [BOTH_SIDES, ONE_SIDED][round as usize % 2];
+        let truth = image(&scene, &view, surfaces);
+        let first = drawn(&scene, &view, surfaces, Isa::Portable);
+        for isa in SETS {
+            let mut tiles = drawn(&scene, &view, surfaces, isa);
+            assert!(tiles == first, "{} left a trace in round {round}", isa.label());
+            let depths = tiles.depths(isa);
+            for (at, (&is, &should)) in depths.iter().zip(&truth.depth).enumerate() {
+                let (x, y) = (at as u32 % width, at as u32 / width);
+                assert_eq!(is.to_bits(), should.to_bits(), "({x}, {y}) holds {is}, not {should}; {round}");
+            }
+        }
+    }
+}
+const ROUNDS: u32 = 120;
+
+/// What a tile claims while nothing was looked at closer: no pixel is farther, and what was ever covered is.
+#[test]
+fn a_tile_claims_nothing_nearer_than_its_farthest_pixel() {
+    let mut dice = Dice::new(72);
+    for round in 0..ROUNDS {
+        let scene = mixed(&mut dice, 200);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let truth = image(&scene, &view, ONE_SIDED);
+        let tiles = drawn(&scene, &view, ONE_SIDED, Isa::best());
+        tiles.assert_claims(&truth.depth);
+    }
+}
+
+/// A random box, many of them small, or thin, or around what is drawn.
+fn random_box(dice: &mut Dice) -> Aabb<Vec3> {
+    let size = [0.05, 0.5, 4.0][dice.below(3) as usize];
+    let at = Vec3::new(dice.signed(8.0), dice.signed(8.0), dice.between(-25.0, 4.0));
+    let half = Vec3::new(dice.unit(), dice.unit(), dice.unit()) * size;
+    Aabb { min: at - half, max: at + half }
+}
+
+#[test]
+fn a_hidden_box_owns_no_pixel_and_answers_do_not_depend_on_the_instruction_set() {
+    let (mut dice, mut counts) = (Dice::new(73), [0usize; 3]);
+    for round in 0..ROUNDS / 2 {
+        let scene = mixed(&mut dice, 150);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let truth = image(&scene, &view, ONE_SIDED);
+        let boxes: Vec<Aabb<Vec3>> = (0..300).map(|_| random_box(&mut dice)).collect();
+        let all = Boxes::new(boxes.iter().copied());
+        let ask = |isa: Isa, exact: bool| {
+            let mut answers = Vec::new();
+            drawn(&scene, &view, ONE_SIDED, isa).hides_all(&all, exact, isa, &mut answers);
+            answers
+        };
+        let (exact, coarse) = (ask(Isa::best(), true), ask(Isa::best(), false));
+        for isa in SETS {
+            assert_eq!((&ask(isa, true), &ask(isa, false)), (&exact, &coarse), "{}", isa.label());
+        }
+        for (bounds, (&exact, &coarse)) in boxes.iter().zip(exact.iter().zip(&coarse)) {
+            counts[exact as usize] += 1;
+            assert!(coarse != Answer::Hidden || exact == Answer::Hidden, "only tiles hide {bounds:?}");
+            if exact != Answer::Visible {
+                owns_nothing(&mut dice, bounds, &view, &truth);
+            }
+        }
+    }
+    assert!(counts.iter().all(|&c| c > 500), "visible, hidden, outside: {counts:?}");
+}
+/// Primitives of a box, on its corners, edges and faces and within, win no pixel.
+fn owns_nothing(dice: &mut Dice, bounds: &Aabb<Vec3>, view: &View<Solid>, truth: &Target) {
+    let mut point = || {
+        <Vec3 as Vector>::from_fn(|a| {
+            let (low, high) = (bounds.min[a], bounds.max[a]);
+            match dice.below(5) {
+                0 | 1 => low,
+                2 | 3 => high,
+                _ => (low + (high - low) * dice.unit()).clamp(low, high),
+            }
+        })
+    };
+    let triangles: Vec<[Vec3; 3]> = (0..12).map(|_| [point(), point(), point()]).collect();
+    let inside = soup(&triangles);
+    for &prim in inside.live() {
+        Solid::fragments(&inside, view, prim, &Options::default(), &mut |at, depth| {
+            let (x, y) = (at as u32 % view.width, at as u32 / view.width);
+            assert!(
+                depth < truth.depth[at],
+                "{bounds:?} shows at ({x}, {y}), {depth} before {}: {view:?}",
+                truth.depth[at]
+            );
+        });
+    }
+}
+
+/// Of a quadrangle's four corners any may come first, and either way round: the plane and the parts that
+/// clipping leaves do not change.
+#[test]
+fn a_triangle_is_the_same_wherever_its_corners_begin() {
+    let mut dice = Dice::new(74);
+    for _ in 0..3000 {
+        let mut at = || {
+            Vec3::new(dice.signed(3.0), dice.signed(3.0), [-4.0, dice.signed(6.0)][dice.below(2) as usize])
+        };
+        let t = [at(), at(), at()];
+        let view = straight_view(24, 0.05, 50.0);
+        let depths = |t: [Vec3; 3]| render(&soup(&[t]), &view, &[PrimId(0)]).depth;
+        let first = depths(t);
+        for k in [[1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0]] {
+            assert_eq!(first, depths(k.map(|i: usize| t[i])), "{t:?} by {k:?}");
+        }
+    }
+}

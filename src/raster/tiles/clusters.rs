@@ -1,0 +1,347 @@
+//! Occluders made ready to be drawn many at a time: clusters of quadrangles and triangles.
+//!
+//! 1. Points at one place become one.
+//! 2. Neighboring triangles that are about flat and convex together become a quadrangle ([`pair`]).
+//! 3. Each group is split at the medians of its longest axes to clusters of at most [`Clusters::MOST`]
+//!    primitives, each with points of its own, as structures of arrays ([`split`]).
+//!
+//! Cost: O(n log n) time, about 60 bytes a triangle.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Aabb, PrimId, Solid};
+use crate::scene::{Scene, Surfaces};
+
+/// Boxes by axes, so that many are compared at a time; padded to whole vectors.
+#[derive(Clone, Debug, Default)]
+pub struct Boxes {
+    pub(super) low: [Vec<f32>; 3],
+    pub(super) high: [Vec<f32>; 3],
+    count: usize,
+    /// Sum of their greatest coordinates.
+    pub(super) reach: f32,
+}
+
+impl Boxes {
+    /// From boxes as they are.
+    pub fn new(boxes: impl IntoIterator<Item = Aabb<Vec3>>) -> Self {
+        let mut all = Self::default();
+        for bounds in boxes {
+            all.push(bounds);
+            all.count += 1;
+        }
+        let most = |v: &[f32]| v.iter().fold(0.0, |m: f32, x| m.max(x.abs()));
+        all.reach = (0..3).map(|a| most(&all.low[a]).max(most(&all.high[a]))).sum();
+        // A vector reads up to 15 boxes past the last one; what it finds there is left out.
+        (0..16).for_each(|_| all.push(Aabb { min: Vec3::ZERO, max: Vec3::ZERO }));
+        all
+    }
+    fn push(&mut self, bounds: Aabb<Vec3>) {
+        for a in 0..3 {
+            self.low[a].push(bounds.min[a]);
+            self.high[a].push(bounds.max[a]);
+        }
+    }
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+    /// Both corners of one.
+    #[inline(always)]
+    pub(super) fn at(&self, i: usize) -> [[f32; 3]; 2] {
+        [
+            [self.low[0][i], self.low[1][i], self.low[2][i]],
+            [self.high[0][i], self.high[1][i], self.high[2][i]],
+        ]
+    }
+}
+
+/// Primitives that are drawn together or not at all.
+#[derive(Clone, Debug)]
+pub(super) struct Cluster {
+    /// Middle of its bounds, from which its planes are measured.
+    pub middle: [f32; 3],
+    /// Distance of its farthest point from the middle, or a little more.
+    pub reach: f32,
+    /// Its points and its primitives among all.
+    pub points: Range<usize>,
+    pub prims: Range<usize>,
+}
+
+/// Clusters of the occluders of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Clusters {
+    pub(super) clusters: Vec<Cluster>,
+    /// Their bounds.
+    pub(super) boxes: Boxes,
+    /// Coordinates of the points; the points of a cluster begin at a multiple of 16.
+    pub(super) points: [Vec<f32>; 3],
+    /// Corners of each primitive as numbers of points of its cluster, 16 bits each, lowest first; those of a
+    /// triangle end with the same twice. They run clockwise on the screen where the front is seen. A
+    /// quadrangle
+    /// 0 1 2 3 is the triangles 0 1 2 and 0 2 3. [`TWO_SIDED`] is set where both sides are seen.
+    pub(super) words: Vec<u64>,
+    /// Whether any is.
+    pub(super) any_two_sided: bool,
+    /// Unit normals and offsets from the cluster's middle, of the first and the second triangle.
+    pub(super) planes: [Vec<f32>; 8],
+}
+
+/// The bit of a word.
+pub(super) const TWO_SIDED: u64 = 1 << 15;
+/// The bits of a corner's number in its 16.
+const CORNER: u64 = 0x1ff;
+/// Two triangles whose normals differ by more than this cosine says stay apart: a bent quadrangle holds its
+/// depth less tightly than its triangles.
+const LEAST_COSINE: f64 = 0.9;
+/// Sines of the corners of a quadrangle: flatter ones would turn over on the pixel grid.
+const LEAST_SINE: f64 = 1e-3;
+
+/// Three corners, and whether both sides are seen.
+type Triangle = ([u32; 3], bool);
+/// Four corners; those of a triangle end with the same twice.
+type Prim = ([u32; 4], bool);
+
+/// The word of a primitive's first triangle, or of the second one.
+pub(super) fn half(word: u64, second: bool) -> u64 {
+    let at = |k: u32| word >> (16 * k) & CORNER;
+    let [b, c] = if second { [at(2), at(3)] } else { [at(1), at(2)] };
+    word & TWO_SIDED | at(0) | b << 16 | c << 32 | c << 48
+}
+/// A corner's number.
+#[inline(always)]
+pub(super) fn corner(word: u64, which: usize) -> usize {
+    (word >> (16 * which) & CORNER) as usize
+}
+/// Whether a word is that of a quadrangle.
+#[inline(always)]
+pub(super) fn is_quadrangle(word: u64) -> bool {
+    corner(word, 2) != corner(word, 3)
+}
+/// The same corners the other way round.
+pub(super) fn reversed(word: u64) -> u64 {
+    let at = |k: u32| word >> (16 * k) & CORNER;
+    // A triangle ends with the same corner twice, whichever way round.
+    let [b, c, d] = if at(2) == at(3) { [at(2), at(1), at(1)] } else { [at(3), at(2), at(1)] };
+    word & TWO_SIDED | at(0) | b << 16 | c << 32 | d << 48
+}
+
+impl Clusters {
+    /// Most primitives of a cluster: measured, the least time of 64 to 512.
+    pub const MOST: usize = 128;
+
+    /// Makes clusters of primitives of a scene in groups; no cluster holds primitives of two groups. What
+    /// lets light through hides nothing and is left out.
+    pub fn new<'a>(
+        scene: &Scene<Solid>,
+        surfaces: Surfaces,
+        groups: impl IntoIterator<Item = &'a [PrimId]>,
+    ) -> Self {
+        let points = scene.points();
+        let place = welded(points);
+        let mut all = Self::default();
+        let mut boxes = Vec::new();
+        let mut own = vec![u32::MAX; points.len()];
+        for group in groups {
+            // 1. Points at one place are one.
+            let opaque = group.iter().filter(|&&prim| !surfaces.show_through(scene, prim));
+            let triangles: Vec<Triangle> = opaque
+                .filter_map(|&prim| Some((scene.corners(prim)?, scene.is_two_sided(prim))))
+                .map(|(corners, two_sided)| (corners.map(|c| place[c as usize]), two_sided))
+                .filter(|([a, b, c], _)| a != b && b != c && c != a)
+                .collect();
+            // 2. Quadrangles.
+            let mut prims = pair(points, &triangles);
+            // 3. Clusters.
+            let mut parts = Vec::new();
+            split(points, &mut prims, 0, &mut parts);
+            for part in parts {
+                boxes.push(all.add(points, &prims[part], &mut own));
+            }
+        }
+        all.boxes = Boxes::new(boxes);
+        all
+    }
+    /// How many triangles and quadrangles there are.
+    pub fn prim_count(&self) -> usize {
+        self.clusters.iter().map(|c| c.prims.len()).sum()
+    }
+    /// How many clusters.
+    pub fn len(&self) -> usize {
+        self.clusters.len()
+    }
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.clusters.is_empty()
+    }
+
+    /// Appends a cluster and returns its bounds. `own`: scratch, a number for each point, all unset.
+    fn add(&mut self, points: &[Vec3], prims: &[Prim], own: &mut [u32]) -> Aabb<Vec3> {
+        let (first_point, first_prim) = (self.points[0].len(), self.words.len());
+        let mut used = Vec::new();
+        for &(corners, is_two_sided) in prims {
+            self.any_two_sided |= is_two_sided;
+            let mut word = if is_two_sided { TWO_SIDED } else { 0 };
+            for (k, &c) in corners.iter().enumerate() {
+                if own[c as usize] == u32::MAX {
+                    own[c as usize] = used.len() as u32;
+                    used.push(c);
+                    let p = points[c as usize];
+                    self.points.iter_mut().zip([p.x, p.y, p.z]).for_each(|(to, v)| to.push(v));
+                }
+                word |= u64::from(own[c as usize]) << (16 * k);
+            }
+            self.words.push(word);
+        }
+        let bounds = Aabb::of(used.iter().map(|&c| points[c as usize]));
+        let middle = bounds.center();
+        let from_middle = |c: u32| points[c as usize].as_dvec3() - middle.as_dvec3();
+        for &([a, b, c, d], _) in prims {
+            let second = if c == d { [a, b, c] } else { [a, c, d] };
+            for (k, [a, b, c]) in [[a, b, c], second].into_iter().enumerate() {
+                // Corners run clockwise on the screen: the other way round about the normal.
+                let n = normal(points, [a, c, b]);
+                let plane = [n.x, n.y, n.z, n.dot(from_middle(a))];
+                self.planes[4 * k..].iter_mut().zip(plane).for_each(|(to, v)| to.push(v as f32));
+            }
+        }
+        let reach = used.iter().map(|&c| from_middle(c).length()).fold(0.0, f64::max);
+        used.iter().for_each(|&c| own[c as usize] = u32::MAX);
+        self.clusters.push(Cluster {
+            middle: middle.to_array(),
+            // More than rounding to f32 takes away.
+            reach: reach as f32 * 1.00001,
+            points: first_point..self.points[0].len(),
+            prims: first_prim..self.words.len(),
+        });
+        self.pad();
+        bounds
+    }
+    /// Fills up the last vectors: the last point again, and primitives that no eye sees from the front.
+    fn pad(&mut self) {
+        for p in &mut self.points {
+            let last = p.last().copied().unwrap_or_default();
+            p.resize(p.len().next_multiple_of(16), last);
+        }
+        self.words.resize(self.words.len().next_multiple_of(16), 0);
+        for (k, plane) in self.planes.iter_mut().enumerate() {
+            let beyond = if k % 4 == 3 { f32::MAX } else { 0.0 };
+            plane.resize(plane.len().next_multiple_of(16), beyond);
+        }
+    }
+}
+
+/// For each point the first one at its place.
+fn welded(points: &[Vec3]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    // Zeros of either sign are one place.
+    let key = |i: u32| points[i as usize].to_array().map(|x| (x + 0.0).to_bits());
+    order.sort_unstable_by_key(|&i| (key(i), i));
+    let mut first = vec![0; points.len()];
+    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        same.iter().for_each(|&i| first[i as usize] = same[0]);
+    }
+    first
+}
+
+/// Pairs of triangles with a common edge whose union is about flat and convex, the flattest and most compact
+/// first, and the triangles that are left. Turned round: what is counter-clockwise in space is clockwise on
+/// the screen, whose rows go down.
+fn pair(points: &[Vec3], triangles: &[Triangle]) -> Vec<Prim> {
+    let mut candidates = candidates(points, triangles);
+    candidates.sort_by(|x, y| x.worth.total_cmp(&y.worth).then(x.triangles.cmp(&y.triangles)));
+    let mut used = vec![false; triangles.len()];
+    let mut prims = Vec::with_capacity(triangles.len());
+    for Candidate { triangles: [i, j], corners: [a, d, b, c], .. } in candidates {
+        let (i, j) = (i as usize, j as usize);
+        if !used[i] && !used[j] {
+            (used[i], used[j]) = (true, true);
+            prims.push(([a, c, b, d], triangles[i].1));
+        }
+    }
+    let left = triangles.iter().zip(used).filter(|(_, used)| !used);
+    prims.extend(left.map(|(&([a, b, c], is_two_sided), _)| ([a, c, b, b], is_two_sided)));
+    prims
+}
+
+/// Two triangles that make a quadrangle.
+struct Candidate {
+    /// Less is better: steps of bending, and within a step the long common edge first.
+    worth: f64,
+    triangles: [u32; 2],
+    corners: [u32; 4],
+}
+
+fn candidates(points: &[Vec3], triangles: &[Triangle]) -> Vec<Candidate> {
+    let at = |i: u32| points[i as usize].as_dvec3();
+    let normals: Vec<DVec3> = triangles.iter().map(|t| normal(points, t.0)).collect();
+    let mut edges: Vec<([u32; 2], u32)> = (0u32..)
+        .zip(triangles)
+        .flat_map(|(i, (t, _))| [[0, 1], [1, 2], [2, 0]].map(|[a, b]| ([t[a], t[b]], i)))
+        .collect();
+    edges.sort_unstable();
+    let mut found = Vec::new();
+    for &([a, b], i) in &edges {
+        // The neighbors run along their common edge the other way.
+        let from = edges.partition_point(|e| e.0 < [b, a]);
+        for &(_, j) in edges[from..].iter().take_while(|e| e.0 == [b, a]) {
+            let ((t, t_sides), (u, u_sides)) = (triangles[i as usize], triangles[j as usize]);
+            let (n, m) = (normals[i as usize], normals[j as usize]);
+            if j <= i || t_sides != u_sides || n.dot(m) < LEAST_COSINE {
+                continue;
+            }
+            let other = |t: [u32; 3]| t.into_iter().find(|&c| c != a && c != b);
+            let (Some(c), Some(d)) = (other(t), other(u)) else { continue };
+            let corners = [a, d, b, c];
+            if is_convex(&corners.map(at), (n + m).normalize_or_zero()) {
+                let size = at(a).distance(at(b)) + at(c).distance(at(d));
+                let bent = n.dot(at(d) - at(a)).abs() / size;
+                let worth = (bent * 64.0).floor() - at(a).distance(at(b)) / size;
+                found.push(Candidate { worth, triangles: [i, j], corners });
+            }
+        }
+    }
+    found
+}
+
+/// Whether the corners turn one way about a normal, by clearly more than rounding.
+fn is_convex(corners: &[DVec3; 4], about: DVec3) -> bool {
+    (0..4).all(|k| {
+        let (u, v) = (corners[(k + 1) % 4] - corners[k], corners[(k + 2) % 4] - corners[(k + 1) % 4]);
+        u.cross(v).dot(about) > LEAST_SINE * u.length() * v.length()
+    })
+}
+
+/// Orders primitives so that those of a part are neighbors in space, and lists the parts; `first` is the
+/// place of the first one.
+fn split(points: &[Vec3], prims: &mut [Prim], first: usize, parts: &mut Vec<Range<usize>>) {
+    if prims.len() <= Clusters::MOST {
+        if !prims.is_empty() {
+            parts.push(first..first + prims.len());
+        }
+        return;
+    }
+    let center = |p: &Prim| p.0.iter().map(|&c| points[c as usize]).sum::<Vec3>();
+    let extent = Aabb::of(prims.iter().map(center)).size();
+    let axis = (0..3).fold(0, |best, a| if extent[a] > extent[best] { a } else { best });
+    let middle = prims.len() / 2;
+    prims.select_nth_unstable_by(middle, |a, b| {
+        // Equal centers in the order of their corners, so that every run splits alike.
+        center(a)[axis].total_cmp(&center(b)[axis]).then(a.0.cmp(&b.0))
+    });
+    let (low, high) = prims.split_at_mut(middle);
+    split(points, low, first, parts);
+    split(points, high, first + middle, parts);
+}
+
+/// Unit normal of a triangle, on the side from which it runs counter-clockwise; 0 where it has none.
+fn normal(points: &[Vec3], corners: [u32; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(|i| points[i as usize].as_dvec3());
+    (b - a).cross(c - a).normalize_or_zero()
+}

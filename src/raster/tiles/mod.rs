@@ -1,0 +1,206 @@
+//! Depths made for questions: tiles with coverage masks, primitives kept for exact answers, boxes asked by
+//! their planes.
+//!
+//! Coarse masks decide, primitives are kept, exact depths are made on demand. A frame:
+//!
+//! 1. [`Tiles::clear`] for a view, [`Tiles::draw`] clusters of occluders front to back. A cluster that is
+//!    hidden so far is left out whole, before any of its points is touched. Of the rest back faces go by
+//! stored    planes; what is left is set up many at a time (`setup`) and put into windows of 32×16 pixels
+//! (`window`)    by the masked update of Hasselgren, Andersson and Akenine-Möller, "Masked Software Occlusion
+//! Culling",    2016, <https://doi.org/10.2312/hpg.20161189>. A tile of 8×4 pixels knows a depth that nothing
+//! in it is    farther than, a nearer layer that is begun with the mask of its pixels, and what was ever
+//! covered.
+//! 2. [`Tiles::hides_all`]: a box is compared with blocks of 32×16 pixels, then tiles, by its front and back
+//!    planes (`query`). Where tiles do not decide, they are shaded exactly from the primitives that their bin
+//!    kept (`resolve`).
+//!
+//! An exact answer is that of the full image that [`super::Drawable::draw`] makes: nothing that could win a
+//! pixel was left out, and what a tile claims is never nearer than the truth. So answers depend neither on
+//! the order of drawing nor on the instruction set, whose width leaves no trace in the state either.
+//!
+//! Memory: half a byte a pixel, and some 80 bytes for each primitive that may show.
+
+mod bins;
+mod clusters;
+mod edges;
+mod look;
+mod plane;
+mod query;
+mod ready;
+mod resolve;
+mod setup;
+mod wide;
+mod window;
+
+pub use clusters::{Boxes, Clusters};
+pub use query::Answer;
+
+use self::bins::Bins;
+use self::setup::Scratch;
+use super::simd::Isa;
+use super::vertex::Camera;
+use crate::geometry::{Solid, View};
+
+/// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+struct Line {
+    /// Nothing in the tile is farther than this.
+    far: [f32; 4],
+    /// Where `mask` is set nothing is farther than this.
+    near: [f32; 4],
+    /// The pixels that hold at least `near`; bit `8 y + x`.
+    mask: [u32; 4],
+    /// The pixels that anything covers.
+    ever: [u32; 4],
+}
+
+/// No layer is begun: nearer than all, so that it never counts as far behind.
+const UNBEGUN: f32 = f32::MAX;
+
+/// Depths of a frame as tiles, with what exact answers need.
+#[derive(Clone, Debug, Default)]
+pub struct Tiles {
+    camera: Camera,
+    view: Option<View<Solid>>,
+    /// Size in pixels.
+    width: i32,
+    height: i32,
+    /// Columns of blocks of 32×16 pixels, each a strip of the image.
+    strips: usize,
+    /// Rows of blocks.
+    block_rows: usize,
+    /// Lines of a strip, and those past its end that a window may reach into.
+    rows: usize,
+    /// Rows of bins of 32×64 pixels.
+    bin_rows: usize,
+    /// Strip by strip, from the top.
+    lines: Vec<Line>,
+    /// For each block, row by row, [`Tiles::stride`] a row: no tile in it is farther.
+    block_far: Vec<f32>,
+    /// Nothing in it is nearer.
+    block_near: Vec<f32>,
+    /// Whether exact answers are kept ready.
+    keeps: bool,
+    bins: Bins,
+    scratch: Scratch,
+    resolved: Resolved,
+}
+
+/// Tiles that were looked at closer.
+#[derive(Clone, Debug, Default)]
+struct Resolved {
+    /// For each tile of a block in turn its number in `floors`, or [`Resolved::NOT`].
+    at: Vec<[u32; 16]>,
+    /// A plane that no pixel of it is farther than: depth at the center, changes a column and a row; and its
+    /// number in `depths`, or [`Resolved::NOT`].
+    floors: Vec<([f32; 3], u32)>,
+    /// Depths of its 32 pixels.
+    depths: Vec<[f32; 32]>,
+}
+
+impl Resolved {
+    const NOT: u32 = u32::MAX;
+}
+
+/// What a frame has drawn, and nothing of how, nor of what was asked since.
+impl PartialEq for Tiles {
+    fn eq(&self, other: &Self) -> bool {
+        (self.view, self.keeps) == (other.view, other.keeps)
+            && self.lines == other.lines
+            && self.block_far == other.block_far
+            && self.block_near == other.block_near
+            && self.bins == other.bins
+    }
+}
+
+impl Tiles {
+    /// Empties them for a view. `keeps`: exact answers will be asked for.
+    ///
+    /// # Panics
+    /// If a side of the image exceeds [`super::Target::MAX_SIDE_PX`].
+    pub fn clear(&mut self, view: &View<Solid>, keeps: bool) {
+        assert!(
+            view.width.max(view.height) <= super::Target::MAX_SIDE_PX,
+            "an image side exceeds {} pixels",
+            super::Target::MAX_SIDE_PX
+        );
+        (self.width, self.height, self.keeps) = (view.width as i32, view.height as i32, keeps);
+        self.strips = view.width.div_ceil(32) as usize;
+        self.block_rows = view.height.div_ceil(16) as usize;
+        self.bin_rows = view.height.div_ceil(64) as usize;
+        self.rows = self.bin_rows * 16 + 4;
+        self.camera = Camera::new(view);
+        self.view = Some(*view);
+        // An empty pixel is as deep as the far plane, as in an image.
+        let cleared = self.camera.depth_far;
+        let line = Line { far: [cleared; 4], near: [UNBEGUN; 4], mask: [0; 4], ever: [0; 4] };
+        refill(&mut self.lines, self.strips * self.rows, line);
+        // A bin's worth of rows and one more, since single windows begin at any line.
+        let blocks = self.stride() * (self.bin_rows * 4 + 2);
+        refill(&mut self.block_far, blocks, cleared);
+        refill(&mut self.block_near, blocks, cleared);
+        self.bins.clear(if keeps { self.strips * (self.bin_rows + 1) } else { 0 });
+        self.scratch.clear(self.strips);
+        self.forget();
+    }
+    /// Draws occluders front to back, those clusters that are not hidden when their turn comes. `one_sided`:
+    /// primitives have a front only, unless their material has two sides.
+    pub fn draw(&mut self, clusters: &Clusters, one_sided: bool, isa: Isa) {
+        query::draw(self, clusters, one_sided, isa);
+    }
+    /// Whether boxes are hidden by what is drawn. `exact`: tiles that do not decide are shaded, which needs
+    /// what [`Tiles::clear`] was told to keep; else they count as showing the box.
+    pub fn hides_all(&mut self, boxes: &Boxes, exact: bool, isa: Isa, answers: &mut Vec<Answer>) {
+        query::hides_all(self, boxes, exact && self.keeps, isa, answers);
+    }
+    /// The depths of all pixels, row by row, as [`super::Drawable::draw`] makes them of the same occluders.
+    pub fn depths(&mut self, isa: Isa) -> Vec<f32> {
+        resolve::depths(self, isa)
+    }
+
+    /// Panics unless no tile and no block claims to be nearer than the farthest of its pixels, or a block to
+    /// be farther than the nearest of its own, and what was ever covered is what the image `depth` covers.
+    #[cfg(test)]
+    pub(super) fn assert_claims(&self, depth: &[f32]) {
+        for y in 0..self.height as usize {
+            for x in 0..self.width as usize {
+                let is = depth[y * self.width as usize + x];
+                let (line, k) = (&self.lines[(x / 32) * self.rows + y / 4], x % 32 / 8);
+                assert!(line.far[k] <= is, "({x}, {y}) is {is}, the tile claims {}", line.far[k]);
+                let is_begun = line.mask[k] >> (y % 4 * 8 + x % 8) & 1 == 1;
+                assert!(!is_begun || line.near[k] <= is, "({x}, {y}) is {is}, begun is {}", line.near[k]);
+                let covered = line.ever[k] >> (y % 4 * 8 + x % 8) & 1 == 1;
+                assert!(covered || is == self.camera.depth_far, "({x}, {y}) is not covered");
+                let block = y / 16 * self.stride() + x / 32;
+                assert!(self.block_far[block] <= is, "({x}, {y}) is farther than its block");
+                assert!(self.block_near[block] >= is, "({x}, {y}) is nearer than its block");
+            }
+        }
+    }
+
+    /// Places of `block_far` and `block_near` a row: a vector reads up to 15 past its end.
+    #[inline(always)]
+    fn stride(&self) -> usize {
+        self.strips + 16
+    }
+    /// The first line of a block.
+    #[inline(always)]
+    fn first_line(&self, strip: usize, row: usize) -> usize {
+        strip * self.rows + 4 * row
+    }
+    /// Forgets what was looked at closer: more is drawn.
+    fn forget(&mut self) {
+        let blocks = self.strips * self.block_rows;
+        if !self.resolved.floors.is_empty() || self.resolved.at.len() != blocks {
+            refill(&mut self.resolved.at, blocks, [Resolved::NOT; 16]);
+            self.resolved.floors.clear();
+            self.resolved.depths.clear();
+        }
+    }
+}
+
+fn refill<T: Copy>(v: &mut Vec<T>, count: usize, value: T) {
+    v.clear();
+    v.resize(count, value);
+}
