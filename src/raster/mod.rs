@@ -3,12 +3,11 @@
 //! What it is: for each pixel center the nearest primitive that covers it. Vertices are projected in
 //! f64 and snapped to a grid of 1/256 pixel; coverage is decided by exact integer edge functions with
 //! the top-left rule; depth is `1/w` (larger is nearer), a fixed f32 formula of the primitive alone, in the
-//! plane through its vertices as they were before snapping.
-//! A pixel keeps the greatest depth, at equal depth the lowest primitive id. So an image is a function
-//! of the set of primitives: the order, the threads and the SIMD width leave no trace, and taking away
-//! primitives that were hidden changes no byte. [`mod@reference`] does the same in the plainest code.
-//! See-through primitives are not drawn into the image, since they hide nothing: they are listed, and
-//! [`look_through`] says where they show before it.
+//! plane through its vertices as they were before snapping. A pixel keeps the greatest depth, at equal depth
+//! the lowest primitive id. So an image is a function of the set of primitives: the order, the threads and
+//! the SIMD width leave no trace, and taking away primitives that were hidden changes no byte.
+//! [`mod@reference`] does the same in the plainest code. See-through primitives are not drawn into the
+//! image, since they hide nothing: they are listed, and [`look_through`] says where they show before it.
 //!
 //! A primitive that [`crate::geometry::Frustum::test`] calls outside yields no fragment: its vertices lie
 //! beyond the plane by more than the rounding here, and pixel centers lie half a pixel inside the image.

@@ -6,8 +6,7 @@
 //! repeat it. All arithmetic is f64; the authors' program uses f32, and the means of its maps, taken in f64,
 //! agree to about 1e-5. The mean that it prints is a sum in f32, which is 1 % off at 1920×1080 and 6 % at
 //! 3840×2160. Departure: only the neighborhood of pixels that differ is looked at, since equal neighborhoods
-//! give
-//! 0. Cost: about 250 operations a pixel of that neighborhood.
+//! give 0. Cost: about 250 operations a pixel of that neighborhood.
 
 use std::f64::consts::PI;
 

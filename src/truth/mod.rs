@@ -9,8 +9,7 @@
 //! graphics hardware does. Against exact arithmetic on the same centers of pixels that changes 1 pixel in
 //! 100,000 of the building that is generated and 7 of the city, nearly all on shared edges; but a primitive
 //! that shows in a single pixel may owe it to the grid. Where many are thinner than a pixel
-//! (`generate:thin-slabs`) a grid of
-//! 1/16 pixel changes 18 % of what is visible.
+//! (`generate:thin-slabs`) a grid of 1/16 pixel changes 18 % of what is visible.
 
 pub mod certificate;
 mod flip;

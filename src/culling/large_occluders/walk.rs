@@ -481,9 +481,9 @@ impl<'a, S: Shape, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     ///
     /// The rasterizer's depth is `z + dx·X + dy·Y` in 32 bits, X and Y from the farthest corner as snapped.
     /// The sum of the terms' amounts exceeds the depth itself, along the plane's horizon, by at most `(1 +
-    /// t)·L/H`: H the distance of the eye from the plane, L the longest edge, t the tangent of the angle from
-    /// the line of sight to a corner of the image. Each term is rounded a few times by 2⁻²⁴. In flatland
-    /// there is but one term.
+    /// t)·L/H`: H the distance of the eye from the plane, L the longest edge, t the tangent of the angle
+    /// from the line of sight to a corner of the image. Each term is rounded a few times by 2⁻²⁴. In
+    /// flatland there is but one term.
     fn is_edge_on(&self, prim: PrimId) -> bool {
         if S::Vector::AXES == 2 {
             return false;
