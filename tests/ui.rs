@@ -88,6 +88,26 @@ fn keys_step_and_play_unless_a_text_field_has_them() {
 }
 
 #[test]
+fn a_key_goes_to_the_next_layer_and_the_status_names_it() {
+    let mut h = window("bottleneck");
+    h.state_mut().state.apply(Command::Set("budget".into(), "100%".into(), 0));
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::Z);
+    let first = h.state().state.step;
+    h.get_by_label_contains("Layer 1 of ");
+    press(&mut h, Modifiers::NONE, Key::Z);
+    let state = &h.state().state;
+    assert!(state.step > first && matches!(state.current_subject(), Subject::Prim(_) | Subject::Node(_)));
+    h.get_by_label_contains("behind at least ");
+    press(&mut h, Modifiers::SHIFT, Key::Z);
+    assert_eq!(h.state().state.step, first);
+    // In a lecture it stands in the caption.
+    h.state_mut().state.apply(Action::LayoutLecture);
+    settle(&mut h);
+    h.get_by_label_contains("Layer 1 of ");
+}
+
+#[test]
 fn it_plays_to_the_end() {
     let mut h = window(FLAT);
     h.state_mut().state.apply(Command::Speed(20_000.0));

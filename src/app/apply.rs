@@ -473,6 +473,7 @@ impl State {
                 self.take_table(*measured);
                 self.run_commands();
             }
+            Done::Layered { layers, action } => self.take_layers(layers, action),
             Done::RecordFailed(text) => self.fail(text),
             Done::Cancelled => {}
         }

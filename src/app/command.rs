@@ -130,6 +130,9 @@ actions! {
     Step NextSame "next-same" "Next of this kind" ["N"] "To the next event of the same kind.";
     Step PreviousSame "previous-same" "Previous of this kind" ["Shift+N"] "To the event of the same kind \
         before.";
+    Step NextLayer "next-layer" "Next layer" ["Z"] "To the first step that draws something of a deeper layer \
+        than before. A thing is of layer 3 if, where it is least covered, two others lie before it.";
+    Step PreviousLayer "previous-layer" "Previous layer" ["Shift+Z"] "Back to where a layer began.";
     Step NextOnSelected "next-on-selected" "Next about the selection" ["K"] "To the next event about the \
         selected thing.";
     Step PreviousOnSelected "previous-on-selected" "Previous about the selection" ["Shift+K"] "To the event \

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use super::layers::Layers;
 use crate::culling::Methods;
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Drawing, Role, Subject};
@@ -27,6 +28,8 @@ pub struct Recorded<S: Space> {
     pub moves: Arc<Moves>,
     /// Changes whenever another film is on stage; for caches.
     pub serial: u64,
+    /// What it draws by layers, once someone has asked.
+    pub layers: Option<Layers>,
 }
 
 /// A scene with everything that is looked at.
@@ -225,6 +228,8 @@ pub struct Reading<'a> {
     pub moves: &'a Moves,
     /// See [`Recorded::serial`].
     pub serial: u64,
+    /// See [`Recorded::layers`].
+    pub layers: Option<&'a Layers>,
 }
 
 impl Reading<'_> {
@@ -270,7 +275,8 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn film(&self) -> Option<Reading<'_>> {
         let r = self.recorded.as_ref()?;
-        Some(Reading { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial })
+        let layers = r.layers.as_ref();
+        Some(Reading { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial, layers })
     }
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
         let mut to = Drawing::default();

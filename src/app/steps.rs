@@ -155,6 +155,10 @@ impl State {
                     None => self.tell(format!("{}: there is none.", action.info().title)),
                 }
             }
+            Action::NextLayer | Action::PreviousLayer => {
+                self.is_playing = false;
+                self.go_layer(action);
+            }
             _ if action.info().menu == super::command::Menu::Step => {
                 self.is_playing = false;
                 match self.target_of(action) {

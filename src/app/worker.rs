@@ -10,11 +10,13 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 
 use super::any::AnyRecorded;
+use super::command::Action;
+use super::layers::{self, Layers, ToLayer};
 use super::measured::{self, Measured};
 use super::open;
 use super::stage::Recorded;
 use crate::culling::Methods;
-use crate::geometry::{Either, Flat, Solid, View};
+use crate::geometry::{Either, Flat, Solid, View, each};
 use crate::measure::deadline::Paced;
 use crate::method::Settings;
 use crate::raster::Drawable;
@@ -43,9 +45,21 @@ pub struct Request<S: Methods> {
 }
 
 pub(super) enum Job {
-    Load { wanted: open::Wanted, views: Option<String> },
+    Load {
+        wanted: open::Wanted,
+        views: Option<String>,
+    },
     Record(Either<Request<Flat>, Request<Solid>>),
-    Measure { name: &'static str, scene: Option<AnyScene>, settings: Settings },
+    Measure {
+        name: &'static str,
+        scene: Option<AnyScene>,
+        settings: Settings,
+    },
+    /// Ranks what the film draws by layers, for someone who wants to go to one.
+    Layer {
+        film: Either<ToLayer<Flat>, ToLayer<Solid>>,
+        action: Action,
+    },
 }
 
 pub(super) enum Done {
@@ -54,6 +68,7 @@ pub(super) enum Done {
     Recorded(AnyRecorded),
     RecordFailed(String),
     Measured(Box<Measured>),
+    Layered { layers: Result<Layers, String>, action: Action },
     Cancelled,
 }
 
@@ -222,6 +237,10 @@ impl Bench {
                     Err(error) => Done::RecordFailed(error),
                 }
             }
+            Job::Layer { film, action } => match each!(film, f => layers::rank(&f, ticket)) {
+                _ if ticket.cancelled() => Done::Cancelled,
+                layers => Done::Layered { layers, action },
+            },
             Job::Record(Either::Flat(request)) => {
                 self.serial += 1;
                 self.solid = None;
@@ -285,5 +304,5 @@ fn record<S: Methods + Drawable>(
     ticket.report(0.8, "reading the film");
     let stamps = Arc::new(Stamps::new(&*recording.film));
     let moves = Arc::new(Moves::new(recording.film.events()));
-    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial }))
+    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial, layers: None }))
 }

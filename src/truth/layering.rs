@@ -8,31 +8,66 @@
 //! 2. At each pixel these are ranked as the z-buffer would: the nearer first, at equal depth the lower id.
 //! 3. Of its ranks a primitive keeps the least.
 //!
-//! Cost: O(pixels covered, those behind others too).
+//! Cost: O(pixels covered, those behind others too), twice: fragments are counted before they are kept, so
+//! that what would take too much memory is refused before it takes any.
 
 use crate::geometry::{PrimId, View};
 use crate::raster::{Drawable, Options};
-use crate::scene::{Scene, Surfaces};
+use crate::scene::{Part, Progress, Quiet, Scene, Surfaces};
 
 /// A primitive at a pixel: `1/w` and its id.
 type Fragment = (f32, u32);
 
+/// Why primitives were not ranked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unranked {
+    /// The work was cancelled.
+    Cancelled,
+    /// There are so many fragments (pairs of a primitive and a pixel that it covers), more than may be kept.
+    TooMany(usize),
+}
+
 /// ζ of each primitive, by its number; 0 of those that cover no pixel. Of `surfaces` it matters whether they
 /// have a back: then those that turn away are none. Every layer counts, what one can see through as well.
 pub fn layering_numbers<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces) -> Vec<u32> {
-    let is_there = |p: &PrimId| !surfaces.leave_out(scene, *p, view.eye.position);
-    let fragments = fragments(scene, view, scene.live().iter().copied().filter(is_there));
+    layering_numbers_within(scene, view, surfaces, usize::MAX, &Quiet).unwrap_or_default()
+}
+
+/// The same, of at most so many fragments (8 bytes each) and for someone who waits.
+///
+/// # Errors
+/// When cancelled, and where there are more.
+pub fn layering_numbers_within<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    surfaces: Surfaces,
+    most_fragments: usize,
+    progress: &dyn Progress,
+) -> Result<Vec<u32>, Unranked> {
+    let frustum = view.frustum();
+    let is_there = |p: &PrimId| {
+        !surfaces.leave_out(scene, *p, view.eye.position) && !frustum.excludes(&scene.prim_bounds(*p))
+    };
+    let prims: Vec<PrimId> = scene.live().iter().copied().filter(is_there).collect();
     // 2. A counting sort by pixel, then each pixel by itself.
     let mut starts = vec![0usize; view.width as usize * view.height as usize + 1];
-    fragments.iter().for_each(|(pixel, _)| starts[*pixel as usize + 1] += 1);
+    let part = |start, length| Part { whole: progress, start, length };
+    fragments(scene, view, &prims, &part(0.0, 0.3), &mut |at, _| starts[at + 1] += 1)?;
     (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
-    let (mut sorted, mut next) = (vec![(0.0, 0); fragments.len()], starts.clone());
-    for (pixel, fragment) in fragments {
-        sorted[next[pixel as usize]] = fragment;
-        next[pixel as usize] += 1;
+    let count = starts.last().copied().unwrap_or(0);
+    if count > most_fragments {
+        return Err(Unranked::TooMany(count));
     }
+    let (mut sorted, mut next) = (vec![(0.0, 0); count], starts.clone());
+    fragments(scene, view, &prims, &part(0.3, 0.3), &mut |at, fragment| {
+        sorted[next[at]] = fragment;
+        next[at] += 1;
+    })?;
     let mut numbers = vec![0; scene.prim_count()];
-    for pixel in starts.windows(2) {
+    for (at, pixel) in starts.windows(2).enumerate() {
+        if at.is_multiple_of(CHECKED) {
+            checkpoint(&part(0.6, 0.4), at, starts.len())?;
+        }
         let there: &mut [Fragment] = &mut sorted[pixel[0]..pixel[1]];
         there.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         // 3.
@@ -41,26 +76,38 @@ pub fn layering_numbers<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces:
             *number = if *number == 0 { rank } else { rank.min(*number) };
         }
     }
-    numbers
+    Ok(numbers)
+}
+
+/// Primitives, or pixels, between two looks at whether the work was cancelled.
+const CHECKED: usize = 1024;
+
+fn checkpoint(progress: &dyn Progress, done: usize, all: usize) -> Result<(), Unranked> {
+    progress.report(done as f32 / all as f32, "ranking primitives by layers");
+    if progress.cancelled() { Err(Unranked::Cancelled) } else { Ok(()) }
 }
 
 /// 1. Each primitive at each pixel that it covers.
 fn fragments<S: Drawable>(
     scene: &Scene<S>,
     view: &View<S>,
-    prims: impl Iterator<Item = PrimId>,
-) -> Vec<(u32, Fragment)> {
-    let (frustum, options, farthest) = (view.frustum(), Options::default(), 1.0 / view.eye.far);
-    let mut found = Vec::new();
-    for prim in prims.filter(|p| !frustum.excludes(&scene.prim_bounds(*p))) {
+    prims: &[PrimId],
+    progress: &dyn Progress,
+    found: &mut dyn FnMut(usize, Fragment),
+) -> Result<(), Unranked> {
+    let (options, farthest) = (Options::default(), 1.0 / view.eye.far);
+    for (i, prim) in prims.iter().enumerate() {
+        if i.is_multiple_of(CHECKED) {
+            checkpoint(progress, i, prims.len())?;
+        }
         // The far plane does not cut primitives: it is a depth that nothing shows beyond.
-        S::fragments(scene, view, prim, &options, &mut |at, depth| {
+        S::fragments(scene, view, *prim, &options, &mut |at, depth| {
             if depth >= farthest {
-                found.push((at as u32, (depth, prim.0)));
+                found(at, (depth, prim.0));
             }
         });
     }
-    found
+    Ok(())
 }
 
 /// Kendall's rank correlation of layers and places, over the pairs of different layers: 1 if all lower layers
@@ -146,6 +193,17 @@ mod tests {
     fn it_is_the_least_rank_over_all_pixels() {
         is_the_least_rank::<Flat>(3);
         is_the_least_rank::<Solid>(4);
+    }
+
+    #[test]
+    fn more_fragments_than_may_be_kept_are_counted_and_refused() {
+        let scene = samples::soup::<Solid>(7, 50);
+        let view = framing_view(&scene.bounds(), 512, 512);
+        let within = |most| layering_numbers_within(&*scene, &view, Surfaces::default(), most, &Quiet);
+        let Err(Unranked::TooMany(count)) = within(0) else { panic!("some pixels are covered") };
+        assert!(count > 50, "{count}");
+        assert_eq!(within(count - 1), Err(Unranked::TooMany(count)));
+        assert_eq!(within(count), Ok(layering_numbers(&*scene, &view, Surfaces::default())));
     }
 
     #[test]

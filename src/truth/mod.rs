@@ -17,7 +17,7 @@ mod hidden;
 mod layering;
 
 pub use flip::flip_mean;
-pub use layering::{layer_correlation, layering_numbers};
+pub use layering::{Unranked, layer_correlation, layering_numbers, layering_numbers_within};
 
 use glam::DVec3;
 

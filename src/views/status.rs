@@ -25,7 +25,8 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             // The sentence stands in the caption, in large type.
             ui.label(step);
         } else {
-            let text = format!("{step} {} {}", state.sentence(), marked(state));
+            let layer = state.layer_sentence().unwrap_or_default();
+            let text = format!("{step} {layer} {} {}", state.sentence(), marked(state));
             announced(ui, egui::Label::new(text).truncate());
         }
     });
@@ -64,6 +65,9 @@ pub fn caption(state: &State, ui: &mut egui::Ui) {
     let size = egui::TextStyle::Heading.resolve(ui.style()).size;
     announced(ui, egui::Label::new(RichText::new(state.sentence()).size(size)).wrap());
     ui.weak(marked(state));
+    if let Some(layer) = state.layer_sentence() {
+        ui.label(layer);
+    }
     let note =
         state.bookmarks.iter().find(|b| b.step == state.step).map(|b| b.note.as_str()).unwrap_or_default();
     if !note.is_empty() {
