@@ -106,6 +106,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         settings: settings(&args.set)?,
         check_every: args.check_every as usize,
         size_px: args.size,
+        ..Setup::default()
     };
     for experiment in &experiments {
         experiment.check(&setup.settings).map_err(explained)?;

@@ -1,6 +1,7 @@
 //! What figures of films share: a method run on a scene, a flatland picture of known scale for labels, and
 //! pages of the widths that figures have.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use glam::{DVec2, Vec2, Vec3};
@@ -11,7 +12,7 @@ use super::panels::{Panel, Picture};
 use crate::culling::Methods;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::geometry::{Aabb, Eye, Flat, Solid, View};
-use crate::method::{Film, Run, Settings};
+use crate::method::{Card, Film, Knob, KnobValue, Run, Settings, departs, settings_for};
 use crate::scene::{Quiet, Scene};
 use crate::trace::Stamps;
 
@@ -29,22 +30,106 @@ pub const NAME_PT: f32 = 10.0;
 /// Size of other labels.
 pub const LABEL_PT: f32 = 8.0;
 
-/// A method ready to run on the scene of a figure. Method and settings are those of the figure's own text, so
-/// both exist.
-pub fn ready<S: Methods>(scene: &Arc<Scene<S>>, method: &str, pairs: &[(&str, &str)]) -> Box<dyn Run<S>> {
-    let entry = S::method(method).expect("figures name methods that exist");
-    let run = entry.ready(scene, &Settings::of(pairs), &Quiet).expect("figures use settings that exist");
-    run.expect("nobody cancels a figure")
+/// Makes a figure. What it shows of methods is run here, so the caption can say with which parameters, and
+/// where that departs from the methods' papers.
+pub struct Maker<'a> {
+    /// Colors of pixels.
+    pub tint: Tint<'a>,
+    runs: RefCell<Vec<Ran>>,
 }
 
-/// The film of one frame of a method.
-pub fn film<S: Methods>(
-    scene: &Arc<Scene<S>>,
-    view: &View<S>,
-    method: &str,
-    pairs: &[(&str, &str)],
-) -> Arc<dyn Film<S>> {
-    ready(scene, method, pairs).record(view, usize::MAX).film
+/// A run that a figure shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ran {
+    /// Its method.
+    pub card: &'static Card,
+    /// All parameters.
+    pub knobs: Vec<(Knob, KnobValue)>,
+    /// Those that have to be given, as the command line takes them.
+    pub settings: Vec<(&'static str, String)>,
+}
+
+impl<'a> Maker<'a> {
+    /// Nothing is run yet.
+    pub fn new(tint: Tint<'a>) -> Self {
+        Self { tint, runs: RefCell::default() }
+    }
+    /// A method ready to run on the scene of the figure. Method and settings are those of the figure's own
+    /// text, so both exist.
+    pub fn ready<S: Methods>(
+        &self,
+        scene: &Arc<Scene<S>>,
+        method: &str,
+        pairs: &[(&str, &str)],
+    ) -> Box<dyn Run<S>> {
+        let entry = S::method(method).expect("figures name methods that exist");
+        let run = entry.ready(scene, &Settings::of(pairs), &Quiet).expect("figures use settings that exist");
+        let run = run.expect("nobody cancels a figure");
+        let knobs = run.knobs();
+        let settings = settings_for(entry, &knobs);
+        let ran = Ran { card: entry.card(), knobs, settings };
+        let mut runs = self.runs.borrow_mut();
+        if !runs.contains(&ran) {
+            runs.push(ran);
+        }
+        run
+    }
+    /// The film of one frame of a method.
+    pub fn film<S: Methods>(
+        &self,
+        scene: &Arc<Scene<S>>,
+        view: &View<S>,
+        method: &str,
+        pairs: &[(&str, &str)],
+    ) -> Arc<dyn Film<S>> {
+        self.ready(scene, method, pairs).record(view, usize::MAX).film
+    }
+    /// What was run so far, each once.
+    pub fn runs(&self) -> Vec<Ran> {
+        self.runs.borrow().clone()
+    }
+    /// A page around a picture; below the caption stands what was run.
+    pub fn page(
+        &self,
+        paper: Paper,
+        title: &str,
+        legend: Vec<Entry>,
+        caption: impl Into<String>,
+        content: &Drawing,
+    ) -> Drawing {
+        let caption = caption.into() + &self.made();
+        Page { paper, title: title.into(), legend, caption }.compose(content)
+    }
+    /// What was run and where it departs from its papers, in sentences.
+    fn made(&self) -> String {
+        let runs = self.runs.borrow();
+        if runs.is_empty() {
+            return String::new();
+        }
+        let words = |ran: &Ran| {
+            let settings = ran.settings.iter().map(|(name, value)| format!(" {name}={value}"));
+            ran.card.key.to_owned() + &settings.collect::<String>()
+        };
+        let all: Vec<String> = runs.iter().map(words).collect();
+        let mut text = format!(" {}: {}.", if all.len() == 1 { "Run" } else { "Runs" }, all.join("; "));
+        for (i, ran) in runs.iter().enumerate() {
+            let of_card = || runs.iter().filter(|r| r.card.key == ran.card.key);
+            // Once for each method.
+            if runs[..i].iter().all(|before| before.card.key != ran.card.key) {
+                text +=
+                    &departs(ran.card.key, &ran.card.departing(|d| of_card().any(|run| d.holds(&run.knobs))));
+            }
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+impl Maker<'_> {
+    /// For tests that do not look at colors.
+    pub fn gray() -> Self {
+        Self::new(&|_| [0.5; 3])
+    }
 }
 
 /// A view of a flatland scene: an eye of its file, counted round and round.
@@ -76,17 +161,6 @@ pub fn flat_panel(film: &dyn Film<Flat>, step: usize, look: &Look, label: String
 /// An entry of a legend.
 pub fn entry(role: Role, swatch: Swatch, label: &str) -> Entry {
     Entry { role, label: label.into(), swatch }
-}
-
-/// A page around a picture.
-pub fn page(
-    paper: Paper,
-    title: &str,
-    legend: Vec<Entry>,
-    caption: impl Into<String>,
-    content: &Drawing,
-) -> Drawing {
-    Page { paper, title: title.into(), legend, caption: caption.into() }.compose(content)
 }
 
 /// Sets a name into a picture of space.

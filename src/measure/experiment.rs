@@ -5,6 +5,7 @@
 //! method that promises to draw all that is visible are checked: the triangles that an item buffer shows and
 //! the method did not draw are counted (0 expected).
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use super::columns::SCENE;
@@ -14,7 +15,7 @@ use crate::culling::Methods;
 use crate::drawing::Plot;
 use crate::drawing::words::grouped;
 use crate::geometry::{Flat, Solid};
-use crate::method::{Entry, KnobValue, SettingError, Settings};
+use crate::method::{Entry, Knob, KnobValue, SettingError, Settings, settings_for};
 use crate::raster::Drawable;
 use crate::scene::{AnyScene, Part, Progress, Scene};
 
@@ -33,11 +34,19 @@ pub struct Setup {
     pub check_every: usize,
     /// Size of the image, if not that of the path.
     pub size_px: Option<[u32; 2]>,
+    /// What was run so far: keys of methods, and all their parameters.
+    pub ran: RefCell<Vec<(String, Vec<(Knob, KnobValue)>)>>,
 }
 
 impl Default for Setup {
     fn default() -> Self {
-        Self { frames: 240, settings: Settings::default(), check_every: 8, size_px: None }
+        Self {
+            frames: 240,
+            settings: Settings::default(),
+            check_every: 8,
+            size_px: None,
+            ran: RefCell::default(),
+        }
     }
 }
 
@@ -77,8 +86,6 @@ pub struct Experiment {
     pub scenes: &'static [&'static str],
     /// What is to be known for reading the table.
     pub notes: &'static [&'static str],
-    /// Parameters that it sets itself.
-    pub varies: &'static [&'static str],
     /// Parameters that it gives another value than the method does, where none is set.
     pub settings: &'static [(&'static str, &'static str)],
     /// What it does.
@@ -152,9 +159,10 @@ impl Experiment {
         let plots = (self.sweep.plots)(&table);
         table.rows.extend((self.sweep.paper)());
         let entry = method::<Solid>(self.method)?;
-        let knobs = entry.knobs(&setup.settings)?;
-        let fixed = knobs.iter().filter(|(k, _)| !self.varies.contains(&k.name));
-        let params = fixed.map(|(k, v): &(_, KnobValue)| (k.name, v.to_string())).collect();
+        let ran = setup.ran.take().into_iter().filter(|(key, _)| key == self.method);
+        let runs: Vec<_> = ran.map(|(_, knobs)| knobs).collect();
+        let departures = entry.card().departing(|d| runs.iter().any(|knobs| d.holds(knobs)));
+        let (params, varied) = parameters(entry, &runs);
         let (name, title, notes) = (self.name, self.title, self.notes.to_vec());
         Ok(Report {
             name,
@@ -163,9 +171,35 @@ impl Experiment {
             plots,
             scenes: measured,
             doi: entry.card().doi,
+            method: self.method,
             params,
+            varied,
+            departures,
             frames: setup.frames,
             notes,
         })
     }
+}
+
+/// Parameters that are the same in all runs, and the others with their values in the order of first use; of
+/// those that follow from others nothing is said.
+type Parameters = (Vec<(&'static str, String)>, Vec<(&'static str, Vec<String>)>);
+
+fn parameters(entry: &dyn Entry<Solid>, runs: &[Vec<(Knob, KnobValue)>]) -> Parameters {
+    let given: Vec<_> = runs.iter().map(|knobs| settings_for(entry, knobs)).collect();
+    let (mut same, mut varied) = (Vec::new(), Vec::new());
+    for (at, (knob, _)) in runs.first().into_iter().flatten().enumerate() {
+        let mut values: Vec<String> = Vec::new();
+        for value in runs.iter().map(|knobs| knobs[at].1.to_string()) {
+            if !values.contains(&value) {
+                values.push(value);
+            }
+        }
+        if values.len() == 1 {
+            same.extend(values.pop().map(|value| (knob.name, value)));
+        } else if given.iter().flatten().any(|(name, _)| *name == knob.name) {
+            varied.push((knob.name, values));
+        }
+    }
+    (same, varied)
 }

@@ -6,6 +6,7 @@ use super::columns::FRAME;
 use super::table::{Cell, Table};
 use crate::drawing::Plot;
 use crate::drawing::words::grouped;
+use crate::method::departs;
 
 /// Columns of a terminal that running text takes.
 const TEXT_COLUMNS: usize = 100;
@@ -40,8 +41,14 @@ pub struct Report {
     pub scenes: Vec<Measured>,
     /// Digital object identifier of the method's paper.
     pub doi: &'static str,
-    /// Parameters of the method that the experiment does not vary.
+    /// Key of the method.
+    pub method: &'static str,
+    /// Parameters of the method that all runs have alike.
     pub params: Vec<(&'static str, String)>,
+    /// The others, with their values.
+    pub varied: Vec<(&'static str, Vec<String>)>,
+    /// Sections of the paper from which the method departs with these.
+    pub departures: Vec<&'static str>,
     /// Frames a scene, at most.
     pub frames: usize,
     /// What is to be known for reading the table.
@@ -56,7 +63,14 @@ impl Report {
         };
         let scenes = self.scenes.iter().map(scene).collect::<Vec<_>>().join(", ");
         let params = self.params.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
-        format!("{scenes}; {params}; {} frames. {}", self.frames, self.notes.join(" "))
+        let with_values = |(k, values): &(_, Vec<_>)| format!("{k} ({})", values.join(", "));
+        let varied = match self.varied.iter().map(with_values).collect::<Vec<_>>() {
+            none if none.is_empty() => String::new(),
+            all => format!("; varied: {}", all.join(", ")),
+        };
+        let departures = departs(self.method, &self.departures);
+        let notes = self.notes.join(" ");
+        format!("{scenes}; {params}{varied}; {} frames. {notes}{departures}", self.frames)
     }
     /// Title, table, and what is to be known, for people.
     pub fn text(&self) -> String {
@@ -95,6 +109,7 @@ impl Report {
             .iter()
             .map(|m| json!({"name": m.name, "source": m.source, "primitives": m.prims, "path": m.path}));
         let params = self.params.iter().map(|(k, v)| ((*k).to_owned(), json!(v))).collect::<Map<_, _>>();
+        let varied = self.varied.iter().map(|(k, v)| ((*k).to_owned(), json!(v))).collect::<Map<_, _>>();
         json!({
             "cullscope": env!("CARGO_PKG_VERSION"),
             "experiment": self.name,
@@ -102,6 +117,8 @@ impl Report {
             "paper_doi": self.doi,
             "scenes": scenes.collect::<Vec<_>>(),
             "params": params,
+            "varied": varied,
+            "departures": self.departures,
             "frames": self.frames,
             "columns": columns,
             "rows": self.table.json(),

@@ -1,5 +1,7 @@
 //! Who a method is: its card and its pseudocode.
 
+use super::{Knob, KnobValue};
+
 /// One line of a method's pseudocode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CodeLine {
@@ -31,6 +33,53 @@ pub struct Departure {
     pub what: &'static str,
     /// Why, likewise.
     pub why: &'static str,
+    /// With which parameters.
+    #[serde(skip)]
+    pub when: When,
+}
+
+/// With which parameters a method departs from its paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// With all.
+    Always,
+    /// Where this parameter has this value.
+    With(&'static str, &'static str),
+    /// Where it has another.
+    Without(&'static str, &'static str),
+}
+
+impl Departure {
+    /// Whether a run with these parameters departs so.
+    pub fn holds(&self, knobs: &[(Knob, KnobValue)]) -> bool {
+        let is = |name: &str, word: &str| knobs.iter().any(|(k, v)| k.name == name && v.to_string() == word);
+        match self.when {
+            When::Always => true,
+            When::With(name, word) => is(name, word),
+            When::Without(name, word) => !is(name, word),
+        }
+    }
+}
+
+impl Card {
+    /// The sections of the paper from which it departs as `holds` says, each once, in their order.
+    pub fn departing(&self, holds: impl Fn(&Departure) -> bool) -> Vec<&'static str> {
+        let mut sections: Vec<&str> =
+            self.departures.iter().filter(|d| holds(d)).map(|d| d.section).collect();
+        sections.dedup();
+        sections
+    }
+}
+
+/// A sentence for captions that names these sections; nothing if there are none.
+pub fn departs(key: &str, sections: &[&str]) -> String {
+    match sections {
+        [] => String::new(),
+        [one] => format!(" {key} departs from its paper in Section {one}."),
+        [first @ .., last] => {
+            format!(" {key} departs from its paper in Sections {} and {last}.", first.join(", "))
+        }
+    }
 }
 
 /// The number of the line with this label. Evaluated when a method's line constants are compiled, so a label

@@ -14,7 +14,7 @@ mod tests;
 mod words;
 
 pub(crate) use card::line;
-pub use card::{Card, CodeLine, Departure};
+pub use card::{Card, CodeLine, Departure, When, departs};
 pub(crate) use contract::keeps_nothing;
 pub use contract::{DrawList, Frame, Limit, Method, Moment, Shown, State};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
@@ -22,7 +22,7 @@ pub use film::{Film, Reel, notes};
 pub(crate) use knobs::surface_knobs;
 pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings, surfaces_of};
 pub use note::{Claim, Compared, Context, Field, Note, Value};
-pub use run::{Entry, Recording, RestoreError, Run};
+pub use run::{Entry, Recording, RestoreError, Run, settings_for};
 pub(crate) use run::{Of, params};
 pub use words::Words;
 pub(crate) use words::words;

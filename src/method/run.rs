@@ -132,6 +132,24 @@ fn listed<S: Space, M: Method<S>>(params: &M::Params) -> Vec<(Knob, KnobValue)> 
     collect.0
 }
 
+/// The settings that give a method these parameters, in the order of their declaration: those that are not
+/// what the defaults and the settings before them make of them, so that of a preset nothing is named that
+/// follows from it.
+pub fn settings_for<S: Space>(
+    entry: &dyn Entry<S>,
+    knobs: &[(Knob, KnobValue)],
+) -> Vec<(&'static str, String)> {
+    let (mut settings, mut named) = (Settings::default(), Vec::new());
+    for (at, (knob, value)) in knobs.iter().enumerate() {
+        let value = value.to_string();
+        if !entry.knobs(&settings).is_ok_and(|so_far| so_far[at].1.to_string() == value) {
+            settings.0.insert(knob.name.to_owned(), value.clone());
+            named.push((knob.name, value));
+        }
+    }
+    named
+}
+
 impl<S: Space, M: Shown<S>> Entry<S> for Of<M> {
     fn card(&self) -> &'static Card {
         const { &M::CARD }

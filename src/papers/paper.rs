@@ -2,7 +2,7 @@
 
 use crate::culling::Methods;
 use crate::drawing::Drawing;
-use crate::figure::tools::Tint;
+use crate::figure::tools::{Maker, Tint};
 use crate::geometry::Solid;
 use crate::measure::Experiment;
 use crate::method::Departure;
@@ -58,7 +58,7 @@ pub struct Figure {
     /// One line for lists.
     pub summary: &'static str,
     /// Makes it.
-    pub(super) make: fn(Tint) -> Result<Drawing, SceneError>,
+    pub(super) make: fn(&Maker<'_>) -> Result<Drawing, SceneError>,
 }
 
 impl Figure {
@@ -67,6 +67,6 @@ impl Figure {
     /// # Errors
     /// If its scene cannot be made.
     pub fn drawing(&self, tint: Tint) -> Result<Drawing, SceneError> {
-        (self.make)(tint)
+        (self.make)(&Maker::new(tint))
     }
 }

@@ -3,9 +3,10 @@
 use super::*;
 use crate::culling::Methods;
 use crate::drawing::{Mark, metrics};
+use crate::figure::tools::Maker;
 use crate::geometry::{Flat, Solid, ViewPath};
 use crate::measure::{Cell, ExperimentError, Report, Setup, harness};
-use crate::method::Settings;
+use crate::method::{Settings, When};
 use crate::scene::{AnyScene, LoadOptions, Progress, Quiet, example, load};
 use std::collections::BTreeSet;
 
@@ -27,6 +28,17 @@ fn run(name: &str, scene: &AnyScene, setup: &Setup) -> Report {
             assert!(report.table.number(row, "checked_views").expect("a number") >= 1.0);
         }
     }
+    let caption = report.caption();
+    for (parameter, value) in &report.params {
+        assert!(caption.contains(&format!("{parameter} {value}")), "{caption}");
+    }
+    for (parameter, values) in &report.varied {
+        assert!(values.len() > 1, "{parameter}: {values:?}");
+        assert!(caption.contains(&format!("{parameter} ({})", values.join(", "))), "{caption}");
+    }
+    let sections = caption.split_once(" departs from its paper in Section").map_or("", |(_, rest)| rest);
+    assert!(report.departures.iter().all(|section| sections.contains(section)), "{caption}");
+    assert_eq!(sections.is_empty(), report.departures.is_empty(), "{caption}");
     assert!(report.plots.iter().all(|p| p.series.iter().any(|s| !s.points.is_empty())), "{name}");
     report
 }
@@ -343,7 +355,6 @@ fn an_unknown_method_is_an_error() {
         method: "large-occluder",
         scenes: &[],
         notes: &[],
-        varies: &[],
         settings: &[],
         sweep,
     };
@@ -414,4 +425,77 @@ fn wrong_parameters_and_cancelling_are_errors() {
             Err(ExperimentError::Setting(_))
         ));
     }
+}
+
+/// The runs that a caption names, with all their parameters; none if it names no run.
+fn named_runs(caption: &str) -> Vec<(String, String)> {
+    let list = [" Run: ", " Runs: "].into_iter().find_map(|head| caption.rsplit_once(head));
+    let Some((_, list)) = list else { return vec![] };
+    let list = list.split(". ").next().unwrap_or_default().trim_end_matches('.');
+    let knobs_of = |words: &str| {
+        let mut words = words.split(' ');
+        let key = words.next().expect("a method");
+        let mut settings = Settings::default();
+        words.for_each(|pair| settings.parse(pair).expect("a setting"));
+        let knobs = Solid::method(key).expect("a method").knobs(&settings).expect("parameters that exist");
+        (key.to_owned(), format!("{:?}", knobs.iter().map(|(_, v)| v.to_string()).collect::<Vec<_>>()))
+    };
+    list.split("; ").map(knobs_of).collect()
+}
+
+#[test]
+fn captions_name_what_was_run_and_where_it_departs() {
+    let (mut with_runs, mut with_departures) = (0, 0);
+    for figure in figures() {
+        let maker = Maker::gray();
+        let caption = (figure.make)(&maker).expect("a figure").description;
+        let runs = maker.runs();
+        let ran = |run: &crate::figure::tools::Ran| {
+            let values: Vec<String> = run.knobs.iter().map(|(_, v)| v.to_string()).collect();
+            (run.card.key.to_owned(), format!("{values:?}"))
+        };
+        // Whoever types the words of the caption has the very runs.
+        assert_eq!(named_runs(&caption), runs.iter().map(ran).collect::<Vec<_>>(), "{caption}");
+        with_runs += usize::from(!runs.is_empty());
+        for run in &runs {
+            let head = format!("{} departs from its paper in Section", run.card.key);
+            let sections = caption.split_once(&head).map_or("", |(_, rest)| rest);
+            let held: Vec<&str> =
+                run.card.departures.iter().filter(|d| d.holds(&run.knobs)).map(|d| d.section).collect();
+            assert!(held.iter().all(|section| sections.contains(section)), "{held:?}: {caption}");
+            assert_eq!(sections.is_empty(), held.is_empty(), "{caption}");
+            with_departures += usize::from(!held.is_empty());
+        }
+    }
+    assert!(with_runs > 15 && with_departures > 12, "{with_runs}, {with_departures}");
+}
+
+#[test]
+fn departures_depend_on_parameters_that_exist() {
+    let mut depend = 0;
+    for entry in Solid::methods() {
+        for departure in entry.card().departures {
+            let (When::With(name, word) | When::Without(name, word)) = departure.when else { continue };
+            let knobs = entry.knobs(&Settings::of(&[(name, word)])).expect("a parameter with this value");
+            assert_eq!(departure.holds(&knobs), matches!(departure.when, When::With(..)), "{departure:?}");
+            depend += 1;
+        }
+    }
+    assert!(depend > 15, "{depend}");
+}
+
+#[test]
+fn with_the_papers_rules_only_what_these_leave_open_departs() {
+    let entry = Flat::method("layered-projection").expect("a method");
+    let sections = |pairs: &[(&str, &str)]| {
+        let knobs = entry.knobs(&Settings::of(pairs)).expect("parameters");
+        entry.card().departing(|d| d.holds(&knobs))
+    };
+    assert_eq!(sections(&[]), ["3.2", "4.2", "4.3", "5"]);
+    // The penalty's factor, where nothing is said; how the border of the view and cells are found.
+    let papers = [("rules", "paper"), ("backface-culling", "true"), ("tessellation", "octree")];
+    assert_eq!(sections(&papers), ["3.2", "4.2", "4.3"]);
+    let knobs = entry.knobs(&Settings::of(&papers)).expect("parameters");
+    let held = entry.card().departures.iter().filter(|d| d.holds(&knobs));
+    assert_eq!(held.count(), 3, "all others are ours alone");
 }

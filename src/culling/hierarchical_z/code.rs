@@ -1,7 +1,7 @@
 //! The pseudocode of this method, and where it differs from the papers.
 
 use super::{Form, Params, Volume};
-use crate::method::{CodeLine, Departure};
+use crate::method::{CodeLine, Departure, When};
 
 /// The pseudocode.
 pub(super) const CODE: &[CodeLine] = &[
@@ -188,60 +188,71 @@ pub(super) const DEPARTURES: &[Departure] = &[
         what: "a primitive is small up to 12 % of its cube (small-percent), and cubes are divided down to \
                128 triangles or 8 segments (leaf-primitives)",
         why: "the paper gives no numbers",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "the bounds of what a cube holds are queried, not the cube",
         why: "they are smaller and more often hidden",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "for every face the nearest depth of the whole box is compared, not that of the face",
         why: "a triangle that the rasterizer snapped to its grid may come nearer than the face it shows \
                through, but never nearer than the box",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "before the faces the few cells over the rectangle of the whole box are read",
         why: "they decide for most of what is hidden",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "a cell that a face covers wholly and that is not nearer ends the descent",
         why: "some pixel of it shows the face",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "the pyramid is brought up to date where it is read, not where it is drawn",
         why: "most of it is not read before it is drawn into again",
+        when: When::Always,
     },
     Departure {
         section: "3.2 (Greene, Kass and Miller)",
         what: "a primitive is compared with the at most four cells over its rectangle, none of them a \
                pixel",
         why: "then it does not matter in which order, and on how many threads, primitives are drawn",
+        when: When::Always,
     },
     Departure {
         section: "3.3",
         what: "with form=two-pass all cubes are queried against what was on the list; incremental is the \
                way of the paper",
         why: "today's engines do so",
+        when: When::With("form", "two-pass"),
     },
     Departure {
         section: "3.3",
         what: "the list is kept as marks on the tree, and a cube leaves it with all below it",
         why: "listed cubes are drawn front to back, and no cube is on the list below one that is not",
+        when: When::Always,
     },
     Departure {
         section: "4.2",
         what: "a check is early if a quarter of the list is new, or the farthest depth shifts by more than \
                1.5 times",
         why: "the paper gives no numbers",
+        when: When::Always,
     },
     Departure {
         section: "5.3",
         what: "with query=sphere the screen rectangle of the sphere is queried",
         why: "the sphere itself is what the machine of the paper draws",
+        when: When::With("query", "sphere"),
     },
 ];
 

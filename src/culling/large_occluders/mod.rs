@@ -44,7 +44,7 @@ use self::walk::Walk;
 use crate::drawing::Drawing;
 use crate::method::{
     Card, CodeLine, Departure, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    surface_knobs,
+    When, surface_knobs,
 };
 use crate::scene::{Progress, Scene, Surfaces};
 
@@ -211,6 +211,7 @@ const DEPARTURES: &[Departure] = &[
         section: "2",
         what: "occlusion is demanded with a margin",
         why: "so that it also holds at the pixels of a rasterizer, which snaps corners and rounds depths",
+        when: When::Always,
     },
     Departure {
         section: "2",
@@ -218,49 +219,58 @@ const DEPARTURES: &[Departure] = &[
                planes will do",
         why: "what lies behind the plane can still be occluded; the paper's half-space condition would pass \
               no occluder on from the root, which every occluder cuts",
+        when: When::Always,
     },
     Departure {
         section: "2",
         what: "the jointly occluding set is the largest one that passes, not a whole connected component",
         why: "one member that fails would otherwise spoil a set that hides the box without it",
+        when: When::Always,
     },
     Departure {
         section: "3",
         what: "a node that no occluder hides is gathered only if the frustum does not cut it either",
         why: "its children may still lie outside the view",
+        when: When::Always,
     },
     Departure {
         section: "3.1",
         what: "the list of a leaf and direction is four times as long as k, and of it those k are taken that \
                look largest from the eye itself",
         why: "a leaf may be large, and what looks large from its center need not from elsewhere in it",
+        when: When::Always,
     },
     Departure {
         section: "3.1",
         what: "an eye outside of the scene's box is in no leaf: all occluders are ranked where it stands",
         why: "a leaf at the border lists what can hide something from within, such as a wall from the inside",
+        when: When::Always,
     },
     Departure {
         section: "3.1",
         what: "only occluders that can hide something from where the eye is are active: of one-sided ones \
                those that face it",
         why: "the others would take the places of those that hide something",
+        when: When::Always,
     },
     Departure {
         section: "3.2",
         what: "detail objects are tested against the occluders that hide a part of their node as well",
         why: "what is large from the eye may hide an object from whose center it looks small",
+        when: When::With("detail-objects", "true"),
     },
     Departure {
         section: "3.2",
         what: "detail objects are also tested against the frustum",
         why: "objects are far smaller than the boxes of leaves, which stick out of the view",
+        when: When::With("detail-objects", "true"),
     },
     Departure {
         section: "3.2",
         what: "an object of at least 4 primitives whose diagonal is at most 5 % of the scene's is a detail \
                object",
         why: "the paper leaves open which objects are small",
+        when: When::With("detail-objects", "true"),
     },
 ];
 

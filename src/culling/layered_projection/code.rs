@@ -3,7 +3,7 @@
 
 use super::Params;
 use super::rules::{Entering, Occupancy, Penalizing, Transfer, Update};
-use crate::method::{Budget, CodeLine, Departure};
+use crate::method::{Budget, CodeLine, Departure, When};
 
 // Figures 4 and 5; Seed and Project are Sections 4.1 and 4.2, Queries and Quality Section 6.
 pub(super) const CODE: &[CodeLine] = &[
@@ -168,8 +168,8 @@ pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("PrimUnreached", &["End:1"]),
 ];
 
-const fn departure(section: &'static str, what: &'static str, why: &'static str) -> Departure {
-    Departure { section, what, why }
+const fn departure(section: &'static str, what: &'static str, why: &'static str, when: When) -> Departure {
+    Departure { section, what, why, when }
 }
 
 /// Where the method is not the paper's.
@@ -179,60 +179,76 @@ pub(super) const DEPARTURES: &[Departure] = &[
         "all of a cell's solidity is handed on in place of its part v · n, but with transfer=aligned or \
          rules=paper",
         "through the oblique faces of tetrahedra that part shrinks from cell to cell",
+        When::Without("transfer", "aligned"),
     ),
     departure(
         "3.2",
         "v is the direction from the eye to the center of the cell, but with view-direction=frame or \
          rules=paper",
         "one direction for the whole frame says nothing near the rim of a wide view",
+        When::Without("view-direction", "frame"),
     ),
     departure(
         "3.2",
         "the penalty is added, not multiplied, but with penalty-as=factor or rules=paper",
         "multiplying keeps empty space at solidity 0, so the front would flow around occluders at no cost",
+        When::Without("penalty-as", "factor"),
     ),
-    departure("3.2", "the penalty factor is 2, with rules=paper too", "the paper gives none"),
+    departure(
+        "3.2",
+        "the penalty factor is 2, with rules=paper too",
+        "the paper gives none",
+        When::With("penalty", "100"),
+    ),
     departure(
         "3.2",
         "a cell keeps the solidity that came through the face toward the eye, or else the least, but with \
          update=latest or rules=paper the latest",
         "only that value is about what is in front of the cell; others are detours",
+        When::Without("update", "latest"),
     ),
     departure(
         "4.2",
         "the front grows over cells in view only, but with front=everywhere or rules=paper",
         "nothing of the others is drawn, and what is in view beyond them is reached by other ways",
+        When::Without("front", "everywhere"),
     ),
     departure(
         "4.2",
         "where the eye is outside of all cells, the front begins at the cell in view that holds something \
          and whose box is nearest, but with front=everywhere or rules=paper at the closest one",
         "from a cell out of view the front would not grow",
+        When::Without("front", "everywhere"),
     ),
     departure(
         "4.2",
         "where the front runs dry before the budget does, a new one begins, but with front=everywhere or \
          rules=paper",
         "so with an unlimited budget nothing in view is missed",
+        When::Without("front", "everywhere"),
     ),
     departure(
         "4.2",
         "in a cell that the border of the view cuts, primitives are tested one by one",
         "the paper culls by the view frustum without saying at what",
+        When::Always,
     ),
     departure(
         "4.3",
         "the corners of the region are triangulated with the centers of the leaves",
         "cells then cover the whole scene, not only the convex hull of the centers",
+        When::With("tessellation", "delaunay"),
     ),
     departure(
         "4.3",
         "neighbors are found by descending both sides of every dividing plane together",
         "this gives all pairs, across levels of any difference",
+        When::Without("tessellation", "delaunay"),
     ),
     departure(
         "5",
         "back faces are culled with backface-culling=true only, with rules=paper too",
         "whether faces have one side is for the scene to say",
+        When::Without("backface-culling", "true"),
     ),
 ];

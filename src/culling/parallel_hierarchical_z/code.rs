@@ -2,7 +2,7 @@
 
 use super::Params;
 use super::machine::{Allocation, Distribution, Volume};
-use crate::method::{CodeLine, Departure};
+use crate::method::{CodeLine, Departure, When};
 
 /// The pseudocode.
 pub(super) const CODE: &[CodeLine] = &[
@@ -170,35 +170,46 @@ pub(super) const DEPARTURES: &[Departure] = &[
         section: "3.1",
         what: "marks of shared primitives are known to all processors at once, as if they shared memory",
         why: "each primitive is drawn once",
+        when: When::Always,
     },
     Departure {
         section: "4.1",
         what: "with distribution=hybrid, the default, a processor first queries the cube above several of \
                its invisible structures",
         why: "the paper leaves open how a processor recombines its allotment into a tree",
+        when: When::With("distribution", "hybrid"),
     },
     Departure {
         section: "4.1",
         what: "distribution=subtree deals whole parts of the scene out",
         why: "it shows what dealing finely avoids",
+        when: When::With("distribution", "subtree"),
     },
     Departure {
         section: "4.2",
         what: "a check is early if a quarter of the list is new, or the farthest depth shifts by more than \
                1.5 times; for that each processor asks the renderers when the image is finished",
         why: "the paper gives no numbers and no way",
+        when: When::Always,
     },
-    Departure { section: "5", what: "what operations cost is a parameter", why: "the paper gives no costs" },
+    Departure {
+        section: "5",
+        what: "what operations cost is a parameter",
+        why: "the paper gives no costs",
+        when: When::Always,
+    },
     Departure {
         section: "5",
         what: "a renderer answers from the z-pyramid",
         why: "the answer is the same as by comparing all pixels at once, and the cells that it reads can \
                be shown",
+        when: When::Always,
     },
     Departure {
         section: "5.1",
         what: "what is out of view is left out before the machine begins, whole cubes at a time",
         why: "it takes no part in what is compared",
+        when: When::Always,
     },
     Departure {
         section: "5.1",
@@ -206,16 +217,19 @@ pub(super) const DEPARTURES: &[Departure] = &[
                it again",
         why: "on the machine a region is finished when all its primitives are known, which a query has to \
                come before",
+        when: When::With("allocation", "dynamic"),
     },
     Departure {
         section: "5.3",
         what: "with query=sphere the screen rectangle of the sphere is compared",
         why: "the renderers here have no evaluator of quadratic expressions",
+        when: When::With("query", "sphere"),
     },
     Departure {
         section: "5.3",
         what: "the farthest depths are asked for once, when the visible list is drawn",
         why: "it is the time that the paper proposes",
+        when: When::Always,
     },
 ];
 

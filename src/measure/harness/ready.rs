@@ -6,7 +6,8 @@ use crate::measure::experiment::{ExperimentError, Setup, World, method};
 use crate::method::{RestoreError, Run, Settings};
 use crate::scene::{Part, Progress, Scene};
 
-/// Those of the experiment's settings that a method has, and these on top.
+/// Those of the experiment's settings that a method has, and these on top. What is to be run with them is
+/// kept in the setup, for the caption.
 ///
 /// # Errors
 /// There is no such method.
@@ -19,6 +20,11 @@ pub fn settings<S: World>(
     let mut settings = setup.settings.clone();
     settings.0.retain(|key, _| known.iter().any(|(knob, _)| knob.name == key));
     settings.0.extend(Settings::of(on_top).0);
+    let run = (key.to_owned(), method::<S>(key)?.knobs(&settings)?);
+    let mut ran = setup.ran.borrow_mut();
+    if !ran.contains(&run) {
+        ran.push(run);
+    }
     Ok(settings)
 }
 

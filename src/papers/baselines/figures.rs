@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::culling::baseline::{Evidence, Frustum};
 use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
 use crate::figure::page::legend;
-use crate::figure::tools::{Tint, WIDTH_PT, airy, entry, eye, film, flat_panel, page};
+use crate::figure::tools::{Maker, WIDTH_PT, airy, entry, eye, flat_panel};
 use crate::figure::{Look, Panel, Paper, Picture, Swatch, observer_above, panels, world};
 use crate::geometry::{Flat, NodeId, Solid, View};
 use crate::method::{Film, Verdict, notes};
@@ -59,9 +59,9 @@ pub const FIGURES: &[Figure] = &[
 /// The scene of small figures.
 const STREET: &str = "street";
 
-fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
+fn kd_tree_levels(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example(STREET)?;
-    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
+    let film = maker.film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let tree = film.hierarchy();
     let panel = |level: u32| {
         let mut drawing = Drawing::default();
@@ -84,7 +84,7 @@ fn kd_tree_levels(_: Tint) -> Result<Drawing, SceneError> {
         entry(Role::Ink, Swatch::Line, "polygon"),
         entry(Role::Evidence, Swatch::Line, "bounds of a node"),
     ];
-    Ok(page(Paper::TwoColumns, "kD-tree, level by level", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "kD-tree, level by level", legend, caption, &content))
 }
 
 /// The step right after the test of a node with this result whose box is the largest that fits well into the
@@ -102,9 +102,9 @@ fn step_of(film: &dyn Film<Flat>, result: &str) -> usize {
     sizes.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(film.events().len(), |(at, _)| at + 1)
 }
 
-fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
+fn frustum_tests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example(STREET)?;
-    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
+    let film = maker.film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let look = Look { nodes: false, ..Look::default() };
     let panel = |result: &str| flat_panel(&*film, step_of(&*film, result), &look, result.to_owned());
     let content = panels(WIDTH_PT, 3, &["outside", "partial", "inside"].map(panel));
@@ -112,12 +112,12 @@ fn frustum_tests(_: Tint) -> Result<Drawing, SceneError> {
                    lines in flatland. Outside: even the corner that reaches farthest in is beyond one plane, \
                    so all below the node is dropped. Partial: a plane cuts the box, so its children are \
                    looked at. Inside: all below it is kept without another test.";
-    Ok(page(Paper::TwoColumns, "A box against the view frustum", legend(&content), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "A box against the view frustum", legend(&content), caption, &content))
 }
 
-fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
+fn frustum_steps(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
-    let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
+    let film = maker.film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
     let all = film.events().len();
     let panel = |quarter: usize| {
         let step = all * quarter / 4;
@@ -131,20 +131,26 @@ fn frustum_steps(_: Tint) -> Result<Drawing, SceneError> {
     };
     let content = panels(WIDTH_PT, 2, &[1, 2, 3, 4].map(panel));
     let caption = format!(
-        "View-frustum culling over a kD-tree, {}, first eye of the file, tree-height 8. The traversal goes \
+        "View-frustum culling over a kD-tree, {}, first eye of the file. The traversal goes \
          down from the root; a node outside the frustum is dropped with all below it, a node inside or a \
          leaf is kept.",
         scene.name()
     );
-    Ok(page(Paper::TwoColumns, "View-frustum culling, step by step", legend(&content), caption, &content))
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "View-frustum culling, step by step",
+        legend(&content),
+        caption,
+        &content,
+    ))
 }
 
-fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
+fn baselines_flatland(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
     let view = eye(&scene, 0);
     let look = Look { nodes: false, evidence: false, ..Look::default() };
     let panel = |method: &str| {
-        let film = film(&scene, &view, method, &[]);
+        let film = maker.film(&scene, &view, method, &[]);
         let counts = Stamps::new(&*film).counts(film.events().len());
         let label = format!("{method}: {} of {} drawn", counts.of(Verdict::Visible), scene.live().len());
         flat_panel(&*film, film.events().len(), &look, label)
@@ -153,7 +159,7 @@ fn baselines_flatland(_: Tint) -> Result<Drawing, SceneError> {
     let caption = "The three baselines with their default parameters on the same view. The z-buffer draws \
                    everything; view-frustum culling drops what is outside; centroid ordering draws what is \
                    nearest until its budget of 10 % is spent, and leaves out the rest, visible or not.";
-    Ok(page(Paper::TwoColumns, "Three baselines", legend(&content), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "Three baselines", legend(&content), caption, &content))
 }
 
 fn office(polygons: u32) -> Result<Arc<Scene<Solid>>, SceneError> {
@@ -163,11 +169,11 @@ fn office(polygons: u32) -> Result<Arc<Scene<Solid>>, SceneError> {
     }
 }
 
-fn frustum_space(_: Tint) -> Result<Drawing, SceneError> {
+fn frustum_space(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = office(2500)?;
     let mut view = scene.paths()[0].views[0];
     view.eye.far = scene.bounds().diagonal() * 0.5;
-    let film = film(&scene, &view, FRUSTUM, &[]);
+    let film = maker.film(&scene, &view, FRUSTUM, &[]);
     let stamps = Stamps::new(&*film);
     let observer = observer_above(&scene, 4.0 / 3.0);
     let picture = |step: usize, look: &Look| Picture::Space(world(&*film, &stamps, step, look), observer);
@@ -191,10 +197,11 @@ fn frustum_space(_: Tint) -> Result<Drawing, SceneError> {
          Eye stands in a corridor.",
         scene.live().len()
     );
-    Ok(page(Paper::TwoColumns, "View-frustum culling in space", legend(&content), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "View-frustum culling in space", legend(&content), caption, &content))
 }
 
-fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
+fn item_buffer(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let tint = maker.tint;
     let scene = office(20_000)?;
     let sized = |view: &View<Solid>| View { width: 320, height: 240, ..*view };
     let seen = |view: &View<Solid>| raster::visible(&raster::render(&*scene, view, scene.live())).len();
@@ -235,7 +242,7 @@ fn item_buffer(tint: Tint) -> Result<Drawing, SceneError> {
          the truth against which every method is measured.",
         scene.live().len()
     );
-    Ok(page(Paper::TwoColumns, "The truth: an item buffer", legend(&content), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "The truth: an item buffer", legend(&content), caption, &content))
 }
 
 #[cfg(test)]
@@ -247,7 +254,7 @@ mod tests {
         let scene = example("freedoom_e1m1").expect("a scene");
         let all = scene.live().len();
         let [everything, in_view, nearest] = [Z_BUFFER, FRUSTUM, CENTROID].map(|method| {
-            let film = film(&scene, &eye(&scene, 0), method, &[]);
+            let film = Maker::gray().film(&scene, &eye(&scene, 0), method, &[]);
             Stamps::new(&*film).counts(film.events().len()).of(Verdict::Visible)
         });
         assert!(everything == all && in_view < all && nearest.abs_diff(all / 10) <= 1, "{in_view} {nearest}");
@@ -256,7 +263,7 @@ mod tests {
     #[test]
     fn each_result_of_a_test_is_found() {
         let scene = example(STREET).expect("a scene");
-        let film = film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
+        let film = Maker::gray().film(&scene, &eye(&scene, 0), FRUSTUM, &[]);
         let steps = ["outside", "partial", "inside"].map(|result| step_of(&*film, result));
         assert!(steps.iter().all(|step| *step < film.events().len()), "{steps:?}");
     }

@@ -7,9 +7,7 @@ use glam::{DVec3, Vec2, Vec3, vec2};
 use crate::culling::anatomy::Blockers;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::figure::axis::{Axis, axes};
-use crate::figure::tools::{
-    COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page,
-};
+use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
 use crate::figure::{Paper, Sheet, Swatch, clip};
 use crate::geometry::{Aabb, Solid};
 use crate::method::CodeLine;
@@ -17,22 +15,22 @@ use crate::papers::keys::LARGE_OCCLUDERS;
 use crate::scene::{SceneError, example};
 
 /// The lines that belong to the default parameters.
-fn code() -> Result<Vec<CodeLine>, SceneError> {
+fn code(maker: &Maker<'_>) -> Result<Vec<CodeLine>, SceneError> {
     let scene = example("street")?;
-    let film = film(&scene, &eye(&scene, 0), LARGE_OCCLUDERS, &[]);
+    let film = maker.film(&scene, &eye(&scene, 0), LARGE_OCCLUDERS, &[]);
     let lines = film.card().code.iter().zip(0..).filter(|(_, line)| film.has_line(*line));
     Ok(lines.map(|(line, _)| *line).collect())
 }
 
 /// Figure 9: the algorithm. Below a line that differs from the paper's stands the paper's.
-pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     const GUTTER_PT: f32 = 15.0;
     let paper_line = |line: &CodeLine| {
         let indent = line.text.len() - line.text.trim_start().len();
         format!("{}paper: {}", " ".repeat(indent), line.paper)
     };
     let width = |text: &str| metrics::width_pt(text, Font::Mono, 1.0);
-    let code = code()?;
+    let code = code(maker)?;
     let widest = code.iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
     let size_pt = ((COLUMN_PT - GUTTER_PT) / widest).min(LABEL_PT);
     let (line_pt, mut y) = (size_pt * 1.4, 2.0);
@@ -64,7 +62,7 @@ pub(super) fn pseudocode(_: Tint) -> Result<Drawing, SceneError> {
                    through it: the selection of occluders, the recursion with view-frustum culling in front, \
                    TestOcclusion opened up, and the detail objects in Gather. In gray below a line: what the \
                    paper's says in its place.";
-    Ok(page(Paper::Column, "The visibility algorithm", Vec::new(), caption, &paper))
+    Ok(maker.page(Paper::Column, "The visibility algorithm", Vec::new(), caption, &paper))
 }
 
 /// The solid angle of a triangle from a point, steradians.
@@ -204,7 +202,7 @@ fn charts() -> [Chart; 2] {
 }
 
 /// Figure 11: the area-angle, its parameters, and what it estimates.
-pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn area_angle(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     const HEIGHT_PT: f32 = 140.0;
     const GAP_PT: f32 = 12.0;
     let width = (TWO_COLUMNS_PT - 2.0 * GAP_PT) / 3.0;
@@ -227,7 +225,7 @@ pub(super) fn area_angle(_: Tint) -> Result<Drawing, SceneError> {
                    falls with the square of the distance and the cosine of obliqueness. Nearby it is too \
                    large: half a side away nearly twice the solid angle, which is 2π at most. That does no \
                    harm, since such an occluder comes first anyway.";
-    Ok(page(Paper::TwoColumns, "Area-angle and solid angle", legend, caption, &paper))
+    Ok(maker.page(Paper::TwoColumns, "Area-angle and solid angle", legend, caption, &paper))
 }
 
 #[cfg(test)]
@@ -260,7 +258,7 @@ mod tests {
 
     #[test]
     fn the_pseudocode_fits_its_column() {
-        let drawing = pseudocode(&|_| [0.0; 3]).expect("a figure");
+        let drawing = pseudocode(&Maker::gray()).expect("a figure");
         for item in &drawing.items {
             let Mark::Text { at, text, size_pt, anchor, font } = &item.mark else { continue };
             let [low, high] = metrics::text_box(*at, text, *font, *size_pt, *anchor);

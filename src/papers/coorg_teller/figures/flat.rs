@@ -8,7 +8,7 @@ use super::regions::regions;
 use super::setting::{Setting, draw_tangent, largest};
 use crate::culling::anatomy::Occlusion;
 use crate::drawing::{Drawing, Font, Role};
-use crate::figure::tools::{COLUMN_PT, LABEL_PT, NAME_PT, Plan, Tint, entry, page};
+use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, entry};
 use crate::figure::{Paper, Swatch, panels};
 use crate::geometry::Aabb;
 use crate::scene::SceneError;
@@ -54,7 +54,7 @@ fn name_regions(plan: &mut Plan, all: &[(Occlusion, Vec<DVec2>)]) {
 }
 
 /// Figure 2: regions 1, 2 and 3.
-pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn supporting_lines(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let setting = Setting::of("occluder_and_box")?;
     let mut plan = Plan::new(frame([-8.4, 8.4], [-6.4, 5.6]), COLUMN_PT);
     let all = one_occluder(&setting, &plan);
@@ -85,7 +85,7 @@ pub(super) fn supporting_lines(_: Tint) -> Result<Drawing, SceneError> {
                    on one side, a separating line has them on opposite sides. They and A's own line divide \
                    the viewpoints that have A before T into three regions: T is not occluded by A (1), \
                    partially (2), or fully (3). Scene occluder_and_box, first eye.";
-    Ok(page(Paper::Column, "Supporting and separating lines", legend, caption, &content))
+    Ok(maker.page(Paper::Column, "Supporting and separating lines", legend, caption, &content))
 }
 
 /// Who hides T.
@@ -123,7 +123,7 @@ fn name_alone(plan: &mut Plan, setting: &Setting, all: &[(Hiding, Vec<DVec2>)]) 
 }
 
 /// Figure 3: what two connected occluders hide together.
-pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn connected(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let setting = Setting::of("connected_occluders")?;
     let mut plan = Plan::new(frame([-8.4, 8.4], [-6.4, 5.8]), COLUMN_PT);
     let all = regions(&plan.wide(), &setting.borders(), |p| who_hides(&setting, p));
@@ -155,7 +155,7 @@ pub(super) fn connected(_: Tint) -> Result<Drawing, SceneError> {
                    hides the box T, but both do together: each of them hides it partially, and they lie on \
                    opposite sides of E, so the supporting lines through E (dotted) need not be satisfied, \
                    only those through the outer ends. Scene connected_occluders, first eye.";
-    Ok(page(Paper::Column, "Occlusion by connected occluders", legend, caption, &content))
+    Ok(maker.page(Paper::Column, "Occlusion by connected occluders", legend, caption, &content))
 }
 
 /// The point that both occluders end in.
@@ -210,7 +210,7 @@ fn draw_views(plan: &mut Plan, setting: &Setting, eyes: [Vec2; 2], all: &[(Verdi
 }
 
 /// Figure 4: a shared silhouette edge must not be ignored.
-pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn silhouette_edge(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let setting = Setting::of("silhouette_edge")?;
     let mut plan = Plan::new(frame([-9.4, 7.4], [-6.4, 5.8]), COLUMN_PT);
     let all = regions(&plan.wide(), &setting.borders(), |p| verdict(&setting, p));
@@ -240,7 +240,7 @@ pub(super) fn silhouette_edge(_: Tint) -> Result<Drawing, SceneError> {
                    the supporting lines through E (dotted) were ignored there, T would be called hidden, yet \
                    P sees a corner of it past E. So they are ignored only where the two occluders lie on \
                    opposite sides of E. Scene silhouette_edge, both eyes.";
-    Ok(page(Paper::Column, "A shared silhouette edge counts", legend, caption, &content))
+    Ok(maker.page(Paper::Column, "A shared silhouette edge counts", legend, caption, &content))
 }
 
 #[cfg(test)]

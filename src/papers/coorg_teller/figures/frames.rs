@@ -8,9 +8,7 @@ use super::notes::{Test, chosen, tests};
 use super::setting::draw_tangent;
 use crate::culling::anatomy::{Blockers, Occlusion};
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
-use crate::figure::tools::{
-    COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page, ready,
-};
+use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
 use crate::figure::{Look, Panel, Paper, Swatch, panels, world};
 use crate::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId};
 use crate::method::Film;
@@ -19,9 +17,9 @@ use crate::scene::{Scene, SceneError, example};
 use crate::trace::Stamps;
 
 /// Figure 10 looks at two frames in a row.
-fn two_frames() -> Result<[Arc<dyn Film<Flat>>; 2], SceneError> {
+fn two_frames(maker: &Maker<'_>) -> Result<[Arc<dyn Film<Flat>>; 2], SceneError> {
     let scene = example("two_viewpoints")?;
-    let mut run = ready(
+    let mut run = maker.ready(
         &scene,
         LARGE_OCCLUDERS,
         &[("occluders", "1"), ("tree-height", "8"), ("detail-objects", "false")],
@@ -124,8 +122,8 @@ fn reuse(film: &dyn Film<Flat>) -> Panel {
 }
 
 /// Figure 10: nodes classified for two viewpoints in a row, and what was reused.
-pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
-    let films = two_frames()?;
+pub(super) fn two_viewpoints(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let films = two_frames(maker)?;
     let all_panels = [classes(&films, 0), classes(&films, 1), reuse(&*films[1])];
     let content = panels(TWO_COLUMNS_PT, 3, &all_panels);
     let legend = vec![
@@ -142,16 +140,16 @@ pub(super) fn two_viewpoints(_: Tint) -> Result<Drawing, SceneError> {
                    as a whole (such as 1) or not at all (2), so few nodes are tested. Nodes that both \
                    descents come to (such as 3) keep their supporting and separating lines, which do not \
                    depend on where the eye stands: at P2 they are only checked. Scene two_viewpoints, both \
-                   eyes, one occluder, tree-height 8.";
-    Ok(page(Paper::TwoColumns, "One occluder, two viewpoints in a row", legend, caption, &content))
+                   eyes.";
+    Ok(maker.page(Paper::TwoColumns, "One occluder, two viewpoints in a row", legend, caption, &content))
 }
 
 /// Figure 12 looks at one frame.
-fn details_film(with_details: bool) -> Result<Arc<dyn Film<Flat>>, SceneError> {
+fn details_film(maker: &Maker<'_>, with_details: bool) -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("detail_objects")?;
     let switch = if with_details { "true" } else { "false" };
     let pairs = [("occluders", "2"), ("detail-objects", switch)];
-    Ok(film(&scene, &eye(&scene, 0), LARGE_OCCLUDERS, &pairs))
+    Ok(maker.film(&scene, &eye(&scene, 0), LARGE_OCCLUDERS, &pairs))
 }
 
 fn bounds_of(scene: &Scene<Flat>, object: ObjectId) -> Aabb<Vec2> {
@@ -183,8 +181,8 @@ fn draw_details(plan: &mut Plan, film: &dyn Film<Flat>) -> usize {
 }
 
 /// Figure 12: detail objects and the occluders near them.
-pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
-    let film = details_film(true)?;
+pub(super) fn detail_objects(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = details_film(maker, true)?;
     let scene = film.scene().clone();
     let mut plan = Plan::new(Aabb { min: Vec2::new(-6.6, -0.8), max: Vec2::new(6.6, 13.4) }, COLUMN_PT);
     let look = Look { nodes: false, evidence: false, eye: false, ..Look::default() };
@@ -211,8 +209,8 @@ pub(super) fn detail_objects(_: Tint) -> Result<Drawing, SceneError> {
                    largest from the viewpoint P hide none of the three. Visibility goes both ways, so the \
                    occluders that look large from an object toward P are tried too: P lies inside both \
                    supporting lines of D1 and D2 with the walls before them. D3 is drawn. Scene \
-                   detail_objects, first eye, two occluders for each place and direction.";
-    Ok(page(Paper::Column, "Detail objects and the occluders near them", legend, caption, &content))
+                   detail_objects, first eye.";
+    Ok(maker.page(Paper::Column, "Detail objects and the occluders near them", legend, caption, &content))
 }
 
 #[cfg(test)]
@@ -223,7 +221,7 @@ mod checks {
 
     #[test]
     fn the_second_viewpoint_reuses_most_lines_and_they_are_those_of_the_first() {
-        let films = two_frames().expect("a scene");
+        let films = two_frames(&Maker::gray()).expect("a scene");
         let [first, second] = [tests(&*films[0]), tests(&*films[1])];
         let wall = PrimId(0);
         assert!(
@@ -249,7 +247,8 @@ mod checks {
 
     #[test]
     fn details_are_hidden_only_by_the_occluders_near_them() {
-        let (with, without) = (details_film(true).expect("a scene"), details_film(false).expect("a scene"));
+        let [with, without] =
+            [true, false].map(|details| details_film(&Maker::gray(), details).expect("a scene"));
         let scene = with.scene();
         let state = |film: &Arc<dyn Film<Flat>>, object: &str| {
             let prim = *scene

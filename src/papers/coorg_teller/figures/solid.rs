@@ -6,9 +6,7 @@ use glam::{DVec2, Vec2, Vec3};
 use super::regions::{Border, cells, holds, middle};
 use crate::culling::anatomy::{Blockers, Tangent, outline_seen_from, sides_of_outline, tangent_corners};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
-use crate::figure::tools::{
-    COLUMN_PT, LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, name, page, view,
-};
+use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, name, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{Aabb, Solid};
 use crate::scene::SceneError;
@@ -113,7 +111,7 @@ impl Stage {
 }
 
 /// Figure 5: joint occlusion, as seen from the viewpoint.
-pub(super) fn joint_occlusion(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn joint_occlusion(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let seen = view(Vec3::ZERO, Vec3::NEG_Z, 34.0, [400, 300]);
     let panel = |stage: &Stage| {
         let verdict = match stage.hiding().len() {
@@ -137,7 +135,7 @@ pub(super) fn joint_occlusion(_: Tint) -> Result<Drawing, SceneError> {
                    found hidden. (b) Connected, but the silhouette is not convex: T crosses the line of edge \
                    e, so the test fails. (c) Disconnected: no edge is ignored, and the test fails. Both \
                    failures are on the safe side: T is drawn.";
-    Ok(page(
+    Ok(maker.page(
         Paper::TwoColumns,
         "Joint occlusion in space, seen from the viewpoint",
         legend,
@@ -194,7 +192,7 @@ fn draw_planes(target: &Aabb<Vec3>, [supporting, separating]: &Planes) -> Drawin
 }
 
 /// Figure 6: the two planes through an edge of a polygon that touch a box.
-pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn tangent_planes(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let (target, planes) = planes_of_polygon();
     let Some(through_edge) = &planes[1] else { unreachable!("the edge's line does not meet the box") };
     let world = draw_planes(&target, through_edge);
@@ -218,7 +216,7 @@ pub(super) fn tangent_planes(_: Tint) -> Result<Drawing, SceneError> {
     let caption = "The two planes through an edge E of a polygon that touch a box T, each at a tangent \
                    vertex (dot). The supporting plane has the box and the polygon on one side, the \
                    separating plane on opposite sides. Arrows point to the inside, the polygon's side.";
-    Ok(page(Paper::Column, "Tangent planes through an edge", legend, caption, &content))
+    Ok(maker.page(Paper::Column, "Tangent planes through an edge", legend, caption, &content))
 }
 
 /// The box of Figures 7 and 8.
@@ -227,7 +225,7 @@ fn the_box() -> Aabb<Vec3> {
 }
 
 /// Figure 7: the outlines of a box from the three kinds of places.
-pub(super) fn silhouettes(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn silhouettes(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let target = the_box();
     let panel = |(place, from): (&str, Vec3)| {
         let outline = outline_seen_from(from, &target);
@@ -268,7 +266,7 @@ pub(super) fn silhouettes(_: Tint) -> Result<Drawing, SceneError> {
                    27 places 6 are before a face and give 4 corners, 12 beside an edge and 8 off a corner \
                    give 6; inside there is none. So a table holds them all. Bit a of a corner's number says \
                    whether it lies at the upper end of axis a.";
-    Ok(page(Paper::TwoColumns, "Silhouettes of a box", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "Silhouettes of a box", legend, caption, &content))
 }
 
 /// Where the eye of Figure 8 stands, and the plane that it projects to.
@@ -378,7 +376,7 @@ fn draw_tangents(plan: &mut Plan, e: Vec2, touched: [Vec2; 2], tangents: [[Vec2;
 }
 
 /// Figure 8: the regions between the extended outline and their codes.
-pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
+pub(super) fn outline_codes(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let target = the_box();
     let (projected, wide) = figure_8();
     let mut plan = Plan::new(Aabb { min: wide.min.as_vec2(), max: wide.max.as_vec2() }, COLUMN_PT);
@@ -414,7 +412,7 @@ pub(super) fn outline_codes(_: Tint) -> Result<Drawing, SceneError> {
          code.",
         outline[0]
     );
-    Ok(page(Paper::Column, "Codes of the regions around a box", legend, caption, &content))
+    Ok(maker.page(Paper::Column, "Codes of the regions around a box", legend, caption, &content))
 }
 
 #[cfg(test)]

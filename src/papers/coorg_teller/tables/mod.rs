@@ -30,7 +30,6 @@ pub const TABLES: &[Experiment] = &[
              (Section 3.2) one by one as well; for the frustum every object whose box is out of view. The \
              paper does not say how its frustum column was made; its ratio stands beside ours with objects.",
         ],
-        varies: &["detail-objects"],
         settings: &[],
         sweep: &table_1::SWEEP,
     },
@@ -45,7 +44,6 @@ pub const TABLES: &[Experiment] = &[
             WALK_TIMES,
             "We draw with a software rasterizer, the paper with graphics hardware of its time.",
         ],
-        varies: &[],
         settings: &[],
         sweep: &table_2::SWEEP,
     },
@@ -61,7 +59,6 @@ pub const TABLES: &[Experiment] = &[
             "Ours is all of culling, view-frustum tests and gathering included; the paper leaves out the \
              view-frustum tests.",
         ],
-        varies: &["cache"],
         settings: &[],
         sweep: &table_3::SWEEP,
     },
@@ -75,7 +72,6 @@ pub const TABLES: &[Experiment] = &[
             "Low and high are the quartiles over the frames; for the paper, the ends of the range that it \
              states for both models.",
         ],
-        varies: &[],
         settings: &[],
         sweep: &nodes::SWEEP,
     },
@@ -91,7 +87,6 @@ pub const TABLES: &[Experiment] = &[
             "The paper has 32 occluders and states no figures for others; by marginal gain at most 64 are \
              taken.",
         ],
-        varies: &["occluders", "marginal-gain"],
         settings: &[],
         sweep: &occluders::SWEEP,
     },

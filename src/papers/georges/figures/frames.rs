@@ -8,7 +8,7 @@ use super::pyramid::office;
 use crate::culling::Methods;
 use crate::drawing::{Anchor, Drawing, Item, Layer, Mark, Role, words};
 use crate::figure::page::{below, legend};
-use crate::figure::tools::{Tint, WIDTH_PT, eye, flat_panel, page, ready};
+use crate::figure::tools::{Maker, WIDTH_PT, eye, flat_panel};
 use crate::figure::{Look, Paper, panels};
 use crate::geometry::{Flat, Solid, View};
 use crate::method::{Film, Verdict};
@@ -23,15 +23,15 @@ const TIMELINE: usize = 3;
 const PROCESSORS: &str = "4";
 
 /// A frame of the game level, after some frames of the same view.
-fn level(scene: &Arc<Scene<Flat>>, coherence: &str, frames: usize) -> Arc<dyn Film<Flat>> {
+fn level(maker: &Maker<'_>, scene: &Arc<Scene<Flat>>, coherence: &str, frames: usize) -> Arc<dyn Film<Flat>> {
     let view = View { width: 512, ..eye(scene, 0) };
-    after(HIERARCHICAL_Z, scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
+    after(maker, HIERARCHICAL_Z, scene, &view, &[("leaf-primitives", "8"), ("coherence", coherence)], frames)
 }
 
-pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
+pub fn quadtree(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("freedoom_e1m1")?;
     let panel = |coherence: &str, frames: usize| {
-        let film = level(&scene, coherence, frames);
+        let film = level(maker, &scene, coherence, frames);
         let end = film.events().len();
         let counts = Stamps::new(&*film).counts(end);
         let label = format!(
@@ -48,24 +48,25 @@ pub fn quadtree(_: Tint) -> Result<Drawing, SceneError> {
                    were visible are drawn first, without being asked, and the rest is asked against an image \
                    that is almost complete; some segments are drawn that the cubes before them would have \
                    hidden.";
-    Ok(page(Paper::TwoColumns, "A quadtree's cubes by state", legend(&content), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "A quadtree's cubes by state", legend(&content), caption, &content))
 }
 
 /// The film of a frame after some frames of the same view.
 fn after<S: Methods>(
+    maker: &Maker<'_>,
     method: &str,
     scene: &Arc<Scene<S>>,
     view: &View<S>,
     pairs: &[(&str, &str)],
     frames: usize,
 ) -> Arc<dyn Film<S>> {
-    let mut run = ready(scene, method, pairs);
+    let mut run = maker.ready(scene, method, pairs);
     (0..frames).for_each(|_| _ = run.cull(view));
     run.record(view, usize::MAX).film
 }
 
 /// What the units of the simulated machine do in a second frame.
-fn timeline(scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
+fn timeline(maker: &Maker<'_>, scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
     let view = View { width: 512, height: 384, ..scene.paths()[0].views[0] };
     let pairs = [
         ("processors", PROCESSORS),
@@ -73,7 +74,7 @@ fn timeline(scene: &Arc<Scene<Solid>>, distribution: &str) -> Drawing {
         ("distribution", distribution),
         ("leaf-primitives", "64"),
     ];
-    let film = after(PARALLEL_HIERARCHICAL_Z, scene, &view, &pairs, 1);
+    let film = after(maker, PARALLEL_HIERARCHICAL_Z, scene, &view, &pairs, 1);
     film.picture(film.events().len(), TIMELINE, DepthScale::default())
 }
 
@@ -96,11 +97,11 @@ fn told(timeline: &Drawing) -> [u32; 3] {
     [least, most, numbers(" ticks").into_iter().max()].map(Option::unwrap_or_default)
 }
 
-pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
+pub fn timelines(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = office()?;
     let (mut parts, mut measured) = (Vec::new(), Vec::new());
     for distribution in DISTRIBUTIONS {
-        let mut picture = timeline(&scene, distribution);
+        let mut picture = timeline(maker, &scene, distribution);
         let [least, most, ticks] = told(&picture);
         measured.push(format!("by {distribution} {least} to {most} %, {ticks} ticks"));
         picture.text(
@@ -119,7 +120,7 @@ pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
     }
     let caption = format!(
         "A second frame of an office of {} triangles on a simulated machine of {PROCESSORS} processors and 4 \
-         renderers (leaf-primitives=64, 512 × 384 pixels). By structure, cubes are dealt out in turn, each \
+         renderers (512 × 384 pixels). By structure, cubes are dealt out in turn, each \
          with what it holds; by primitive, every processor has a part of every cube and asks for all of \
          them; hybrid, cubes are dealt out in turn and a processor asks for several of its own at once; by \
          subtree, which is not in the paper, whole parts of the scene go to one processor. At the right the \
@@ -127,7 +128,7 @@ pub fn timelines(_: Tint) -> Result<Drawing, SceneError> {
         words::count(scene.live().len()),
         measured.join("; ")
     );
-    Ok(page(
+    Ok(maker.page(
         Paper::TwoColumns,
         "Georges 1995, Section 4.1: ways to distribute structures",
         vec![],
@@ -144,7 +145,7 @@ mod tests {
     fn coherence_draws_what_cubes_before_would_have_hidden() {
         let scene = example("freedoom_e1m1").expect("a scene");
         let drawn = |coherence, frames| {
-            let film = level(&scene, coherence, frames);
+            let film = level(&Maker::gray(), &scene, coherence, frames);
             let counts = Stamps::new(&*film).counts(film.events().len());
             let all = [Verdict::Visible, Verdict::Hidden, Verdict::Outside].map(|v| counts.of(v));
             assert_eq!(all.iter().sum::<usize>(), scene.live().len(), "every segment is decided");
@@ -156,8 +157,8 @@ mod tests {
     #[test]
     fn whole_parts_of_the_scene_balance_worse_than_cubes_in_turn() {
         let scene = office().expect("a scene");
-        let [subtree, structure, primitive, hybrid] =
-            ["subtree", "structure", "primitive", "hybrid"].map(|way| told(&timeline(&scene, way)));
+        let [subtree, structure, primitive, hybrid] = ["subtree", "structure", "primitive", "hybrid"]
+            .map(|way| told(&timeline(&Maker::gray(), &scene, way)));
         assert!(subtree[0] + 10 < structure[0], "idlest by subtree {subtree:?}, by structure {structure:?}");
         assert!(
             primitive[2] > hybrid[2],

@@ -6,7 +6,7 @@ use super::notes::hidden_query;
 use crate::culling::hierarchical_z_parts::{figure_1, pyramid_picture};
 use crate::drawing::{Drawing, Mark, Role};
 use crate::figure::page::{below, legend};
-use crate::figure::tools::{Tint, WIDTH_PT, entry, eye, film, flat_panel, page};
+use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
 use crate::figure::{Entry, Look, Paper, Swatch, panels};
 use crate::geometry::{Flat, PixelRect, Solid, View};
 use crate::method::Film;
@@ -29,13 +29,13 @@ fn cells() -> Vec<Entry> {
     ]
 }
 
-pub fn simple_pyramid(_: Tint) -> Result<Drawing, SceneError> {
+pub fn simple_pyramid(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let (scene, view) = figure_1()?;
     let (content, _) = pyramid_picture(&scene, &view, None, DepthScale::Linear);
     let caption = "Level 0 is the z-buffer. Each value of the level above is the farthest of the four below \
                    it, so the single value on top, 9, is the farthest depth of the whole image. The values \
                    are those of the paper's Figure 1; near is dark, far is light.";
-    Ok(page(
+    Ok(maker.page(
         Paper::TwoColumns,
         "Georges 1995, Figure 1: a z-pyramid of three levels",
         vec![],
@@ -55,7 +55,7 @@ const FACES: [PixelRect; 2] =
     [PixelRect { x0: 0, x1: 1, y0: 0, y1: 2 }, PixelRect { x0: 0, x1: 2, y0: 0, y1: 1 }];
 const NEAREST: f32 = 6.0;
 
-pub fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
+pub fn simple_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let (scene, view) = figure_1()?;
     let mut parts = Vec::new();
     for pixels in FACES {
@@ -69,7 +69,7 @@ pub fn simple_query(_: Tint) -> Result<Drawing, SceneError> {
                    the upper right of level 1, where its own Figure 1 has 8: a slip.) Below, a second \
                    example, which is not the paper's: the face covers the upper row; sample 4 hides it, \
                    sample 9 does not, so it is visible.";
-    Ok(page(
+    Ok(maker.page(
         Paper::TwoColumns,
         "Georges 1995, Figure 2, and a second example: a face against the pyramid",
         cells(),
@@ -85,14 +85,14 @@ pub fn office() -> Result<Arc<Scene<Solid>>, SceneError> {
     }
 }
 
-fn office_film() -> Result<Arc<dyn Film<Solid>>, SceneError> {
+fn office_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Solid>>, SceneError> {
     let scene = office()?;
     let view = View { width: 256, height: 192, ..scene.paths()[0].views[0] };
-    Ok(film(&scene, &view, HIERARCHICAL_Z, &[]))
+    Ok(maker.film(&scene, &view, HIERARCHICAL_Z, &[]))
 }
 
-pub fn office_query(_: Tint) -> Result<Drawing, SceneError> {
-    let film = office_film()?;
+pub fn office_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = office_film(maker)?;
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = format!(
@@ -103,26 +103,26 @@ pub fn office_query(_: Tint) -> Result<Drawing, SceneError> {
         film.scene().live().len(),
         film.events().len()
     );
-    Ok(page(Paper::TwoColumns, "What a query reads", cells(), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "What a query reads", cells(), caption, &content))
 }
 
-pub fn office_stack(_: Tint) -> Result<Drawing, SceneError> {
-    let film = office_film()?;
+pub fn office_stack(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = office_film(maker)?;
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, STACKED, DepthScale::Logarithmic);
     let caption = "The same step with the levels above each other, the image at the bottom: a query begins \
                    at the finest cell that covers the face, and goes down where it must.";
-    Ok(page(Paper::TwoColumns, "The z-pyramid over the image", cells(), caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "The z-pyramid over the image", cells(), caption, &content))
 }
 
-fn street_film() -> Result<Arc<dyn Film<Flat>>, SceneError> {
+fn street_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("street")?;
     let view = View { width: 64, ..eye(&scene, 0) };
-    Ok(film(&scene, &view, HIERARCHICAL_Z, &[("leaf-primitives", "4")]))
+    Ok(maker.film(&scene, &view, HIERARCHICAL_Z, &[("leaf-primitives", "4")]))
 }
 
-pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
-    let film = street_film()?;
+pub fn flatland_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = street_film(maker)?;
     let step = hidden_query(&*film, 12);
     let world = panels(
         WIDTH_PT,
@@ -133,7 +133,7 @@ pub fn flatland_query(_: Tint) -> Result<Drawing, SceneError> {
     let caption = "Flatland: the image is a line of 64 pixels, its pyramid a strip a level. A cube of the \
                    quadtree (yellow) is asked for; the lines of sight bound the cell that decided, the \
                    farthest thing drawn there lies before the cube's nearest corner, so the cube is hidden.";
-    Ok(page(
+    Ok(maker.page(
         Paper::TwoColumns,
         "A cube against the pyramid, in flatland",
         legend(&world),
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn the_queries_that_are_shown_hide_a_cube() {
-        is_followed_by_a_hidden_node(&*office_film().expect("a scene"), 40);
-        is_followed_by_a_hidden_node(&*street_film().expect("a scene"), 12);
+        is_followed_by_a_hidden_node(&*office_film(&Maker::gray()).expect("a scene"), 40);
+        is_followed_by_a_hidden_node(&*street_film(&Maker::gray()).expect("a scene"), 12);
     }
 }

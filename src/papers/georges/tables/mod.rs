@@ -23,7 +23,6 @@ pub const TABLES: &[Experiment] = &[
             "The paper's system has one processor. It says of the rate behind the box only that it is near \
              that of the monitor, which it does not state.",
         ],
-        varies: &[],
         settings: &[],
         sweep: &box_model::SWEEP,
     },
@@ -39,7 +38,6 @@ pub const TABLES: &[Experiment] = &[
             "The paper's 20 to 30 percent are for frames in which the dense body is in the view frustum and \
              hidden.",
         ],
-        varies: &[],
         settings: &[],
         sweep: &flight::SWEEP,
     },
@@ -53,7 +51,6 @@ pub const TABLES: &[Experiment] = &[
             "Fine: 2048 × 2048. What falls between the samples of the coarse image is not drawn; at its own \
              resolution nothing is missed.",
         ],
-        varies: &[],
         settings: &[],
         sweep: &aliasing::SWEEP,
     },

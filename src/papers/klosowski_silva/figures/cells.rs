@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{Vec2, vec2};
 
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
-use crate::figure::tools::{LABEL_PT, Plan, TWO_COLUMNS_PT, Tint, entry, page};
+use crate::figure::tools::{LABEL_PT, Maker, Plan, TWO_COLUMNS_PT, entry};
 use crate::figure::{Panel, Paper, Swatch, panels};
 use crate::geometry::{Aabb, CellId, Flat};
 use crate::index::tessellation::{BoxCells, Fineness, SimplexCells, Tessellation, vertex_octree};
@@ -79,7 +79,7 @@ impl Divided {
 }
 
 /// Figure 3.
-pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
+pub fn tessellation(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let divided = Divided::new()?;
     let (input, tree, triangles) = (divided.plan(Role::Ink), divided.tree(), divided.triangles());
     let Divided { scene, boxes, simplices } = divided;
@@ -103,7 +103,7 @@ pub fn tessellation(_: Tint) -> Result<Drawing, SceneError> {
                    longest side (the paper: 5 %). Either its leaves are the cells (b), or the triangles of \
                    the Delaunay triangulation of their centers (c), which are moved at random first, as they \
                    lie on a lattice. The corners of the region are vertices too. Scene bottleneck.";
-    Ok(page(Paper::TwoColumns, "An occupancy-based tessellation", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "An occupancy-based tessellation", legend, caption, &content))
 }
 
 /// Figure 9 looks at a leaf with smaller neighbors on one side, and at one of those.
@@ -171,7 +171,7 @@ fn neighborhood(scene: &Scene<Flat>, family: &Family, cell: CellId, frame: Aabb<
 }
 
 /// Figure 9.
-pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
+pub fn neighbors(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("bottleneck")?;
     let family = family(&scene).unwrap_or_else(|| unreachable!("the scene has such leaves; a test says so"));
     let (boxes, side) = (&family.boxes, Tessellation::<Flat>::bounds(&family.boxes, family.a).size().x);
@@ -210,7 +210,7 @@ pub fn neighbors(_: Tint) -> Result<Drawing, SceneError> {
                    neighbors of the same size or larger only: from I to A, but not from A to I and J. Here \
                    both sides of every dividing line are descended together, which gives all pairs, each in \
                    both directions. Scene bottleneck, leaf-size 10 %.";
-    Ok(page(Paper::TwoColumns, "Neighbors across levels", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "Neighbors across levels", legend, caption, &content))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 
 use super::room::{FRAME, room};
 use crate::drawing::{Drawing, Layer, Pixels, Role, Subject};
-use crate::figure::tools::{Plan, TWO_COLUMNS_PT, Tint, airy, entry, eye, page, ready, view};
+use crate::figure::tools::{Maker, Plan, TWO_COLUMNS_PT, Tint, airy, entry, eye, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{Flat, PrimId, Solid, View};
 use crate::papers::keys::LAYERED_PROJECTION;
@@ -60,6 +60,7 @@ struct Shown {
 }
 
 fn shown<S: crate::culling::Methods + Drawable>(
+    maker: &Maker<'_>,
     scene: &std::sync::Arc<Scene<S>>,
     sight: &View<S>,
     name: &str,
@@ -69,7 +70,7 @@ fn shown<S: crate::culling::Methods + Drawable>(
     let mut all = vec![Shown { label: format!("{name}, by layer ζ"), roles: by_layer(&layers) }];
     for (rules, called) in RULES {
         let pairs = [("rules", rules), ("budget", "100%"), ("leaf-size", leaf_size), ("seed", "1")];
-        let order = ready(scene, LAYERED_PROJECTION, &pairs).cull(sight).prims;
+        let order = maker.ready(scene, LAYERED_PROJECTION, &pairs).cull(sight).prims;
         let (roles, correlation) = by_order(&order, &layers);
         all.push(Shown { label: format!("projected by {called}: {correlation:.2}"), roles });
     }
@@ -109,14 +110,17 @@ fn room_panel(scene: &Scene<Solid>, shown: &Shown, tint: Tint) -> Panel {
 }
 
 /// The figure.
-pub fn layers(tint: Tint) -> Result<Drawing, SceneError> {
+pub fn layers(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let tint = maker.tint;
     let flat = example("bottleneck")?;
     let sight = View { width: LINE_PX, ..eye(&flat, 0) };
     let solid = room()?;
     let frame = View { width: SIDE_PX, height: SIDE_PX, ..solid.paths()[0].views[FRAME] };
-    let mut all: Vec<Panel> =
-        shown(&flat, &sight, "(a) bottleneck", "5").iter().map(|s| flat_panel(&flat, &sight, s)).collect();
-    let of_room = shown(&solid, &frame, "(b) seminar room", "5");
+    let mut all: Vec<Panel> = shown(maker, &flat, &sight, "(a) bottleneck", "5")
+        .iter()
+        .map(|s| flat_panel(&flat, &sight, s))
+        .collect();
+    let of_room = shown(maker, &solid, &frame, "(b) seminar room", "5");
     all.extend(of_room.iter().map(|s| room_panel(&solid, s, tint)));
     let content = panels(TWO_COLUMNS_PT, 3, &all);
     let mut legend: Vec<_> =
@@ -129,9 +133,9 @@ pub fn layers(tint: Tint) -> Result<Drawing, SceneError> {
          primitives as there are of each layer have its color in the order of projection, so an order by \
          layers would give the same picture. Numbers: Kendall's rank correlation of both over pairs of \
          different layers, 1 by layers, 0 at random. Scenes bottleneck and seminar-room (frame {FRAME} of \
-         the flight), tessellation=delaunay, leaf-size=5, budget=100%, rules=paper and rules=ours."
+         the flight)."
     );
-    Ok(page(Paper::TwoColumns, "Layers, and the order of projection", legend, &caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "Layers, and the order of projection", legend, &caption, &content))
 }
 
 #[cfg(test)]
@@ -157,7 +161,7 @@ mod tests {
         let layers = layering_numbers(&*scene, &sight, Surfaces::default());
         let [papers, ours] = RULES.map(|(rules, _)| {
             let pairs = [("rules", rules), ("budget", "100%")];
-            let order = ready(&scene, LAYERED_PROJECTION, &pairs).cull(&sight).prims;
+            let order = Maker::gray().ready(&scene, LAYERED_PROJECTION, &pairs).cull(&sight).prims;
             by_order(&order, &layers).1
         });
         assert!(papers > 0.0 && ours > papers + 0.1, "{papers} and {ours}");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::room::{FRAME, room};
 use crate::drawing::{Drawing, Pixels, Role};
-use crate::figure::tools::{TWO_COLUMNS_PT, Tint, entry, page, ready};
+use crate::figure::tools::{Maker, TWO_COLUMNS_PT, entry};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{PrimId, Solid, View};
 use crate::papers::keys::{CENTROID, LAYERED_PROJECTION};
@@ -54,9 +54,9 @@ impl Exact {
         let image = shade(truth.image(), &*scene, &view, paper);
         Ok(Self { scene, view, paper, visible, image })
     }
-    fn drawn(&self, method: &str, settings: &[(&str, &str)]) -> Drawn {
+    fn drawn(&self, maker: &Maker<'_>, method: &str, settings: &[(&str, &str)]) -> Drawn {
         let settings = [settings, &[ONE_SIDED]].concat();
-        let drawn = ready(&self.scene, method, &settings).cull(&self.view).prims;
+        let drawn = maker.ready(&self.scene, method, &settings).cull(&self.view).prims;
         let target = render(&*self.scene, &self.view, &drawn);
         let image = shade(&target, &*self.scene, &self.view, self.paper);
         let right = self.image.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a == b).collect();
@@ -73,13 +73,14 @@ impl Drawn {
 }
 
 /// Figures 13 and 14.
-pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
+pub fn images(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let tint = maker.tint;
     let exact = Exact::new(tint(Role::Paper))?;
     let [right, wrong] = [Role::Paper, Role::Wrong].map(|role| srgb_bytes(tint(role)));
     let picture = |rgba: Vec<u8>| Picture::Pixels(Pixels { width: SIDE, height: SIDE, rgba: rgba.into() });
     let (mut upper, mut lower) = (Vec::new(), Vec::new());
     for (name, method, settings) in ORDERS {
-        let drawn = exact.drawn(method, settings);
+        let drawn = exact.drawn(maker, method, settings);
         let (found, share) = (drawn.found_percent, drawn.wrong_percent());
         let missed = drawn.right.iter().flat_map(|&is_right| if is_right { right } else { wrong }).collect();
         upper.push(Panel {
@@ -99,13 +100,12 @@ pub fn images(tint: Tint) -> Result<Drawing, SceneError> {
          is white), below where that differs from the image of the whole room, in which {} triangles are \
          visible. Centroid: nearest first; octree and Delaunay: prioritized layers over these cells. The \
          centroid order finds many triangles, those of near chairs, and misses large ones far away: few \
-         polygons, many pixels. Frame {FRAME} of the flight, {SIDE} × {SIDE} pixels, budget=10%, \
-         rules=paper, backface-culling=true.",
+         polygons, many pixels. Frame {FRAME} of the flight, {SIDE} × {SIDE} pixels.",
         exact.scene.live().len(),
         exact.visible.len()
     );
     let title = "What a tenth of the triangles shows, and what it misses";
-    Ok(page(Paper::TwoColumns, title, legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, title, legend, caption, &content))
 }
 
 #[cfg(test)]
@@ -115,7 +115,8 @@ mod tests {
     #[test]
     fn few_polygons_are_many_pixels() {
         let exact = Exact::new([1.0; 3]).expect("a scene");
-        let [centroid, octree, delaunay] = ORDERS.map(|(_, method, settings)| exact.drawn(method, settings));
+        let [centroid, octree, delaunay] =
+            ORDERS.map(|(_, method, settings)| exact.drawn(&Maker::gray(), method, settings));
         for cells in [&octree, &delaunay] {
             assert!((cells.found_percent - centroid.found_percent).abs() < 8.0, "about as many triangles");
         }

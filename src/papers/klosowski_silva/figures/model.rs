@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::room::cut;
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
-use crate::figure::tools::{TWO_COLUMNS_PT, Tint, entry, page, view};
+use crate::figure::tools::{Maker, TWO_COLUMNS_PT, Tint, entry, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{CellId, PrimId, Solid, View};
 use crate::index::tessellation::{BoxCells, Fineness, SimplexCells, Tessellation, vertex_octree};
@@ -108,7 +108,8 @@ fn four_panels(
 }
 
 /// Figure 3 in space.
-pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
+pub fn tessellation(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let tint = maker.tint;
     let car = car()?;
     let (boxes, simplices) = divided(&car);
     let bounds = car.bounds();
@@ -126,7 +127,7 @@ pub fn tessellation(tint: Tint) -> Result<Drawing, SceneError> {
                    leaves, moved at random (c), are the vertices of a Delaunay triangulation, whose \
                    tetrahedra are the cells (d): small ones in the body, large ones around it. Tetrahedra \
                    are cut in triangles and quadrangles. Scene generate:cars, one car.";
-    Ok(page(Paper::TwoColumns, "An occupancy-based tessellation of space", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "An occupancy-based tessellation of space", legend, caption, &content))
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
-use crate::figure::tools::{TWO_COLUMNS_PT, Tint, entry, film, page, view};
+use crate::figure::tools::{Maker, TWO_COLUMNS_PT, Tint, entry, view};
 use crate::figure::{Panel, Paper, Picture, Swatch, panels};
 use crate::geometry::{Frustum, NodeId, PrimId, Solid, View};
 use crate::method::{Film, Verdict};
@@ -210,12 +210,13 @@ fn plan(tint: Tint, film: &dyn Film<Solid>, name: &str) -> Panel {
 }
 
 /// Figures 1 and 2.
-pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
+pub fn snapshots(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let tint = maker.tint;
     let scene = room()?;
     let sight = View { width: 256, height: 256, ..scene.paths()[0].views[FRAME] };
     let run = |tessellation: &str, leaf_size: &str| {
         let cells = [("tessellation", tessellation), ("leaf-size", leaf_size)];
-        film(
+        maker.film(
             &scene,
             &sight,
             LAYERED_PROJECTION,
@@ -243,10 +244,10 @@ pub fn snapshots(tint: Tint) -> Result<Drawing, SceneError> {
          occupied cells that still wait, as far as no drawn triangle hides them (leaf-size 14 %). Below: all \
          cells in view where a horizontal plane cuts them (leaf-size 7 %). Cells near the Eye and empty ones \
          come first; among the chairs many wait. Cells that reach far out of the room are not shown. Frame \
-         {FRAME} of the flight, rules=paper, budget=25%, seed=1.",
+         {FRAME} of the flight.",
         scene.live().len()
     );
-    Ok(page(Paper::TwoColumns, "What was projected, seen from outside", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "What was projected, seen from outside", legend, caption, &content))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use glam::{Vec2, vec2};
 use super::notes::{Transfer, transfers};
 use super::walked::corners;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
-use crate::figure::tools::{LABEL_PT, NAME_PT, Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page};
+use crate::figure::tools::{LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
 use crate::figure::{Paper, Swatch, panels};
 use crate::geometry::{Aabb, Flat, NodeId};
 use crate::method::Film;
@@ -16,7 +16,7 @@ use crate::papers::keys::LAYERED_PROJECTION;
 use crate::scene::{SceneError, example};
 
 /// The run of the figure.
-fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
+fn run(maker: &Maker<'_>) -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("bottleneck")?;
     let pairs = [
         ("tessellation", "delaunay"),
@@ -25,7 +25,7 @@ fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
         ("rules", "paper"),
         ("seed", "1"),
     ];
-    Ok(film(&scene, &eye(&scene, 0), LAYERED_PROJECTION, &pairs))
+    Ok(maker.film(&scene, &eye(&scene, 0), LAYERED_PROJECTION, &pairs))
 }
 
 /// A picture of the three cells, wider than high.
@@ -184,8 +184,8 @@ fn draw(film: &dyn Film<Flat>, pair: &[Transfer; 2]) -> Plan {
 }
 
 /// Figure 6.
-pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
-    let film = run()?;
+pub fn solidity(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = run(maker)?;
     let pair = pair(&*film).unwrap_or_else(|| unreachable!("the scene has such a pair; a test says so"));
     let mut content = panels(
         TWO_COLUMNS_PT,
@@ -210,11 +210,10 @@ pub fn solidity(_: Tint) -> Result<Drawing, SceneError> {
          normal n agrees with the view direction v, in which the Eye looks; |A| counts the segments that \
          meet A, ρ_max is the most of any cell. B lies straight behind A; C is reached sideways, so it gets \
          less of ρ(A), but is multiplied by the penalty factor, here 2, which the paper does not give. \
-         Numbers of step {} of the run on scene bottleneck with rules=paper, tessellation=delaunay, \
-         leaf-size=10, seed=1.",
+         Numbers of step {} of the run on scene bottleneck.",
         pair[1].step
     );
-    Ok(page(Paper::TwoColumns, "Solidity is handed on", legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, "Solidity is handed on", legend, caption, &content))
 }
 
 #[cfg(test)]
@@ -223,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_numbers_are_those_of_the_formula_and_of_the_picture() {
-        let film = run().expect("a scene");
+        let film = run(&Maker::gray()).expect("a scene");
         let pair = pair(&*film).expect("such a pair");
         for t in &pair {
             let n = &t.note;

@@ -7,7 +7,7 @@ use glam::{Vec2, vec2};
 
 use super::notes::Moment;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
-use crate::figure::tools::{Plan, TWO_COLUMNS_PT, Tint, entry, eye, film, page};
+use crate::figure::tools::{Maker, Plan, TWO_COLUMNS_PT, entry, eye};
 use crate::figure::{Panel, Paper, Swatch, panels};
 use crate::geometry::{Aabb, Flat, NodeId};
 use crate::method::{Film, Verdict};
@@ -52,7 +52,7 @@ const A_SHADE: f32 = 0.25;
 const MOMENTS: [usize; 4] = [1, 10, 26, 46];
 
 /// The run of the figure.
-fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
+fn run(maker: &Maker<'_>) -> Result<Arc<dyn Film<Flat>>, SceneError> {
     let scene = example("bottleneck")?;
     let pairs = [
         ("tessellation", "delaunay"),
@@ -63,7 +63,7 @@ fn run() -> Result<Arc<dyn Film<Flat>>, SceneError> {
         ("penalty", "0"),
         ("seed", "1"),
     ];
-    Ok(film(&scene, &eye(&scene, 0), LAYERED_PROJECTION, &pairs))
+    Ok(maker.film(&scene, &eye(&scene, 0), LAYERED_PROJECTION, &pairs))
 }
 
 /// Shades an area by its solidity.
@@ -160,8 +160,8 @@ fn strip(to: &mut Drawing) {
 }
 
 /// Figure 7.
-pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
-    let film = run()?;
+pub fn moments(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = run(maker)?;
     let all: Vec<Panel> =
         MOMENTS.into_iter().zip('a'..).map(|(cells, letter)| moment(&*film, letter, cells)).collect();
     let mut content = panels(TWO_COLUMNS_PT, 2, &all);
@@ -179,9 +179,8 @@ pub fn moments(_: Tint) -> Result<Drawing, SceneError> {
                    solidity and wait (c), while the front goes on through the gap and spreads behind it (d). \
                    So what is seen through the gap is drawn before what lies deep in the thickets. As in \
                    the paper's figure there is no penalty for cells that are not star-shaped. Scene \
-                   bottleneck, rules=paper, penalty=0, tessellation=delaunay, leaf-size=13, budget=70, \
-                   seed=1.";
-    Ok(page(Paper::TwoColumns, "The traversal, past a bottleneck", legend, caption, &content))
+                   bottleneck.";
+    Ok(maker.page(Paper::TwoColumns, "The traversal, past a bottleneck", legend, caption, &content))
 }
 
 #[cfg(test)]
@@ -190,7 +189,7 @@ mod tests {
 
     #[test]
     fn each_cell_that_is_projected_was_the_least_of_the_front() {
-        let film = run().expect("a scene");
+        let film = run(&Maker::gray()).expect("a scene");
         for cells in 1..30 {
             let (before, after) = (Moment::after(&*film, cells), Moment::after(&*film, cells + 1));
             assert_eq!((before.projected.len(), after.projected.len()), (cells, cells + 1));
@@ -204,7 +203,7 @@ mod tests {
 
     #[test]
     fn the_bottleneck_is_passed_before_the_thickets_are_finished() {
-        let film = run().expect("a scene");
+        let film = run(&Maker::gray()).expect("a scene");
         let late = Moment::after(&*film, MOMENTS[3]);
         assert_eq!(late.projected.len(), MOMENTS[3], "the budget lasts");
         // The thickets end at 1.2.
