@@ -55,7 +55,7 @@ fn main() {
                 occluders.render(view, false);
                 occluders.touch_all(view);
                 refresh.push(timed(|| occluders.refresh_all()).1);
-                let (all, ms) = timed(|| boxes.iter().map(|b| occluders.hides(b)).collect::<Vec<_>>());
+                let (all, ms) = timed(|| occluders.hides_all(&boxes));
                 let in_view = all.iter().flatten().count().max(1);
                 query.push(ms * 1e6 / in_view as f64);
                 answers.extend(all.into_iter().map(|a| a.map_or(3, u32::from)));

@@ -201,7 +201,7 @@ impl Occluders {
     /// Asks for all boxes; `None`: out of view.
     fn hides(&mut self, bounds: &[Aabb<Vec3>]) -> Vec<Option<bool>> {
         match self {
-            Self::Cubes(cubes) => bounds.iter().map(|b| cubes.hides(b)).collect(),
+            Self::Cubes(cubes) => cubes.hides_all(bounds),
             Self::Tiles(all) => {
                 all.tiles.hides_all(&all.boxes, true, Isa::best(), &mut all.answers);
                 let hidden =

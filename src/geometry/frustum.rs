@@ -156,6 +156,37 @@ impl<V: Vector> Frustum<V> {
         outside != 0
     }
 
+    /// [`Frustum::excludes`] of up to 16 boxes at a time, a bit each, by the same arithmetic: of two products
+    /// with one normal the greater and the larger are known before they are made.
+    #[inline(always)]
+    pub fn excludes_each(&self, boxes: &[Aabb<V>]) -> u16 {
+        let (mut low, mut high, mut size) = ([[0.0_f32; 16]; 3], [[0.0_f32; 16]; 3], [[0.0_f32; 16]; 3]);
+        for (lane, bounds) in boxes.iter().take(16).enumerate() {
+            for axis in 0..V::AXES {
+                let eye = self.eye.get(axis);
+                let (min, max) = (bounds.min.get(axis) - eye, bounds.max.get(axis) - eye);
+                (low[axis][lane], high[axis][lane]) = (min, max);
+                size[axis][lane] = if min.abs() > max.abs() { min.abs() } else { max.abs() };
+            }
+        }
+        let mut outside = [false; 16];
+        for plane in 0..Self::PLANES {
+            let (mut far, mut sum) = ([self.offsets[plane]; 16], [self.offsets[plane].abs(); 16]);
+            for axis in 0..V::AXES {
+                let n = self.normals[plane].get(axis);
+                let deepest = if n > 0.0 { &high[axis] } else { &low[axis] };
+                for lane in 0..16 {
+                    far[lane] += n * deepest[lane];
+                    sum[lane] += n.abs() * size[axis][lane];
+                }
+            }
+            for lane in 0..16 {
+                outside[lane] |= far[lane] < -(sum[lane] * ERROR_ULPS);
+            }
+        }
+        (0..boxes.len().min(16)).fold(0, |bits, lane| bits | u16::from(outside[lane]) << lane)
+    }
+
     /// The corners of the volume: first the near ones, then the far ones, in the order of the image
     /// (flatland: left, right; space: lower left, lower right, upper right, upper left).
     pub fn corners(projection: &Projection<V>, near: f32, far: f32) -> Vec<V> {

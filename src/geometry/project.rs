@@ -1,4 +1,4 @@
-//! A box on the screen: where its corners fall, which pixels it can cover, and how near it comes.
+//! A box on the screen: which pixels it can cover, and how near it comes.
 //!
 //! All arithmetic is f64 on the f32 rows of the [`Projection`], relative to the eye, exactly as the
 //! rasterizer does it, so what separates a box from what is drawn of its contents is the rasterizer's grid
@@ -79,9 +79,6 @@ pub enum Footprint {
 /// A box's image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoxImage {
-    /// Its corners in pixels, in the order of [`Aabb::corner`]; the first four in flatland, in the middle of
-    /// the row.
-    pub corners_px: [[f64; 2]; 8],
     /// The pixels whose centers it can cover; empty where it falls between them.
     pub pixels: PixelRect,
     /// Depth (`1/w`) that nothing in the box is nearer than.
@@ -133,8 +130,7 @@ pub fn project_box<V: Vector>(
         return Footprint::Outside;
     }
     let pixels = PixelRect::around(low, high, width, height);
-    let corners_px = std::array::from_fn(|i| [x[i], y[i]]);
-    Footprint::Seen(BoxImage { corners_px, pixels, nearest: depth_of(nearest - slack, near) })
+    Footprint::Seen(BoxImage { pixels, nearest: depth_of(nearest - slack, near) })
 }
 
 /// The depth (`1/w`) that nothing in a box is nearer than; that of the near plane if the box reaches it.

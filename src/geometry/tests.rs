@@ -166,13 +166,6 @@ fn footprint_holds<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, point: S:
 fn footprint_is_tight<S: Space>(view: &View<S>, bounds: &Aabb<S::Vector>, image: &BoxImage) {
     let width = f64::from(view.width);
     let exact: Vec<f64> = bounds.corners().map(|c| pixel_of(view, exact_clip(view, c)).0).collect();
-    // Apart by the rounding of the rows to f32.
-    for (at, want) in image.corners_px.iter().zip(&exact) {
-        assert!(
-            want.abs() > 4.0 * width || (at[0] - want).abs() <= 1e-4 * width,
-            "a corner is at {want}, not at {at:?}"
-        );
-    }
     let low = exact.iter().copied().fold(f64::INFINITY, f64::min).clamp(0.0, width);
     let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max).clamp(0.0, width);
     let r = image.pixels;

@@ -16,6 +16,7 @@
 
 mod image;
 mod line;
+mod outside;
 mod pyramid;
 pub mod reference;
 mod setup;
@@ -29,7 +30,9 @@ mod through;
 mod tiles;
 mod vertex;
 
+pub use outside::outside;
 pub use pyramid::{Pyramid, PyramidCell};
+pub use setup::DEPTH_SLACK;
 pub use shade::{DepthScale, shade, shade_depth, shade_with};
 pub use simd::Isa;
 pub use srgb::{srgb, srgb_bytes};

@@ -45,6 +45,37 @@ const STEEPEST: f32 = 1e28;
 /// it what the slopes are divided by is right to 2⁻²⁴, as are the depths.
 const FLAT: f64 = 1.0 / (1u64 << 28) as f64;
 
+/// By how much a fragment may be nearer than the point of its primitive that is drawn there, relative to that
+/// point's depth: whoever bounds fragments by the geometry allows for it. The tilt of planes, and what rounding
+/// may add.
+pub const DEPTH_SLACK: f64 = DEPTH_TILT + ROUNDED;
+/// Half of it is for [`lowered`], the rest for corners, sums and bounds in f32.
+const ROUNDED: f64 = 1.0 / (1 << 17) as f64;
+/// Bound on the rounding of a depth over the sum of the changes along x and y that it is made of: slopes, the
+/// area, products and sums are rounded by 2⁻²⁴ each, once a term.
+const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
+/// The same of slopes before they are f32, over the terms of Cramer's rule.
+const SLOPE_ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// By how much a plane is to be lowered so that no fragment comes nearer than the triangle, by more than half
+/// of [`ROUNDED`]: mostly by nothing. `ways` and `rise`: from the farthest vertex to the others.
+///
+/// In a sliver seen edge-on the changes along x and y are large and cancel, and what is left is rounding.
+/// Fragments are means of the vertices, the rounding of a mean is at most the mean of theirs, and a plane
+/// that is too low is clamped to the farthest vertex.
+#[inline(always)]
+fn lowered([dx, dy]: [f64; 2], [p, q]: [[f64; 2]; 2], rise: [f64; 2], low: f64, per_area: f64) -> f64 {
+    let cramer = rise[0].max(rise[1])
+        * (p[0].abs() + q[0].abs())
+        * (p[1].abs() + q[1].abs())
+        * per_area.abs()
+        * SLOPE_ROUNDING;
+    let error = |v: [f64; 2]| ((dx * v[0]).abs() + (dy * v[1]).abs()) * ROUNDING + cramer;
+    let (a, b) = (error(p), error(q));
+    let is_small = |error: f64, rise: f64| error <= (low + rise) * ROUNDED * 0.5;
+    if is_small(a, rise[0]) && is_small(b, rise[1]) { 0.0 } else { a + b }
+}
+
 impl Plane {
     /// The plane through three vertices whose places on the grid span an area.
     #[inline(always)]
@@ -58,16 +89,21 @@ impl Plane {
         } else {
             (a, b, c)
         };
-        let rise = [f64::from(p.z) - f64::from(o.z), f64::from(q.z) - f64::from(o.z)];
-        let (rest, high) = (o.rest(), p.z.max(q.z));
-        let (slope, is_clear) = slopes(unsnapped(o, p), unsnapped(o, q), rise);
+        let low = f64::from(o.z);
+        let rise = [f64::from(p.z) - low, f64::from(q.z) - low];
+        let ways = [unsnapped(o, p), unsnapped(o, q)];
+        let (slope, per_area, is_clear) = slopes(ways, rise);
         if is_clear && is_gentle(slope, o.z) {
             // Pixels measure from the snapped vertex, where the plane has another depth than at its place.
-            let z = (f64::from(o.z) - slope[0] * rest[0]) - slope[1] * rest[1];
-            return Self::new(o, z as f32, slope, high);
+            let rest = o.rest();
+            let z = (low - slope[0] * rest[0]) - slope[1] * rest[1];
+            let z = z - lowered(slope, ways, rise, low, per_area);
+            return Self::new(o, z as f32, slope, p.z.max(q.z));
         }
-        let (slope, _) = slopes(snapped(o, p), snapped(o, q), rise);
-        Self::new(o, o.z, slope, high)
+        let ways = [snapped(o, p), snapped(o, q)];
+        let (slope, per_area, _) = slopes(ways, rise);
+        let z = low - lowered(slope, ways, rise, low, per_area);
+        Self::new(o, z as f32, slope, p.z.max(q.z))
     }
     /// The plane of a flatland segment between vertices of different columns; the same, one dimension down.
     pub fn of_segment(a: Vertex, b: Vertex) -> Self {
@@ -123,17 +159,17 @@ fn unsnapped(from: &Vertex, to: &Vertex) -> [f64; 2] {
     [x + (b[0] - a[0]), y + (b[1] - a[1])]
 }
 
-/// Slopes of the plane that rises by two amounts on the ways to two places, and whether these span an area
-/// clearly.
+/// Slopes of the plane that rises by two amounts on the ways to two places, one over twice the area that these
+/// span, and whether that is clear.
 #[inline(always)]
-fn slopes(p: [f64; 2], q: [f64; 2], rise: [f64; 2]) -> ([f64; 2], bool) {
+fn slopes([p, q]: [[f64; 2]; 2], rise: [f64; 2]) -> ([f64; 2], f64, bool) {
     // Cramer's rule in f64. Between snapped places products and area are exact.
     let (one, other) = (p[0] * q[1], p[1] * q[0]);
     let area = one - other;
     let per_area = 1.0 / area;
     let dx = (rise[0] * q[1] - rise[1] * p[1]) * per_area;
     let dy = (rise[1] * p[0] - rise[0] * q[0]) * per_area;
-    ([dx, dy], area.abs() > FLAT * (one.abs() + other.abs()))
+    ([dx, dy], per_area, area.abs() > FLAT * (one.abs() + other.abs()))
 }
 
 /// Whether half a grid step along each axis changes the depth by at most [`DEPTH_TILT`] of the least, so at

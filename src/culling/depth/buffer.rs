@@ -1,5 +1,6 @@
 //! The z-buffer of a frame with its z-pyramid: the large state that a run changes and a film replays.
 
+use super::planes::Rays;
 use crate::geometry::{Frustum, PixelRect, PrimId, Projection, View};
 use crate::raster::{Drawable, Extent, Options, Pyramid, PyramidCell, Sieve, Target};
 use crate::scene::Scene;
@@ -43,6 +44,7 @@ pub enum Step<'a, S: Drawable> {
 #[derive(Clone, Debug)]
 pub struct Buffer<S: Drawable> {
     projected: Option<Projected<S>>,
+    rays: Rays,
     target: Target,
     pyramid: Pyramid,
     hidden: Vec<PrimId>,
@@ -51,8 +53,8 @@ pub struct Buffer<S: Drawable> {
 /// Images of the same view with the same pyramid, its stale tiles included.
 impl<S: Drawable> PartialEq for Buffer<S> {
     fn eq(&self, other: &Self) -> bool {
-        // Projection and planes follow from the view, and `hidden` is no state: it is what the last drawing
-        // left out.
+        // Projection, planes and rays follow from the view, and `hidden` is no state: it is what the last
+        // drawing left out.
         let view = |b: &Self| b.projected.as_ref().map(|s| s.view);
         view(self) == view(other) && self.target == other.target && self.pyramid == other.pyramid
     }
@@ -60,7 +62,13 @@ impl<S: Drawable> PartialEq for Buffer<S> {
 
 impl<S: Drawable> Default for Buffer<S> {
     fn default() -> Self {
-        Self { projected: None, target: Target::default(), pyramid: Pyramid::default(), hidden: Vec::new() }
+        Self {
+            projected: None,
+            rays: Rays::default(),
+            target: Target::default(),
+            pyramid: Pyramid::default(),
+            hidden: Vec::new(),
+        }
     }
 }
 
@@ -74,6 +82,11 @@ impl<S: Drawable> Buffer<S> {
     pub fn projected(&self) -> Option<&Projected<S>> {
         self.projected.as_ref()
     }
+    /// The rays through its pixels.
+    #[inline]
+    pub(super) fn rays(&self) -> &Rays {
+        &self.rays
+    }
     /// Empties it for a view.
     pub fn clear(&mut self, view: &View<S>) {
         self.target.clear(view);
@@ -85,9 +98,10 @@ impl<S: Drawable> Buffer<S> {
         self.look(view);
     }
     fn look(&mut self, view: &View<S>) {
-        // Once a frame: every query needs all three.
-        self.projected =
-            Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
+        // Once a frame: every query needs all of them.
+        let projection = view.projection();
+        self.rays = Rays::new(view, &projection);
+        self.projected = Some(Projected { view: *view, projection, frustum: view.frustum() });
         // An empty pixel is as deep as the far plane, in the pyramid as in the image.
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }

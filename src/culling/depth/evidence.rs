@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use super::buffer::Step;
 use super::faces::Faces;
-use super::query::{Answer, At, Listener, Read};
+use super::query::{Answer, At, Decisive, Listener, Read};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{axes, integer, label, number, outline, short};
@@ -16,7 +16,7 @@ use crate::scene::{Scene, Surfaces};
 /// What happened to a buffer, or was read of it.
 #[derive(Clone, Copy, Debug)]
 pub enum DepthNote<S: Faces> {
-    /// A cell of the pyramid was compared with a face of a node's box.
+    /// A cell of the pyramid was compared with a node's box.
     Read(NodeId, Read),
     /// A tile of the pyramid was brought up to date.
     Refreshed(PyramidCell),
@@ -43,6 +43,8 @@ pub struct Answered<S: Faces> {
     pub answer: Answer,
     /// What that rests on.
     pub ground: Ground,
+    /// Whether its planes say where it begins; otherwise its rectangle is as near as its nearest point.
+    pub is_by_planes: bool,
 }
 
 /// What an answer rests on.
@@ -91,7 +93,7 @@ pub struct Rasterized {
 }
 
 /// The line of a method's pseudocode that says where a query stands, if any does.
-pub type QueryLines = fn(At) -> Option<u8>;
+type QueryLines = fn(At) -> Option<u8>;
 
 /// Reports what a query reads, as evidence about the node whose box is queried, at lines of a method's
 /// pseudocode. `N` is the method's own note.
@@ -216,7 +218,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Answered(n) if n.answer.is_hidden => Some(Claim::Hidden),
             Self::Rasterized(n) if n.is_hidden => Some(Claim::Hidden),
-            // A cell hides a part of a face at most.
+            // A cell hides a part of a box at most.
             _ => None,
         }
     }
@@ -228,7 +230,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         };
         match self {
             Self::Read(_, n) => Some(depths(n.nearest, n.held)),
-            Self::Answered(n) => n.answer.decisive.map(|(_, held)| depths(n.answer.nearest, held)),
+            Self::Answered(n) => n.answer.decisive.map(|d| depths(d.nearest, d.held)),
             Self::Rasterized(n) => n.operands.map(|(extent, held)| depths(extent.nearest, held)),
             Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => None,
         }
@@ -237,11 +239,9 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Read(node, n) => {
                 let mut fields = vec![integer("node", node.0)];
-                // Counted from 1, as in the sentence.
-                fields.extend(n.face.map(|face| integer("face", u32::from(face) + 1)));
                 fields.extend(cell_fields(n.cell));
                 // View depths, so that they compare with lengths in the world.
-                fields.push(number("face_depth_units", units(n.nearest).into()));
+                fields.push(number("box_depth_units", units(n.nearest).into()));
                 fields.push(number("held_depth_units", units(n.held).into()));
                 fields.push(Field { name: "outcome", value: Value::Word(n.outcome.word().into()) });
                 fields
@@ -257,8 +257,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         let far = 1.0 / context.view.eye.far;
         match self {
             Self::Read(node, n) => {
-                let what = n.face.map_or("The whole box".to_owned(), |face| format!("Face {}", face + 1));
-                format!("{what} of node {node} against {}: {}.", place(n.cell), n.comparison())
+                format!("The box of node {node} against {}: {}.", place(n.cell), n.comparison())
             }
             Self::Refreshed(cell) => {
                 format!(
@@ -320,14 +319,20 @@ fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, 
 impl<S: Faces> Answered<S> {
     fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
         to.bounds(Layer::Emphasis, Role::Current, Subject::Node(self.node), &self.bounds);
-        if let Some((cell, held)) = self.answer.decisive {
-            behind(view, cell.pixels(view.width, view.height), self.answer.nearest, held, to);
+        // What says where it begins: the planes that face the eye.
+        let fronts = if self.is_by_planes { S::front(&self.bounds, view.eye.position) } else { Vec::new() };
+        for face in fronts {
+            to.outline(Layer::Emphasis, Role::Current, Subject::Node(self.node), face);
+        }
+        if let Some(d) = self.answer.decisive {
+            behind(view, d.cell.pixels(view.width, view.height), d.nearest, d.held, to);
         }
     }
     /// `far`: the depth of an empty pixel.
     fn sentence(&self, far: f32) -> String {
-        let (node, near) = (self.node, short(units(self.answer.nearest)));
-        let by = |held: f32| short((units(self.answer.nearest) - units(held)).abs());
+        let node = self.node;
+        let near = |d: &Decisive| short(units(d.nearest));
+        let by = |d: &Decisive| short((units(d.nearest) - units(d.held)).abs());
         let reads = self.answer.reads;
         let cells = if reads == 1 { "One cell was read".into() } else { format!("{reads} cells were read") };
         match (self.ground, self.answer.decisive, self.answer.is_hidden) {
@@ -341,23 +346,26 @@ impl<S: Faces> Answered<S> {
                 "Node {node} counts as visible: a region of the screen that it covers is held by no renderer \
                  and cannot be queried."
             ),
-            (Ground::Regions, Some((_, held)), _) => format!(
-                "Node {node} is hidden: its nearest point, at depth {near}, lies behind the farthest depth \
-                 of every region that it covers; of these the farthest is {}, nearer by {}.",
-                short(units(held)),
-                by(held)
+            (Ground::Regions, Some(d), _) => format!(
+                "Node {node} is hidden: its nearest point, at depth {}, lies behind the farthest depth of \
+                 every region that it covers; of these the farthest is {}, nearer by {}.",
+                near(&d),
+                short(units(d.held)),
+                by(&d)
             ),
-            (_, Some((cell, held)), true) => format!(
-                "Node {node} is hidden: its nearest point, at depth {near}, lies behind all that is drawn in \
-                 its place. {cells}; the closest is {}, where the farthest thing drawn is at {}, nearer by \
-                 {}.",
-                place(cell),
-                short(units(held)),
-                by(held)
+            (_, Some(d), true) => format!(
+                "Node {node} is hidden: wherever it could show, it lies behind all that is drawn. {cells}; \
+                 the closest is {}, where it begins at depth {} and the farthest thing drawn is at {}, \
+                 nearer by {}.",
+                place(d.cell),
+                near(&d),
+                short(units(d.held)),
+                by(&d)
             ),
-            (_, Some((cell, held)), false) => format!(
-                "Node {node} may be seen: it comes as near as {near}, and {}. {cells}.",
-                shown(cell, held, far, &format!("{} behind that", by(held)))
+            (_, Some(d), false) => format!(
+                "Node {node} may be seen: it comes as near as {}, and {}. {cells}.",
+                near(&d),
+                shown(d.cell, d.held, far, &format!("{} behind that", by(&d)))
             ),
             (_, None, true) => {
                 format!("The image of node {node} covers no pixel's center: nothing of it can show.")
@@ -379,13 +387,13 @@ impl<S: Faces> Answered<S> {
             Field { name: "box_min", value: axes(self.bounds.min) },
             Field { name: "box_max", value: axes(self.bounds.max) },
         ];
-        if let Some((cell, held)) = self.answer.decisive {
+        if let Some(d) = self.answer.decisive {
             // Of the cells that hide it the closest call, or the one that shows it; the other reads are notes
             // of their own.
-            fields.extend(cell_fields(cell));
-            fields.push(number("held_depth_units", units(held).into()));
-            fields
-                .push(number("margin_units", f64::from(units(self.answer.nearest)) - f64::from(units(held))));
+            fields.extend(cell_fields(d.cell));
+            fields.push(number("box_depth_units", units(d.nearest).into()));
+            fields.push(number("held_depth_units", units(d.held).into()));
+            fields.push(number("margin_units", f64::from(units(d.nearest)) - f64::from(units(d.held))));
         }
         fields
     }

@@ -9,13 +9,14 @@ mod buffer;
 mod evidence;
 mod faces;
 pub mod picture;
+mod planes;
 mod query;
 #[cfg(test)]
 mod tests;
 
 pub use buffer::{Buffer, Step};
-pub use evidence::{Answered, DepthNote, Ground, QueryLines, QueryReporter, Rasterized};
-pub use faces::{FaceImage, Faces, footprint, project_sphere};
+pub use evidence::{Answered, DepthNote, Ground, QueryReporter, Rasterized};
+pub use faces::{Faces, footprint, project_sphere};
 #[cfg(test)]
 pub use query::Outcome;
-pub use query::{Answer, At, Held, Listener, Nobody, Query, hides};
+pub use query::{Answer, At, Decisive, Held, Listener, Nobody, Query, hides, hides_all};

@@ -52,7 +52,7 @@ pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote
             Some(DepthNote::Refreshed(_)) => {}
             // A query ends with its answer: behind it only if nothing was read since.
             Some(DepthNote::Answered(a)) if reads.is_empty() && whose.is_none() => {
-                (whose, decisive) = (Some(a.node), a.answer.decisive.map(|(cell, _)| cell));
+                (whose, decisive) = (Some(a.node), a.answer.decisive.map(|d| d.cell));
             }
             _ => break,
         }
@@ -292,7 +292,7 @@ fn light(reads: &Reads, frames: &[Frame], to: &mut Drawing) {
                 corners.map(|c| c + (c - (a + b) * 0.5).signum() * 1.5),
             );
         }
-        // A cell may be read for several faces; the first time writes all its numbers.
+        // A cell may be read again, for another part of the image; the first time writes all its numbers.
         let same = |r: &&(usize, &Read)| r.1.cell == read.cell;
         let all: Vec<(usize, &Read)> = reads.all.iter().enumerate().collect();
         let numbers: Vec<String> = all.iter().filter(same).map(|(n, _)| (n + 1).to_string()).collect();

@@ -1,30 +1,50 @@
 //! Is a box hidden by what is drawn so far? (Georges 1995, Section 3.2.)
 //!
-//! First the at most four cells that cover the box's screen rectangle, and where one does not decide, those
-//! of the next two levels in it: what lies behind all of them is hidden, which decides for most of what is.
-//! Then, for each face of the box that faces the eye: the finest cell of the z-pyramid that covers the face's
-//! screen rectangle holds the farthest depth there. If the box's nearest point lies behind it, the face is
-//! hidden; else the four cells below are asked that the face touches, down to the pixels that it covers.
+//! The at most four cells of the z-pyramid that cover the box's screen rectangle hold the farthest depths
+//! there. Where a box begins behind a cell's it is hidden; else the four cells below are asked that it
+//! touches, down to the pixels.
 //!
-//! Departures: the depth that is compared is that of the box's nearest corner for every face (the paper takes
-//! each face's own nearest vertex). Mostly it is the same corner; where it is not, a triangle that the
-//! rasterizer snapped to its grid may come nearer than the face it shows through, but never nearer than the
-//! whole box. And a cell that the face covers wholly and that is not farther ends the descent: some pixel of
-//! it shows the face.
+//! Departures: the paper projects each face toward the eye and compares the depth of its nearest vertex. Here
+//! a box is asked by its planes ([`super::planes`]): over each cell they say where it begins at the nearest,
+//! and whether it reaches the cell at all. That is nearer to the truth than a vertex, and there are no images
+//! of faces to be made. Its nearest corner is compared first, which decides for most of what is hidden, and
+//! only where it does not are the planes found. A cell that the box covers, beginning nearer than the
+//! farthest thing in it, ends the descent: some pixel of it shows the box.
 //!
-//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of the
-//! image of the box, hence in its screen rectangle and so near to the image of one of its front faces; its
-//! fragments are no nearer than the box's nearest vertex; and depths that are equal count as visible, since
-//! ids then decide. A box out of view is recognized by the bound that also keeps its contents undrawn
-//! ([`crate::geometry::Frustum::excludes`]). Cost: a box out of view takes one test of six planes at a time;
-//! one in view eight corners in SIMD and four cells where they decide; at worst the pixels along the outlines
-//! of its faces.
+//! Conservative at every pixel: what the box holds is drawn within [`crate::geometry::MARGIN_PX`] of its
+//! image, hence in its screen rectangle; there its fragments are no nearer than [`Over::up`] says (the
+//! argument is in [`super::planes`]), and it has none where [`Over::meets`] says so. Depths that are equal
+//! count as visible, since ids then decide. A box out of view is recognized by the bound that also keeps its
+//! contents undrawn ([`crate::geometry::Frustum::excludes`]). Of a primitive that several boxes share, one of
+//! them holds the point that a fragment shows ([`super::planes`] calls it `X`), so each box answers for its
+//! own image; how near it may come is taken from the box of all that is drawn with it.
+//!
+//! Cost: a box out of view takes one test of six planes at a time; one in view eight corners in SIMD and four
+//! cells where they decide; at worst the pixels along its outline.
 
 use super::buffer::{Buffer, Step};
-use super::faces::{FaceImage, Faces, footprint};
-use crate::geometry::{Aabb, BoxImage, Footprint, PixelRect, View};
+use super::faces::{Faces, footprint};
+use super::planes::{Over, Planes, below, middle};
+use crate::geometry::{Aabb, Footprint, PixelRect};
 use crate::method::evidence::short;
-use crate::raster::PyramidCell;
+use crate::raster::{PyramidCell, outside};
+
+/// A cell that decided, and the two depths that were compared there, `1/w`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decisive {
+    pub cell: PyramidCell,
+    /// The farthest depth that it holds.
+    pub held: f32,
+    /// The nearest at which what was asked for begins in it.
+    pub nearest: f32,
+}
+
+impl Decisive {
+    /// By how much the cell hides it, `1/w`; negative or 0 if it does not.
+    fn margin(&self) -> f32 {
+        self.held - self.nearest
+    }
+}
 
 /// How a query ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,19 +55,19 @@ pub struct Answer {
     pub nearest: f32,
     /// Cells that were read.
     pub reads: u32,
-    /// The cell that decided and the depth it holds: of the hidden ones the one with the least margin, or the
-    /// one that shows the box. `None` where no cell was read: the box covers no pixel.
-    pub decisive: Option<(PyramidCell, f32)>,
+    /// The cell that decided: the one that shows the box, or of those that hide it the one with the least
+    /// margin. `None` where none decided: the box covers no pixel.
+    pub decisive: Option<Decisive>,
 }
 
 impl Answer {
     /// Takes in what another part of the image says.
     pub fn join(&mut self, other: &Self) {
         self.reads += other.reads;
-        // Depths are 1/w. A cell that shows the box holds no more than the box's nearest depth, and one that
-        // hides it more: the least of all shows the box, or else hides it by the least margin.
+        // A cell that shows the box has no margin, and one that hides it has: the least of all shows the box,
+        // or else hides it by the least.
         let decides = match (self.decisive, other.decisive) {
-            (Some((_, a)), Some((_, b))) => b < a,
+            (Some(a), Some(b)) => b.margin() < a.margin(),
             (None, b) => b.is_some(),
             (_, None) => false,
         };
@@ -57,14 +77,14 @@ impl Answer {
     }
 }
 
-/// How a cell compared with a face.
+/// How a cell compared with a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// The face lies behind all that is drawn in the cell.
+    /// It lies behind all that is drawn in the cell.
     Behind,
     /// It may not; the cells below are asked.
     Descends,
-    /// A pixel that the face covers shows nothing nearer.
+    /// A pixel that it covers shows nothing nearer.
     Shows,
 }
 
@@ -82,11 +102,9 @@ impl Outcome {
 /// A cell of the pyramid was read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Read {
-    /// Number of the face among those that face the eye; `None` for the rectangle of the whole box.
-    pub face: Option<u8>,
     /// The cell.
     pub cell: PyramidCell,
-    /// Its farthest depth and the box's nearest, `1/w`.
+    /// Its farthest depth, and the nearest at which the box begins in it, `1/w`.
     pub held: f32,
     pub nearest: f32,
     /// What followed.
@@ -94,50 +112,43 @@ pub struct Read {
 }
 
 impl Read {
-    /// The comparison as it is written beside a cell, such as `face 6, cell 9: not behind, descend`.
+    /// The comparison as it is written beside a cell, such as `box 6, cell 9: not behind, descend`.
     pub fn comparison(&self) -> String {
         let then = match self.outcome {
             Outcome::Behind => "behind",
             Outcome::Descends => "not behind, descend",
             Outcome::Shows => "not behind: visible",
         };
-        let what = if self.face.is_some() { "face" } else { "box" };
-        format!("{what} {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
+        format!("box {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
     }
 }
 
 /// Where a query stands: each is about to happen, or has just been decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum At {
-    /// A cell over the rectangle of the whole box is compared.
-    Whole,
-    /// All of these hide it: nothing of the box can be seen.
-    WholeHides,
-    /// The next face of the box.
-    Face,
-    /// The finest cell that covers it is found.
-    Finest,
-    /// Whether the face is behind that cell is asked, or has been answered.
-    AskFace,
-    /// A face may be seen, and so may the box.
+    /// The next of the cells over the box.
+    Cell,
+    /// Whether the box is behind it is asked, or has been answered.
+    AskCell,
+    /// The box may be seen.
     Seen,
-    /// No face can be seen.
+    /// It cannot.
     Hidden,
-    /// A face and a cell of the descent.
+    /// A cell of the descent.
     Descent,
-    /// They are compared.
+    /// It is compared.
     Compare,
-    /// The cell hides the face.
+    /// The cell hides the box.
     Hides,
-    /// It does not; whether it shows the face is asked.
+    /// It does not; whether it shows the box is asked.
     Covers,
     /// It shows it.
     Shows,
     /// The next cell below it.
     Below,
-    /// Whether the face is behind that one is asked, or has been answered.
+    /// Whether the box is behind that one is asked, or has been answered.
     AskBelow,
-    /// One of the cells below shows the face.
+    /// One of the cells below shows the box.
     BelowShows,
     /// None does.
     BelowHides,
@@ -151,7 +162,7 @@ pub trait Listener {
     fn reaches(&mut self, _: At) {}
     /// The tile of a cell was out of date and is being brought up to date.
     fn refreshes(&mut self, cell: PyramidCell);
-    /// A cell was compared with a face.
+    /// A cell was compared with the box.
     fn reads(&mut self, read: Read);
 }
 
@@ -198,221 +209,236 @@ impl<S: Faces> Held<S> for &Buffer<S> {
     fn refresh(&mut self, _: PyramidCell) {}
 }
 
-/// Whether a box is hidden by what is drawn for the buffer's view, by its front faces; `None` if it lies
-/// outside the view. A box that reaches the near plane is not hidden.
+/// Whether a box is hidden by what is drawn for the buffer's view, by its planes; `None` if it lies outside
+/// the view. A box that reaches the near plane is not hidden.
 #[inline]
 pub fn hides<S: Faces>(
     buffer: impl Held<S>,
     bounds: &Aabb<S::Vector>,
     listener: impl Listener,
 ) -> Option<Answer> {
-    let seen = buffer.buffer().projected()?;
     // All planes at a time, by the bound that keeps primitives out of the image.
-    if seen.frustum.excludes(bounds) {
+    if buffer.buffer().projected()?.frustum.excludes(bounds) {
         return None;
     }
-    let view = seen.view;
-    match footprint(&view, &seen.projection, bounds) {
+    hides_in_view(buffer, bounds, listener)
+}
+
+/// The same of many boxes, of which those out of view are found many at a time: whether each is hidden, in
+/// order.
+pub fn hides_all<S: Faces>(
+    buffer: &mut Buffer<S>,
+    boxes: &[Aabb<S::Vector>],
+    answers: &mut Vec<Option<bool>>,
+) {
+    answers.clear();
+    let mut words = Vec::with_capacity(boxes.len().div_ceil(16));
+    if let Some(seen) = buffer.projected() {
+        outside(&seen.frustum, boxes, &mut words);
+    }
+    // A buffer without a view hides nothing and shows nothing.
+    words.resize(boxes.len().div_ceil(16), u16::MAX);
+    for (boxes, word) in boxes.chunks(16).zip(words) {
+        answers.extend(boxes.iter().enumerate().map(|(lane, bounds)| {
+            let answer = (word >> lane & 1 == 0).then(|| hides_in_view(&mut *buffer, bounds, Nobody));
+            answer.flatten().map(|a| a.is_hidden)
+        }));
+    }
+}
+
+/// Whether a box that the planes of the view do not exclude is hidden.
+#[inline]
+fn hides_in_view<S: Faces>(
+    buffer: impl Held<S>,
+    bounds: &Aabb<S::Vector>,
+    listener: impl Listener,
+) -> Option<Answer> {
+    let seen = buffer.buffer().projected()?;
+    let view = &seen.view;
+    match footprint(view, &seen.projection, bounds) {
         Footprint::Outside => None,
         Footprint::CrossesNear => {
             // No finite rectangle bounds what reaches the near plane, so no cell can decide.
             Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
         }
         Footprint::Seen(image) => {
-            Some(Query::new(buffer, image.nearest, listener).faces(bounds, &image, &view))
+            Some(Query::new(buffer, image.nearest, listener).planes(bounds, bounds, image.pixels))
         }
     }
+}
+
+/// Planes of a box, and of the whole if that is another one.
+#[derive(Clone, Copy)]
+struct Both {
+    bounds: Planes,
+    whole: Option<Planes>,
 }
 
 /// One query.
-pub struct Query<S: Faces, B: Held<S>, L> {
+pub struct Query<'a, S: Faces, B: Held<S>, L> {
     /// What is drawn so far.
-    pub buffer: B,
+    buffer: B,
     /// What receives the reads.
-    pub listener: L,
-    pub answer: Answer,
-    space: std::marker::PhantomData<S>,
+    listener: L,
+    answer: Answer,
+    /// The pixels that are asked for.
+    pixels: PixelRect,
+    /// A box, and the box of all that is drawn with what it holds; `None` for all of the pixels.
+    asked: Option<[&'a Aabb<S::Vector>; 2]>,
+    /// Their planes, once they are needed.
+    planes: Option<Both>,
 }
 
-impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
+impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
+    /// A query for something that comes no nearer than a depth, `1/w`.
     pub fn new(buffer: B, nearest: f32, listener: L) -> Self {
         let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
-        Self { buffer, listener, answer, space: std::marker::PhantomData }
+        Self { buffer, listener, answer, pixels: PixelRect::default(), asked: None, planes: None }
     }
 
-    /// Asks for a box by its front faces, each as it is projected.
-    pub fn faces(self, bounds: &Aabb<S::Vector>, image: &BoxImage, view: &View<S>) -> Answer {
-        self.faces_in(bounds, image, view, PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height })
-    }
-    /// The same within a window of the image.
-    pub fn faces_in(
+    /// Asks for a box by its planes at some of its pixels. `whole`: the box of all that is drawn with what
+    /// it holds, which says how near that comes.
+    #[inline]
+    pub fn planes(
         mut self,
-        bounds: &Aabb<S::Vector>,
-        image: &BoxImage,
-        view: &View<S>,
-        window: PixelRect,
+        bounds: &'a Aabb<S::Vector>,
+        whole: &'a Aabb<S::Vector>,
+        pixels: PixelRect,
     ) -> Answer {
-        // A departure: first the few cells over the whole box, which decide for most of what is hidden.
-        // It may decide: the box's pixels are those within `MARGIN_PX` of its image, and so hold every pixel
-        // where something in the box can show.
-        if self.behind_whole(image.pixels.intersection(window)) {
-            self.listener.reaches(At::WholeHides);
-            return self.answer;
-        }
-        // Section 3.2: "if all faces are invisible, the cube's contents can be disregarded". Only faces
-        // toward the eye can be seen; the others lie behind them.
-        let (faces, count) = S::front(bounds, view.eye.position);
-        for (number, face) in faces[..count].iter().enumerate() {
-            self.listener.reaches(At::Face);
-            // Each face's pixels have the same margin: what is drawn near to the box's image is near to that
-            // of one of these faces, so nothing is lost between them.
-            let mut face = S::image(*face, image, view.width, view.height);
-            face.pixels = face.pixels.intersection(window);
-            // One face that may be seen is enough.
-            if !self.face(number as u8, &face) {
-                self.listener.reaches(At::Seen);
-                return self.answer;
-            }
-        }
-        self.listener.reaches(At::Hidden);
+        self.asked = Some([bounds, whole]);
+        self.over(pixels);
+        self.answer
+    }
+    /// Asks for a rectangle of pixels.
+    pub fn rectangle(mut self, pixels: PixelRect) -> Answer {
+        self.over(pixels);
         self.answer
     }
 
-    /// Asks for one face.
-    pub fn face(&mut self, number: u8, face: &FaceImage) -> bool {
-        // A face without a pixel's center cannot show.
-        if !face.pixels.is_empty() {
-            // Section 3.2: "the single finest resolution pixel in the pyramid that still completely covers
-            // the bounding box area".
-            self.listener.reaches(At::Finest);
-            let cell = self.buffer.buffer().pyramid().finest_over(face.pixels);
-            self.listener.reaches(At::AskFace);
-            self.answer.is_hidden &= self.behind(number, face, cell);
-            self.listener.reaches(At::AskFace);
-        }
-        self.answer.is_hidden
-    }
-
-    /// Whether a rectangle that holds the box's image lies behind the at most four cells that cover it, or
-    /// those a little below.
-    fn behind_whole(&mut self, pixels: PixelRect) -> bool {
+    fn over(&mut self, pixels: PixelRect) {
+        self.pixels = pixels;
+        // What covers no pixel's center cannot show.
         if pixels.is_empty() {
-            return true;
+            return;
         }
+        // A departure from Section 3.2, which begins at "the single finest resolution pixel in the pyramid
+        // that still completely covers the bounding box area": what lies across a border of large cells
+        // would begin far up.
         let (first, last) = self.buffer.buffer().pyramid().cover(pixels);
         for y in first.y..=last.y {
             for x in first.x..=last.x {
-                if !self.behind_part(pixels, PyramidCell { level: first.level, x, y }, FINER) {
-                    // The cells found so far hide parts of the rectangle, which decides nothing.
-                    self.answer.decisive = None;
-                    return false;
+                let cell = PyramidCell { level: first.level, x, y };
+                // Where the nearest corner does not decide, the planes are asked.
+                let mut known = [self.answer.nearest, -1.0];
+                if self.answer.nearest >= self.buffer.buffer().farthest(cell) {
+                    let pixels = self.pixels_of(cell);
+                    let over = self.of_cells(&middle(cell), [pixels; 4]);
+                    if !over.meets[0] {
+                        continue;
+                    }
+                    known = [over.up[0], over.fills[0]];
+                }
+                self.listener.reaches(At::Cell);
+                self.listener.reaches(At::AskCell);
+                let is_behind = self.behind(cell, known);
+                self.listener.reaches(At::AskCell);
+                // One cell that it may be seen in is enough.
+                if !is_behind {
+                    self.answer.is_hidden = false;
+                    self.listener.reaches(At::Seen);
+                    return;
                 }
             }
         }
-        true
-    }
-    /// Whether the part of the rectangle inside a cell lies behind the cell's depth, descending at most
-    /// `finer` levels.
-    fn behind_part(&mut self, pixels: PixelRect, cell: PyramidCell, finer: u8) -> bool {
-        self.listener.reaches(At::Whole);
-        let held = self.look_at(cell);
-        let nearest = self.answer.nearest;
-        // Conservative in rounding: `nearest` is rounded to f32 as fragments are, which keeps the order, so
-        // no fragment of the contents exceeds it; and the cell holds a depth that no pixel under it is
-        // farther than.
-        let outcome = if nearest < held { Outcome::Behind } else { Outcome::Descends };
-        self.listener.reads(Read { face: None, cell, held, nearest, outcome });
-        if outcome == Outcome::Behind {
-            self.least(cell, held);
-            return true;
-        }
-        if finer == 0 || cell.level == 0 {
-            return false;
-        }
-        let level = cell.level - 1;
-        // Of the two children along an axis those that the rectangle meets.
-        let along = |at: u16, first: u32, past: u32| {
-            (2 * at).max((first >> level) as u16)..=(2 * at + 1).min(((past - 1) >> level) as u16)
-        };
-        for y in along(cell.y, pixels.y0, pixels.y1) {
-            for x in along(cell.x, pixels.x0, pixels.x1) {
-                if !self.behind_part(pixels, PyramidCell { level, x, y }, finer - 1) {
-                    return false;
-                }
-            }
-        }
-        true
-    }
-    /// What the pyramid holds for a cell, brought up to date where that could decide.
-    #[inline]
-    fn look_at(&mut self, cell: PyramidCell) -> f32 {
-        self.answer.reads += 1;
-        let held = self.buffer.buffer().farthest(cell);
-        // A stale cell holds too far a depth: what is behind it is hidden all the same, and only what is not
-        // is worth a refresh.
-        if self.answer.nearest >= held && self.buffer.would_refresh(cell) {
-            self.listener.refreshes(cell);
-            self.buffer.refresh(cell);
-            return self.buffer.buffer().farthest(cell);
-        }
-        held
-    }
-    /// Keeps the cell with the least margin.
-    #[inline]
-    fn least(&mut self, cell: PyramidCell, held: f32) {
-        if self.answer.decisive.is_none_or(|(_, least)| held < least) {
-            self.answer.decisive = Some((cell, held));
-        }
+        self.listener.reaches(At::Hidden);
     }
 
-    /// Whether the face lies behind all that is drawn in a cell.
-    fn behind(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+    /// What is known of the box over four cells of a level, given by their middles.
+    #[inline]
+    fn of_cells(&mut self, (middles, half): &([[f32; 4]; 2], f32), pixels: [PixelRect; 4]) -> Over {
+        let nearest = self.answer.nearest;
+        let Some([bounds, whole]) = self.asked else {
+            let r = self.pixels;
+            let holds = |c: PixelRect| c.x0 >= r.x0 && c.x1 <= r.x1 && c.y0 >= r.y0 && c.y1 <= r.y1;
+            let fills = pixels.map(|c| if holds(c) { nearest } else { -1.0 });
+            return Over { meets: [true; 4], up: [nearest; 4], fills };
+        };
+        let rays = self.buffer.buffer().rays();
+        let planes = self.planes.get_or_insert_with(|| Both {
+            bounds: Planes::new(rays, bounds),
+            whole: (whole != bounds).then(|| Planes::new(rays, whole)),
+        });
+        let over = planes.bounds.over(middles, *half, nearest);
+        // A shared primitive is drawn as a whole, and the part outside the cube may come nearer; but where
+        // this box does not reach, the other cubes answer for it.
+        let up = planes.whole.map_or(over.up, |w| w.over(middles, *half, nearest).up);
+        Over { up, ..over }
+    }
+
+    /// Whether nothing of the box shows in a cell: `up` and `fills` of [`Over`] there.
+    fn behind(&mut self, cell: PyramidCell, [up, fills]: [f32; 2]) -> bool {
         self.listener.reaches(At::Descent);
         self.listener.reaches(At::Compare);
-        let held = self.look_at(cell);
-        let nearest = self.answer.nearest;
+        self.answer.reads += 1;
+        let mut held = self.buffer.buffer().farthest(cell);
+        // A stale cell holds too far a depth: what is behind it is hidden all the same, and only what is not
+        // is worth a refresh.
+        if up >= held && self.buffer.would_refresh(cell) {
+            self.listener.refreshes(cell);
+            self.buffer.refresh(cell);
+            held = self.buffer.buffer().farthest(cell);
+        }
         // Section 3.2: obscured if "the closest face z is further than the sample z". Depths are 1/w, so
         // farther is less. Equal depths count as seen, since ids then decide.
-        let outcome = if nearest < held {
+        let outcome = if up < held {
             Outcome::Behind
-        } else if cell.level == 0 || cell.level <= TILE_LEVEL && face.covers(self.pixels(cell)) {
+        } else if cell.level == 0 || fills >= held && self.is_known(cell) {
             Outcome::Shows
         } else {
             Outcome::Descends
         };
-        self.listener.reads(Read { face: Some(number), cell, held, nearest, outcome });
+        self.listener.reads(Read { cell, held, nearest: up, outcome });
         if outcome != Outcome::Behind {
             self.listener.reaches(At::Covers);
         }
+        let here = Decisive { cell, held, nearest: up };
         match outcome {
             Outcome::Behind => {
                 self.listener.reaches(At::Hides);
-                self.least(cell, held);
+                // Kept is the cell with the least margin.
+                if self.answer.decisive.is_none_or(|least| here.margin() < least.margin()) {
+                    self.answer.decisive = Some(here);
+                }
                 true
             }
             Outcome::Shows => {
                 self.listener.reaches(At::Shows);
-                self.answer.decisive = Some((cell, held));
+                self.answer.decisive = Some(here);
                 false
             }
-            Outcome::Descends => self.below(number, face, cell),
+            Outcome::Descends => self.below(cell),
         }
     }
 
-    /// Whether the face lies behind all that is drawn in the cells below one.
-    fn below(&mut self, number: u8, face: &FaceImage, cell: PyramidCell) -> bool {
+    /// Whether nothing of the box shows in the cells below one.
+    fn below(&mut self, cell: PyramidCell) -> bool {
         // "Descending to higher resolutions and seeing if all samples the face intersects are closer."
-        // A cell that the face does not touch cannot show it: "the face may not necessarily overlap the
+        // A cell that the box does not touch cannot show it: "the face may not necessarily overlap the
         // particular maximum-depth pixel". Beyond the edge of the image a cell has no pixel to touch.
+        let children = [0, 1, 2, 3].map(|k| PyramidCell {
+            level: cell.level - 1,
+            x: cell.x * 2 + (k & 1),
+            y: cell.y * 2 + (k >> 1),
+        });
+        let pixels = children.map(|c| self.pixels_of(c));
+        let over = self.of_cells(&below(cell), pixels);
         for k in 0..4 {
-            let child =
-                PyramidCell { level: cell.level - 1, x: cell.x * 2 + (k & 1), y: cell.y * 2 + (k >> 1) };
-            if !face.touches(self.pixels(child)) {
+            if !over.meets[k] || pixels[k].intersection(self.pixels).is_empty() {
                 continue;
             }
             self.listener.reaches(At::Below);
             self.listener.reaches(At::AskBelow);
-            let is_behind = self.behind(number, face, child);
+            let is_behind = self.behind(children[k], [over.up[k], over.fills[k]]);
             self.listener.reaches(At::AskBelow);
             if !is_behind {
                 self.listener.reaches(At::BelowShows);
@@ -422,16 +448,16 @@ impl<S: Faces, B: Held<S>, L: Listener> Query<S, B, L> {
         self.listener.reaches(At::BelowHides);
         true
     }
+    /// Whether the depth of a cell is that of a pixel of it. Above the tiles it may be out of date.
+    fn is_known(&self, cell: PyramidCell) -> bool {
+        cell.level <= TILE_LEVEL && !self.buffer.buffer().pyramid().is_stale(cell)
+    }
     #[inline]
-    fn pixels(&self, cell: PyramidCell) -> PixelRect {
+    fn pixels_of(&self, cell: PyramidCell) -> PixelRect {
         let target = self.buffer.buffer().target();
         cell.pixels(target.width, target.height)
     }
 }
 
-/// Levels by which the cells over a whole box are refined before its faces are queried: one look at four
-/// cells takes in up to 16 times the box's rectangle, one at the cells two levels below hardly more than it.
-const FINER: u8 = 2;
-/// The highest level whose cells know when they are stale: below it a cell that is not farther shows a pixel;
-/// above it it may only be out of date.
+/// The highest level whose cells know when they are stale.
 const TILE_LEVEL: u8 = 4;

@@ -6,9 +6,10 @@ use glam::Vec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
+use super::planes::{Planes, middle};
 use super::*;
 use crate::geometry::{Aabb, Eye, Flat, Footprint, PixelRect, Solid, Space, Vector, View};
-use crate::raster::{Options, Target, render};
+use crate::raster::{Options, PyramidCell, Target, render};
 use crate::scene::{Parts, Scene};
 
 fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> Arc<Scene<S>> {
@@ -73,6 +74,16 @@ impl<S: Faces> Drawn<S> {
         S::draw(&mut with, &outside, &self.view, outside.live(), &Options::default());
         (0..with.depth.len()).any(|i| with.depth[i] != plain.depth[i] || with.item[i] != plain.item[i])
     }
+    /// Whether its planes say that a box may show at any single pixel.
+    fn may_show(&self, bounds: &Aabb<S::Vector>, pixels: PixelRect, nearest: f32) -> bool {
+        let planes = Planes::new(self.buffer.rays(), bounds);
+        let at = |x: u32, y: u32| {
+            let (middles, half) = middle(PyramidCell { level: 0, x: x as u16, y: y as u16 });
+            let over = planes.over(&middles, half, nearest);
+            over.meets[0] && over.up[0] >= self.plain.depth[(y * self.view.width + x) as usize]
+        };
+        (pixels.y0..pixels.y1).any(|y| (pixels.x0..pixels.x1).any(|x| at(x, y)))
+    }
     /// Queries a box in every way.
     fn query(&mut self, bounds: &Aabb<S::Vector>, shell: Shell<S>, counted: &mut Counted) {
         let view = self.view;
@@ -89,15 +100,23 @@ impl<S: Faces> Drawn<S> {
             }
         };
         let changed = self.changes(bounds, shell);
-        let answer = Query::new(&mut self.buffer, image.nearest, Nobody).faces(bounds, &image, &view);
+        let (nearest, pixels) = (image.nearest, image.pixels);
+        let mut query = |whole: &Aabb<S::Vector>| {
+            Query::new(&mut self.buffer, nearest, Nobody).planes(bounds, whole, pixels)
+        };
+        let answer = query(bounds);
+        // What is drawn with it may come nearer, so less is hidden.
+        let larger = Aabb { min: bounds.min, max: bounds.max + bounds.size() };
+        assert!(!query(&larger).is_hidden || answer.is_hidden);
+        // A pixel of the pyramid decides as it would by itself.
+        assert_eq!(answer.is_hidden, !self.may_show(bounds, pixels, nearest), "{bounds:?}, pixel by pixel");
         assert!(!answer.is_hidden || !changed, "{bounds:?} is called hidden and shows");
         assert!(
             told != Some(!answer.is_hidden) && (told.is_some() || !changed),
             "{bounds:?}: queried at once and by parts"
         );
-        let mut query = Query::new(&mut self.buffer, image.nearest, Nobody);
-        let by_rectangle = query.face(0, &FaceImage::rectangle(image.pixels));
-        assert!(!by_rectangle || answer.is_hidden, "what the rectangle hides, the faces do");
+        let by_rectangle = Query::new(&mut self.buffer, nearest, Nobody).rectangle(pixels).is_hidden;
+        assert!(!by_rectangle || answer.is_hidden, "what hides the rectangle, hides the box");
         if let Footprint::Seen(sphere) = project_sphere(&view, bounds) {
             let (r, s) = (image.pixels, sphere.pixels);
             assert!(
@@ -118,17 +137,24 @@ fn queries_against_drawing<S: Faces>(seed: u64, make: fn([u32; 3]) -> S::Corners
     let (mut rng, mut counted) = (Pcg32::new(seed, 9), Counted::default());
     for _ in 0..60 {
         let mut drawn = Drawn::<S>::new(&mut rng, make);
+        let mut asked = Vec::new();
         for _ in 0..40 {
             let mut unit = || (rng.next_u32() >> 8) as f32 / (1u32 << 24) as f32;
             let middle = S::Vector::from_fn(|_| unit() * 24.0 - 12.0);
             let half = S::Vector::from_fn(|_| unit() * unit() * 3.0);
             let bounds = Aabb { min: middle - half, max: middle + half };
             drawn.query(&bounds, shell, &mut counted);
+            asked.push(bounds);
         }
+        let mut one_by_one = drawn.buffer.clone();
+        let (each, mut all) =
+            (asked.iter().map(|b| hides(&mut one_by_one, b, Nobody).map(|a| a.is_hidden)), Vec::new());
+        hides_all(&mut drawn.buffer, &asked, &mut all);
+        assert_eq!(all, each.collect::<Vec<_>>(), "many at a time");
     }
     let Counted { hidden, unseen, by_rectangle } = counted;
     assert!(hidden > 50 && hidden * 10 >= unseen * 8, "{hidden} of {unseen} unseen boxes are found");
-    assert!(by_rectangle <= hidden);
+    assert!(by_rectangle < hidden, "planes say more than the rectangle: {by_rectangle} of {hidden}");
 }
 
 #[test]

@@ -58,35 +58,39 @@ pub(super) const CODE: &[CodeLine] = &[
     CodeLine::new("Obscured:4", "  if C covers no pixel: return true"),
     CodeLine::departing(
         "Obscured:5",
-        "  if C is behind the few cells over its screen rectangle",
-        "no such look: the faces come first",
+        "  B := the box of C, by its planes",
+        "for each face F of C toward the eye",
     ),
-    CodeLine::new("Obscured:6", "    return true"),
-    CodeLine::new("Obscured:7", "  for each face F of C toward the eye"),
-    CodeLine::new("Obscured:8", "    q := the finest cell that covers F on the screen"),
-    CodeLine::new("Obscured:9", "    if not Behind(F, q)"),
-    CodeLine::new("Obscured:10", "      return false"),
-    CodeLine::new("Obscured:11", "  return true"),
-    CodeLine::departing("Obscured:12", "  F := the screen rectangle of C", "each face toward the eye"),
     CodeLine::departing(
-        "Obscured:13",
-        "  F := the screen rectangle of the sphere around C",
+        "Obscured:6",
+        "  B := the screen rectangle of C",
+        "for each face F of C toward the eye",
+    ),
+    CodeLine::departing(
+        "Obscured:7",
+        "  B := the screen rectangle of the sphere around C",
         "the sphere at every pixel",
     ),
-    CodeLine::new("Obscured:14", "  q := the finest cell that covers F on the screen"),
-    CodeLine::new("Obscured:15", "  return Behind(F, q)"),
+    CodeLine::departing(
+        "Obscured:8",
+        "  for each of the at most four cells q over B on the screen",
+        "q := the finest cell that covers F on the screen",
+    ),
+    CodeLine::new("Obscured:9", "    if not Behind(B, q)"),
+    CodeLine::new("Obscured:10", "      return false"),
+    CodeLine::new("Obscured:11", "  return true"),
     // Section 3.2: the descent "to higher resolutions".
-    CodeLine::new("Behind:1", "Behind(face F, cell q)"),
+    CodeLine::new("Behind:1", "Behind(box B, cell q)"),
     CodeLine::departing(
         "Behind:2",
-        "  if the nearest depth of C is behind q",
+        "  if B begins behind q, wherever it is in q",
         "if the nearest depth of F is behind q",
     ),
     CodeLine::new("Behind:3", "    return true"),
-    CodeLine::departing("Behind:4", "  if q is a pixel, or F covers q", "if q is a pixel"),
+    CodeLine::departing("Behind:4", "  if q is a pixel, or B covers q and is not behind", "if q is a pixel"),
     CodeLine::new("Behind:5", "    return false"),
-    CodeLine::new("Behind:6", "  for each cell r of the four below q that F touches"),
-    CodeLine::new("Behind:7", "    if not Behind(F, r)"),
+    CodeLine::new("Behind:6", "  for each cell r of the four below q that B touches"),
+    CodeLine::new("Behind:7", "    if not Behind(B, r)"),
     CodeLine::new("Behind:8", "      return false"),
     CodeLine::new("Behind:9", "  return true"),
 ];
@@ -133,17 +137,13 @@ pub(super) mod line {
     pub const NEAR: u8 = line(CODE, "Obscured:2");
     pub const CROSSES: u8 = line(CODE, "Obscured:3");
     pub const NO_PIXEL: u8 = line(CODE, "Obscured:4");
-    pub const WHOLE: u8 = line(CODE, "Obscured:5");
-    pub const WHOLE_HIDES: u8 = line(CODE, "Obscured:6");
-    pub const FACE: u8 = line(CODE, "Obscured:7");
-    pub const FINEST: u8 = line(CODE, "Obscured:8");
-    pub const BEHIND_FACE: u8 = line(CODE, "Obscured:9");
+    pub const PLANES: u8 = line(CODE, "Obscured:5");
+    pub const RECTANGLE: u8 = line(CODE, "Obscured:6");
+    pub const SPHERE: u8 = line(CODE, "Obscured:7");
+    pub const CELL: u8 = line(CODE, "Obscured:8");
+    pub const ASK_CELL: u8 = line(CODE, "Obscured:9");
     pub const SEEN: u8 = line(CODE, "Obscured:10");
     pub const ALL_HIDDEN: u8 = line(CODE, "Obscured:11");
-    pub const RECTANGLE: u8 = line(CODE, "Obscured:12");
-    pub const SPHERE: u8 = line(CODE, "Obscured:13");
-    pub const FINEST_ONE: u8 = line(CODE, "Obscured:14");
-    pub const BEHIND_ONE: u8 = line(CODE, "Obscured:15");
     pub const DESCENT: u8 = line(CODE, "Behind:1");
     pub const COMPARE: u8 = line(CODE, "Behind:2");
     pub const HIDES: u8 = line(CODE, "Behind:3");
@@ -159,12 +159,9 @@ pub(super) mod line {
 pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("NodeClassified", &["Visit:2"]),
     ("CubeListed", &["Frame:3", "Visit:4"]),
-    (
-        "ObscurationTested",
-        &["Obscured:3", "Obscured:4", "Obscured:6", "Obscured:10", "Obscured:11", "Obscured:15"],
-    ),
-    ("CellRead", &["Obscured:5", "Behind:2"]),
-    ("TileRefreshed", &["Obscured:5", "Behind:2"]),
+    ("ObscurationTested", &["Obscured:3", "Obscured:4", "Obscured:10", "Obscured:11"]),
+    ("CellRead", &["Behind:2"]),
+    ("TileRefreshed", &["Behind:2"]),
     ("TilesRefreshed", &["Draw:4"]),
     ("PyramidRefreshed", &["Frame:7"]),
     ("OrientationTested", &["Draw:3"]),
@@ -198,21 +195,22 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "3.2",
-        what: "for every face the nearest depth of the whole box is compared, not that of the face",
-        why: "a triangle that the rasterizer snapped to its grid may come nearer than the face it shows \
-               through, but never nearer than the box",
+        what: "with query=planes, the default, the box is asked by its planes, which say where it begins \
+               over each cell and whether it touches it, not by its faces as projected, each at the depth \
+               of its nearest vertex",
+        why: "it comes nearer to the truth, it holds at every pixel, and no image of a face is made",
+        when: When::With("query", "planes"),
+    },
+    Departure {
+        section: "3.2",
+        what: "the descent begins at the at most four cells that cover the box, not at the finest single one",
+        why: "what lies across a border of large cells would begin far up",
         when: When::Always,
     },
     Departure {
         section: "3.2",
-        what: "before the faces the few cells over the rectangle of the whole box are read",
-        why: "they decide for most of what is hidden",
-        when: When::Always,
-    },
-    Departure {
-        section: "3.2",
-        what: "a cell that a face covers wholly and that is not nearer ends the descent",
-        why: "some pixel of it shows the face",
+        what: "a cell that the box covers, beginning before the farthest thing in it, ends the descent",
+        why: "some pixel of it shows the box",
         when: When::Always,
     },
     Departure {
@@ -250,16 +248,17 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "5.3",
-        what: "with query=sphere the screen rectangle of the sphere is queried",
-        why: "the sphere itself is what the machine of the paper draws",
-        when: When::With("query", "sphere"),
+        what: "with query=sphere the screen rectangle of the sphere is queried, with query=rectangles that \
+               of the box",
+        why: "the sphere itself is what the machine of the paper draws; to compare both with the planes",
+        when: When::Always,
     },
 ];
 
 /// Whether a line belongs to these parameters.
 pub(super) fn has_line(params: &Params, at: u8) -> bool {
     let (two_pass, sieved) = (params.form == Form::TwoPass, params.primitive_test);
-    let (by_faces, is_one_cube) = (params.query == Volume::Faces, params.cubes.tree_levels == 1);
+    let is_one_cube = params.cubes.tree_levels == 1;
     match at {
         line::EACH_LISTED | line::UNLISTED | line::ADD => params.coherence,
         line::CHECK | line::EACH_CHECKED | line::CHECK_OBSCURED | line::UNLIST => params.coherence,
@@ -274,12 +273,10 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::TEST => sieved,
         // Of one cube nothing is drawn before it is asked for, so nothing hides it or any of it.
         line::SKIP => sieved && !is_one_cube,
-        line::HIDES | line::BELOW_HIDES => !is_one_cube,
-        line::WHOLE_HIDES | line::ALL_HIDDEN => by_faces && !is_one_cube,
-        line::WHOLE | line::FACE | line::FINEST | line::BEHIND_FACE | line::SEEN => by_faces,
+        line::HIDES | line::BELOW_HIDES | line::ALL_HIDDEN => !is_one_cube,
+        line::PLANES => params.query == Volume::Planes,
         line::RECTANGLE => params.query == Volume::Rectangles,
         line::SPHERE => params.query == Volume::Sphere,
-        line::FINEST_ONE | line::BEHIND_ONE => !by_faces,
         _ => true,
     }
 }

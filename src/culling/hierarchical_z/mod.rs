@@ -84,8 +84,8 @@ words! {
 words! {
     /// Volumes that stand for a cube, and how they are queried.
     pub(crate) enum Volume {
-        /// Each face toward the eye, as projected (the paper).
-        Faces = "faces",
+        /// Its box, by the planes toward the eye and away from it.
+        Planes = "planes",
         /// The screen rectangle of its box.
         Rectangles = "rectangles",
         /// The sphere around it (Section 5.3).
@@ -146,8 +146,8 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         let query = Knob::new(
             "query",
             "",
-            "how a cube is asked for: by its front faces as projected, by their screen rectangles, or by the \
-             sphere around it",
+            "how a cube is asked for: by the planes of its box, which stand for the faces of the paper; by \
+             the screen rectangle of its box; or by that of the sphere around it",
             "Georges 1995, Sections 3.2 and 5.3",
         );
         knobs.words(query, &mut params.query);

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::{HierarchicalZ, Memory, Params};
 use crate::culling::depth::picture::{last_reads, levels};
-use crate::culling::depth::{Buffer, DepthNote, FaceImage, Faces, Nobody, Query, QueryReporter, hides};
+use crate::culling::depth::{Buffer, DepthNote, Faces, Nobody, Query, QueryReporter, hides, hides_all};
 use crate::drawing::Drawing;
 use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
 use crate::index::Octree;
@@ -63,10 +63,16 @@ impl<S: Faces> Obscurer<S> {
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }
-    /// Whether a box is hidden by what was drawn last, by its front faces; `None` if it is out of view.
+    /// Whether a box is hidden by what was drawn last, by its planes; `None` if it is out of view.
     pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {
-        // By faces whatever the parameter `query` is: that of the paper.
+        // By planes whatever the parameter `query` is: they say most.
         hides(&mut self.state, bounds, Nobody).map(|answer| answer.is_hidden)
+    }
+    /// The same of many boxes, in order.
+    pub fn hides_all(&mut self, boxes: &[Aabb<S::Vector>]) -> Vec<Option<bool>> {
+        let mut answers = Vec::with_capacity(boxes.len());
+        hides_all(&mut self.state, boxes, &mut answers);
+        answers
     }
     /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
     pub fn touch_all(&mut self, view: &View<S>) {
@@ -101,7 +107,8 @@ pub fn pyramid_picture<S: Faces>(
         // The face is of no node and of no line of the pseudocode; the picture shows neither.
         is_hidden =
             Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), |_| None, &mut recorder))
-                .face(0, &FaceImage::rectangle(pixels));
+                .rectangle(pixels)
+                .is_hidden;
     }
     (levels(&buffer, view, &last_reads(recorder.notes.iter().rev().map(Some)), scale), is_hidden)
 }

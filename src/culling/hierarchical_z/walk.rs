@@ -7,13 +7,13 @@ use super::evidence::Evidence;
 use super::{Form, Params, Volume};
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, At, Buffer, DepthNote, FaceImage, Faces, Ground, Held, Listener, Nobody, Query,
-    QueryLines, QueryReporter, Rasterized, Step, footprint, project_sphere,
+    Answer, Answered, At, Buffer, DepthNote, Faces, Ground, Held, Listener, Nobody, Query, QueryReporter,
+    Rasterized, Step, footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
-    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector,
-    View, nearest_depth,
+    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View,
+    nearest_depth,
 };
 use crate::index::{Octree, OctreeNode};
 use crate::method::evidence::{Facing, Tested};
@@ -209,7 +209,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             match question(node, view, projection, params) {
                 Question::Decided(ground) => ground != Ground::CrossesNear,
                 Question::Open(image, nearest) => {
-                    ask(Query::new(buffer, nearest, Nobody), params, &node.bounds, &image, view).is_hidden
+                    ask(Query::new(buffer, nearest, Nobody), params, node, image.pixels).is_hidden
                 }
             }
         };
@@ -407,8 +407,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Whether the pyramid hides a cube.
     fn is_obscured(&mut self, node: NodeId) -> bool {
-        let OctreeNode { bounds, .. } = self.index.nodes()[node.at()];
-        let question = question(&self.index.nodes()[node.at()], self.view, &self.projection, self.params);
+        let cube = &self.index.nodes()[node.at()];
+        let question = question(cube, self.view, &self.projection, self.params);
         self.line(line::QUERY);
         self.line(line::NEAR);
         let decided = |is_hidden: bool, nearest: f32| Answer { is_hidden, nearest, reads: 0, decisive: None };
@@ -426,26 +426,22 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 (image.pixels, decided(true, nearest), Ground::Cells)
             }
             Question::Open(image, nearest) => {
-                let lines = self.query_lines();
-                let reporter = QueryReporter::new(node, lines, &mut *self.watch);
+                self.line(match self.params.query {
+                    Volume::Planes => line::PLANES,
+                    Volume::Rectangles => line::RECTANGLE,
+                    Volume::Sphere => line::SPHERE,
+                });
+                let reporter = QueryReporter::new(node, line_of, &mut *self.watch);
                 let query = Query::new(&mut *self.buffer, nearest, reporter);
-                (image.pixels, ask(query, self.params, &bounds, &image, self.view), Ground::Cells)
+                (image.pixels, ask(query, self.params, cube, image.pixels), Ground::Cells)
             }
         };
+        let (bounds, is_by_planes) = (cube.bounds, self.params.query == Volume::Planes);
         self.watch.note(move || {
-            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, ground }))
+            let answered = Answered { node, bounds, pixels, answer, ground, is_by_planes };
+            Evidence::Depth(DepthNote::Answered(answered))
         });
         answer.is_hidden
-    }
-
-    /// The lines of a query, with those before it.
-    fn query_lines(&mut self) -> QueryLines {
-        match self.params.query {
-            Volume::Faces => return lines_by_faces,
-            Volume::Rectangles => self.line(line::RECTANGLE),
-            Volume::Sphere => self.line(line::SPHERE),
-        }
-        lines_by_one
     }
 
     /// Reports the primitives that a cube passed on and none of its children drew.
@@ -529,44 +525,26 @@ fn question<S: Faces>(
     }
 }
 
-/// Queries a box in the way that the parameters say.
+/// Queries a cube in the way that the parameters say.
 fn ask<S: Faces, B: Held<S>, L: Listener>(
-    mut query: Query<S, B, L>,
+    query: Query<'_, S, B, L>,
     params: &Params,
-    bounds: &Aabb<S::Vector>,
-    image: &BoxImage,
-    view: &View<S>,
+    node: &OctreeNode<S::Vector>,
+    pixels: PixelRect,
 ) -> Answer {
-    if params.query == Volume::Faces {
-        return query.faces(bounds, image, view);
+    match params.query {
+        Volume::Planes => query.planes(&node.bounds, &node.whole, pixels),
+        Volume::Rectangles | Volume::Sphere => query.rectangle(pixels),
     }
-    query.face(0, &FaceImage::rectangle(image.pixels));
-    query.answer
 }
 
-/// Lines of a query by faces.
-fn lines_by_faces(at: At) -> Option<u8> {
+/// The lines of a query.
+fn line_of(at: At) -> Option<u8> {
     Some(match at {
-        At::Whole => line::WHOLE,
-        At::WholeHides => line::WHOLE_HIDES,
-        At::Face => line::FACE,
-        At::Finest => line::FINEST,
-        At::AskFace => line::BEHIND_FACE,
+        At::Cell => line::CELL,
+        At::AskCell => line::ASK_CELL,
         At::Seen => line::SEEN,
         At::Hidden => line::ALL_HIDDEN,
-        _ => return line_of_descent(at),
-    })
-}
-/// Lines of a query by one rectangle.
-fn lines_by_one(at: At) -> Option<u8> {
-    match at {
-        At::Finest => Some(line::FINEST_ONE),
-        At::AskFace => Some(line::BEHIND_ONE),
-        _ => line_of_descent(at),
-    }
-}
-fn line_of_descent(at: At) -> Option<u8> {
-    Some(match at {
         At::Descent => line::DESCENT,
         At::Compare => line::COMPARE,
         At::Hides => line::HIDES,
@@ -576,7 +554,6 @@ fn line_of_descent(at: At) -> Option<u8> {
         At::AskBelow => line::ASK_BELOW,
         At::BelowShows => line::BELOW_SHOWS,
         At::BelowHides => line::BELOW_HIDES,
-        _ => return None,
     })
 }
 

@@ -339,8 +339,8 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Projected(n) => of(("its solidity", n.solidity), ("the next least", n.next?)),
             // Buffers hold 1/w, people compare depths.
             Self::Queried(n) => {
-                let (_, held) = n.answer.decisive?;
-                of(("nearest depth", 1.0 / n.answer.nearest), ("farthest drawn there", 1.0 / held))
+                let d = n.answer.decisive?;
+                of(("nearest depth", 1.0 / d.nearest), ("farthest drawn there", 1.0 / d.held))
             }
             Self::Compared(n) => {
                 let [nearest, held] = n.depths?.map(|depth| 1.0 / depth);
@@ -380,9 +380,9 @@ impl<S: Cellular> Note<S> for Evidence<S> {
             Self::Queried(n) => vec![
                 integer("node", node_of(n.cell).0),
                 number("solidity", n.solidity.into()),
-                number("nearest", n.answer.nearest.into()),
-                // 0 where no cell was read: the box covers no pixel or reaches the near plane.
-                number("held", n.answer.decisive.map_or(0.0, |(_, held)| held.into())),
+                // In the cell that decided. Without one the box covers no pixel or reaches the near plane.
+                number("nearest", n.answer.decisive.map_or(n.answer.nearest, |d| d.nearest).into()),
+                number("held", n.answer.decisive.map_or(0.0, |d| d.held.into())),
                 integer("reads", n.answer.reads),
                 switch("hidden", n.answer.is_hidden),
             ],
@@ -613,25 +613,25 @@ fn query_sentence(n: &Queried, empty: f32) -> String {
     let node = node_of(n.cell);
     let depth = |v: f32| short(1.0 / v);
     match (n.answer.is_hidden, n.answer.decisive) {
-        (true, Some((_, held))) => {
+        (true, Some(d)) => {
             format!(
                 "Node {node} begins at depth {}, behind {}, the farthest that is drawn where it would show: \
                  it is hidden.",
-                depth(n.answer.nearest),
-                depth(held)
+                depth(d.nearest),
+                depth(d.held)
             )
         }
         // It is in view, but nothing of it could be drawn.
         (true, None) => format!("Node {node} covers no pixel's center: it is hidden."),
-        (false, Some((_, held))) if held <= empty => {
+        (false, Some(d)) if d.held <= empty => {
             format!("Somewhere where node {node} would show nothing is drawn yet: it is projected.")
         }
-        (false, Some((_, held))) => {
+        (false, Some(d)) => {
             format!(
                 "Node {node} begins at depth {}, and somewhere where it would show the farthest thing drawn \
                  is at {}, not before it: it is projected.",
-                depth(n.answer.nearest),
-                depth(held)
+                depth(d.nearest),
+                depth(d.held)
             )
         }
         (false, None) => format!("Node {node} reaches the near plane: it is projected."),

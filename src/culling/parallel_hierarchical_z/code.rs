@@ -200,9 +200,9 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "5",
-        what: "a renderer answers from the z-pyramid",
-        why: "the answer is the same as by comparing all pixels at once, and the cells that it reads can \
-               be shown",
+        what: "a renderer answers from the z-pyramid, for a box by its planes",
+        why: "the answer is the same as by comparing the triangles of its faces at all pixels at once, and \
+              the cells that it reads can be shown",
         when: When::Always,
     },
     Departure {

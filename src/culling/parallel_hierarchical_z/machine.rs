@@ -34,7 +34,7 @@ words! {
 words! {
     /// What stands for a structure when it is queried.
     pub(super) enum Volume {
-        /// Its box, by the faces toward the eye.
+        /// Its box, of which the triangles of the faces are sent (Section 5.1).
         Faces = "faces",
         /// The sphere around it: one quadratic expression instead of the sides of twelve triangles (Section
         /// 5.3).

@@ -15,8 +15,8 @@ use super::machine::{Job, Machine, Unit, Volume, Worked, ticks};
 use super::screen::Screen;
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, At, Buffer, DepthNote, FaceImage, Faces, Ground, Query, QueryReporter, Rasterized,
-    Step, footprint, project_sphere,
+    Answer, Answered, At, Buffer, Decisive, DepthNote, Faces, Ground, Query, QueryReporter, Rasterized, Step,
+    footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
@@ -26,7 +26,7 @@ use crate::geometry::{
 use crate::index::Octree;
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
-use crate::raster::{Options, PyramidCell};
+use crate::raster::Options;
 use crate::scene::Scene;
 
 /// What the machine keeps from frame to frame.
@@ -72,6 +72,8 @@ struct Question<S: Faces> {
     is_check: bool,
     node: NodeId,
     bounds: Aabb<S::Vector>,
+    /// The box of all that is drawn with what it holds.
+    whole: Aabb<S::Vector>,
     image: BoxImage,
     /// Regions that have not answered yet.
     open: u32,
@@ -427,8 +429,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let answer = Answer { is_hidden: true, nearest: image.nearest, reads: 0, decisive: None };
         let regions = self.screen.regions(image.pixels);
         let (open, is_seen) = (regions.len() as u32, false);
-        let question =
-            Question { processor: p, structures, is_check, node, bounds, image, open, is_seen, answer };
+        let question = Question {
+            processor: p,
+            structures,
+            is_check,
+            node,
+            bounds,
+            whole,
+            image,
+            open,
+            is_seen,
+            answer,
+        };
         self.questions.push(question);
         let number = self.questions.len() - 1;
         if ground == Ground::CrossesNear {
@@ -460,8 +472,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     /// Where what stands for a structure falls in the image and how near it comes; nowhere if that decides.
     fn image(&self, bounds: &Aabb<S::Vector>, whole: &Aabb<S::Vector>) -> (BoxImage, Ground) {
         let near = self.view.eye.near;
-        let nowhere =
-            BoxImage { corners_px: [[0.0; 2]; 8], pixels: PixelRect::default(), nearest: 1.0 / near };
+        let nowhere = BoxImage { pixels: PixelRect::default(), nearest: 1.0 / near };
         let footprint = match self.machine.query {
             Volume::Faces => footprint(self.view, &self.projection, bounds),
             // It is about the wholes already.
@@ -480,7 +491,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     /// The shortcut of Section 5.3: if a box lies behind the farthest depth of all its regions, that of the
     /// closest one.
-    fn behind_farthest(&self, p: u16, regions: &[u32], nearest: f32) -> Option<(PyramidCell, f32)> {
+    fn behind_farthest(&self, p: u16, regions: &[u32], nearest: f32) -> Option<Decisive> {
         if !self.machine.farthest_first {
             return None;
         }
@@ -489,7 +500,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         let told = &self.processors[p as usize].farthest;
         let farthest = |r: u32| told.get(r as usize).copied().unwrap_or(0.0);
         let closest = regions.iter().copied().min_by(|&a, &b| farthest(a).total_cmp(&farthest(b)))?;
-        (nearest < farthest(closest)).then(|| (self.screen.cell(closest), farthest(closest)))
+        let held = farthest(closest);
+        (nearest < held).then(|| Decisive { cell: self.screen.cell(closest), held, nearest })
     }
 
     /// A message arrives at the renderer that it is for, or waits for one that takes its region.
@@ -571,22 +583,19 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     }
     /// Compares a box with what is drawn in a region: whether any pixel of it is left on.
     fn compare(&mut self, question: usize, region: u32) -> bool {
-        let Question { image, bounds, node, answer: Answer { nearest, .. }, .. } = self.questions[question];
-        let window = self.screen.window(region);
+        let Question { image, bounds, whole, node, .. } = self.questions[question];
+        let pixels = image.pixels.intersection(self.screen.window(region));
         let lines = match self.machine.query {
-            Volume::Faces => |at| matches!(at, At::Whole | At::Compare).then_some(line::COMPARE_BOX),
+            Volume::Faces => |at| matches!(at, At::Compare).then_some(line::COMPARE_BOX),
             Volume::Sphere => |at| matches!(at, At::Compare).then_some(line::COMPARE_SPHERE),
         };
         let reporter = QueryReporter::new(node, lines, &mut *self.watch);
         // A departure: the paper's renderer compares all pixels at once and has no use for a pyramid (Section
         // 5). The answer is the same.
-        let mut query = Query::new(&mut *self.buffer, nearest, reporter);
+        let query = Query::new(&mut *self.buffer, image.nearest, reporter);
         let answer = match self.machine.query {
-            Volume::Faces => query.faces_in(&bounds, &image, self.view, window),
-            Volume::Sphere => {
-                query.face(0, &FaceImage::rectangle(image.pixels.intersection(window)));
-                query.answer
-            }
+            Volume::Faces => query.planes(&bounds, &whole, pixels),
+            Volume::Sphere => query.rectangle(pixels),
         };
         self.questions[question].answer.join(&answer);
         !answer.is_hidden
@@ -640,8 +649,10 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
         // All that is decided until it is left rests on this answer.
         self.watch.event(Event::Entered(node));
         self.line(line);
+        let is_by_planes = self.machine.query == Volume::Faces;
         self.watch.note(move || {
-            Evidence::Depth(DepthNote::Answered(Answered { node, bounds, pixels, answer, ground }))
+            let answered = Answered { node, bounds, pixels, answer, ground, is_by_planes };
+            Evidence::Depth(DepthNote::Answered(answered))
         });
         // Back where it was asked.
         match (is_check, is_seen) {

@@ -522,7 +522,8 @@ fn an_answer_says_what_it_rests_on() {
     let answer = |ground, is_hidden| {
         let answer = crate::culling::depth::Answer { is_hidden, nearest: 0.1, reads: 0, decisive: None };
         let (node, bounds, pixels) = (NodeId(3), scene.bounds(), crate::geometry::PixelRect::default());
-        let note = crate::culling::depth::Answered { node, bounds, pixels, answer, ground };
+        let is_by_planes = true;
+        let note = crate::culling::depth::Answered { node, bounds, pixels, answer, ground, is_by_planes };
         crate::method::Note::<Solid>::sentence(&DepthNote::Answered(note), &context)
     };
     assert_eq!(

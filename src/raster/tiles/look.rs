@@ -7,7 +7,7 @@
 //! at a time.
 //!
 //! Why no fragment of what the box holds is nearer than where it begins, in a cell grown by [`BESIDE_PX`]:
-//! the depth there is, but for [`DEPTH_TILT`] of it, that of a point of the box whose image is within half a
+//! the depth there is, but for [`DEPTH_SLACK`] of it, that of a point of the box whose image is within half a
 //! grid step of the pixel's center along each axis (see there); rounding in f32 adds less than as much again,
 //! which [`NEARER`] holds. Nor is it nearer than the nearest corner.
 //!
@@ -16,11 +16,11 @@
 
 use super::clusters::Boxes;
 use super::wide::{Wide, each};
-use crate::raster::DEPTH_TILT;
+use crate::raster::DEPTH_SLACK;
 use crate::raster::vertex::Camera;
 
 /// What a fragment may be nearer by than where its box begins there, as a factor.
-const NEARER: f64 = 1.0 + 2.0 * DEPTH_TILT;
+const NEARER: f64 = 1.0 + 2.0 * DEPTH_SLACK;
 /// By how much farther out a pixel's center may lie than the image of what is drawn there, pixels, and more
 /// than that for what is rounded of the image.
 const BESIDE_PX: f32 = 0.01;

@@ -111,7 +111,7 @@ pub fn office_stack(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, STACKED, DepthScale::Logarithmic);
     let caption = "The same step with the levels above each other, the image at the bottom: a query begins \
-                   at the finest cell that covers the face, and goes down where it must.";
+                   at the cells that cover the box, and goes down where it must.";
     Ok(maker.page(Paper::TwoColumns, "The z-pyramid over the image", cells(), caption, &content))
 }
 
