@@ -44,7 +44,9 @@ fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> 
             DVec3::new(rows[0].dot(r), rows[1].dot(r), rows[2].dot(r))
         });
         let [a, b, c]: [DVec3; 3] = corners.collect::<Vec<_>>().try_into().expect("three corners");
-        if a.z.max(b.z).max(c.z) < near {
+        let beyond = |axis: usize, sign: f64| [a, b, c].iter().all(|v| sign * v[axis] > v.z);
+        let is_beside = beyond(0, 1.0) || beyond(0, -1.0) || beyond(1, 1.0) || beyond(1, -1.0);
+        if a.z.max(b.z).max(c.z) < near || is_beside {
             continue;
         }
         // The pixels of its box, or all where it reaches behind the near plane.
@@ -77,27 +79,23 @@ fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> 
 
 #[test]
 fn what_pixels_show_agrees_with_exact_arithmetic() {
-    // Of ten views along the path those in which depth planes through snapped corners let faces that are seen
-    // nearly edge-on win whole rows: 259 and 271 pixels of a million, and now 4 and 16. In the city edges
-    // alone are moved.
-    for (source, numbers, least_share) in
-        [("generate:building", &[2, 7][..], 0.999_98), ("generate:city", &[2], 0.9999)]
-    {
+    // In this view of the building depth planes through snapped corners let faces that are seen nearly edge-on
+    // win whole rows: 259 pixels of a million, and 4 with planes through unsnapped ones. In the city snapping
+    // moves edges, and hardly anything else.
+    for (source, number, least_share) in [("generate:building", 2, 0.999_98), ("generate:city", 2, 0.9999)] {
         let Ok(AnyScene::Solid(scene)) = load(source, &LoadOptions::default(), &Quiet) else {
             panic!("{source} stands in space")
         };
         let path = &scene.paths()[0].views;
-        for &number in numbers {
-            let view = View { width: 1024, height: 1024, ..path[number * path.len() / 10] };
-            let exact = exact_items(&scene, &view);
-            let image = render(&scene, &view, scene.live());
-            let same = (0..exact.len())
-                .filter(|&at| pick(&image, at as u32 % view.width, at as u32 / view.width) == exact[at])
-                .count();
-            let share = same as f64 / exact.len() as f64;
-            assert!(share >= least_share, "{source}, view {number}: {share} of the pixels are alike");
-            assert!(exact.iter().flatten().count() > exact.len() / 2, "the view shows too little");
-        }
+        let view = View { width: 1024, height: 1024, ..path[number * path.len() / 10] };
+        let exact = exact_items(&scene, &view);
+        let image = render(&scene, &view, scene.live());
+        let same = (0..exact.len())
+            .filter(|&at| pick(&image, at as u32 % view.width, at as u32 / view.width) == exact[at])
+            .count();
+        let share = same as f64 / exact.len() as f64;
+        assert!(share >= least_share, "{source}, view {number}: {share} of the pixels are alike");
+        assert!(exact.iter().flatten().count() > exact.len() / 2, "the view shows too little");
     }
 }
 
