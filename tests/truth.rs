@@ -79,9 +79,9 @@ fn exact_items(scene: &Scene<Solid>, view: &View<Solid>) -> Vec<Option<PrimId>> 
 
 #[test]
 fn what_pixels_show_agrees_with_exact_arithmetic() {
-    // In this view of the building depth planes through snapped corners let faces seen nearly edge-on win whole
-    // rows: 259 pixels of a million, and 4 with planes through unsnapped ones. In the city snapping moves edges,
-    // and hardly anything else.
+    // In this view of the building depth planes through snapped corners let faces seen nearly edge-on win
+    // whole rows: 259 pixels of a million, and 4 with planes through unsnapped ones. In the city snapping
+    // moves edges, and hardly anything else.
     for (source, number, least_share) in [("generate:building", 2, 0.999_98), ("generate:city", 2, 0.9999)] {
         let Ok(AnyScene::Solid(scene)) = load(source, &LoadOptions::default(), &Quiet) else {
             panic!("{source} stands in space")
