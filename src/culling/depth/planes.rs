@@ -373,7 +373,7 @@ mod tests {
         }
         assert!(fragments > BOXES, "{fragments} fragments");
     }
-    /// Random boxes of each space. A million were tried as well.
+    /// Random boxes of each space.
     const BOXES: u32 = 20_000;
 
     #[test]

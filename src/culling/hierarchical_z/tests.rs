@@ -142,7 +142,7 @@ fn every_image_of_a_flight_with_jumps_is_the_plain_one() {
     flights::<Solid>(|c| c);
 }
 
-/// Also what is asked ahead: with small cubes and many shared primitives each way to ask would hide others,
+/// Also what is asked ahead: with small cubes and many shared primitives most answers are asked there,
 /// and the visible list after a frame holds the answer for every cube that was reached.
 #[test]
 fn threads_leave_no_trace() {
