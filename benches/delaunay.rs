@@ -2,10 +2,14 @@
 //!
 //! `cargo bench --bench delaunay`. One thread. Random points in a cube; centers of the cells of an octree
 //! that is refined toward a wavy surface, jittered and exact; and points on a sphere, where no grid helps.
-//! Every result has a hash.
+//! Every result has a hash. Before them, milliseconds in which a triangle across all cells is assigned to
+//! those that it meets.
 
+use cullscope::geometry::{CellId, Solid};
 use cullscope::index::Delaunay;
+use cullscope::index::tessellation::{Fineness, SimplexCells, Tessellation, Tried, vertex_octree};
 use cullscope::measure::timing::{median, timed};
+use cullscope::scene::{Parts, Scene};
 use glam::Vec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
@@ -53,6 +57,7 @@ fn octree(count: usize) -> Vec<(Vec3, f32)> {
 }
 
 fn main() {
+    across(&mut Random(Pcg32::new(3, 4)));
     let mut random = Random(Pcg32::new(1, 2));
     for size in SIZES {
         let octree = octree(size);
@@ -80,5 +85,42 @@ fn main() {
                 ms * 1e3 / size as f64
             );
         }
+    }
+}
+
+/// Triangles that are assigned.
+const ACROSS: usize = 200;
+
+/// Large triangles, from one side of a cube to the other, among the cells of 20,000 tiny ones.
+fn across(random: &mut Random) {
+    let tiny = |r: &mut Random| {
+        let at = r.point();
+        [at, at + (r.point() - 0.5) * 0.004, at + (r.point() - 0.5) * 0.004]
+    };
+    let points: Vec<Vec3> = (0..20_000).flat_map(|_| tiny(random)).collect();
+    let prims = (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let scene = Scene::<Solid>::new(Parts::simple("tiny", points, prims)).expect("a scene");
+    let large = |r: &mut Random| {
+        let inside = |p: Vec3| p * 0.96 + 0.02;
+        let [a, b, c] = [(); 3].map(|()| r.point());
+        [a.with_x(0.0), b.with_x(1.0), c.with_y(c.y.round())].map(inside)
+    };
+    let triangles: Vec<[Vec3; 3]> = (0..ACROSS).map(|_| large(random)).collect();
+    for leaf_share in [0.05, 0.02] {
+        let fineness = Fineness { leaf_share, ..Fineness::default() };
+        let boxes = vertex_octree(&scene, fineness, || false).expect("not cancelled");
+        let cells = SimplexCells::<Solid>::of_centers(&boxes, 1, &|| false).expect("not cancelled");
+        let (mut tried, mut met) = (Tried::default(), Vec::new());
+        let mut assign = || {
+            met.clear();
+            triangles.iter().for_each(|t| cells.meeting(t, CellId(0), &mut tried, &mut met));
+        };
+        let ms = median((0..ROUNDS).map(|_| timed(&mut assign).1).collect()) / ACROSS as f64;
+        let hash = met.iter().fold(0u64, |h, c| h.rotate_left(7) ^ u64::from(c.0));
+        println!(
+            "across {} tetrahedra: {ms:.3} ms a triangle, {} met by each, hash {hash:016x}",
+            cells.count(),
+            met.len() / ACROSS
+        );
     }
 }

@@ -26,7 +26,8 @@ pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};
 pub use overlap::{
-    segment_meets_box, segment_meets_triangle, triangle_meets_box, triangle_meets_tetrahedron,
+    Beside, beside_segment, beside_triangle, segment_meets_box, segment_meets_triangle, triangle_meets_box,
+    triangle_meets_tetrahedron,
 };
 pub use predicate::{insphere, orient2d, orient3d};
 pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, nearest_depth, project_box};

@@ -41,35 +41,68 @@ pub fn triangle_meets_tetrahedron(triangle: [Vec3; 3], tetrahedron: [Vec3; 4]) -
     let origin = tetrahedron[0].as_dvec3();
     let (t, c) = (triangle.map(|p| p.as_dvec3() - origin), tetrahedron.map(|p| p.as_dvec3() - origin));
     let sides = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
-    let error = error_3d(&t, &c);
-    // The triangle's plane first: of the cells around a large triangle it parts most that are apart, and of
-    // those that it cuts most lie over the inside of the triangle.
-    let normal = sides[0].cross(sides[1]);
-    let heights = c.map(|p| normal.dot(p - t[0]));
-    let [low, high] =
-        heights.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)]);
-    if low > error || high < -error {
-        return false;
-    }
-    if low < -error && high > error && is_over(&t, &sides, normal, &c) {
-        return true;
-    }
     let edges = [c[1] - c[0], c[2] - c[0], c[3] - c[0], c[2] - c[1], c[3] - c[1], c[3] - c[2]];
     let faces = [[0, 1], [1, 2], [2, 0], [3, 4]].into_iter().map(|[i, k]| edges[i].cross(edges[k]));
+    let normal = std::iter::once_with(|| sides[0].cross(sides[1]));
     let pairs = edges.into_iter().flat_map(|e| sides.map(|s| e.cross(s)));
-    meet(&t, &c, faces.chain(pairs), error)
+    meet(&t, &c, faces.chain(normal).chain(pairs), error_3d(&t, &c))
 }
 
-/// Whether all points lie over or under the inside of a triangle, by more than rounding: what a convex set of
-/// them has in the triangle's plane then lies in the triangle.
-fn is_over(triangle: &[DVec3; 3], sides: &[DVec3; 3], normal: DVec3, points: &[DVec3; 4]) -> bool {
-    // Products of four lengths, as those of `error_3d` are of three; each has one more rounding.
-    let size = triangle.iter().chain(points).fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
-    let error = 4.0 * ERROR * size * size * size * size;
-    (0..3).all(|k| {
-        let inward = normal.cross(sides[k]);
-        points.iter().all(|p| inward.dot(*p - triangle[k]) > error)
-    })
+/// Where a point lies in regard to a primitive of a dimension less than space, beyond doubt: none, one or two
+/// of three facts. By those of its corners most convex cells beside a large primitive are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Beside(u8);
+
+impl Beside {
+    /// Before its plane (line).
+    const ABOVE: u8 = 1;
+    /// Behind its plane.
+    const BELOW: u8 = 2;
+    /// Over or under the inside of it.
+    const OVER: u8 = 4;
+
+    fn of(height: f64, error: f64, is_over: bool) -> Self {
+        let over = if is_over { Self::OVER } else { 0 };
+        let side = if height > error { Self::ABOVE } else { Self::BELOW };
+        Self(if height.abs() > error { side | over } else { over })
+    }
+    /// Whether a convex cell with corners here meets the primitive; `None` if that is not told by them.
+    pub fn meet(corners: impl Iterator<Item = Self>) -> Option<bool> {
+        let (all, any) = corners.fold((u8::MAX, 0), |(all, any), c| (all & c.0, any | c.0));
+        // What the plane has of a cell that it cuts lies between the corners, so within the primitive.
+        let is_cut = any & (Self::ABOVE | Self::BELOW) == Self::ABOVE | Self::BELOW;
+        if all & (Self::ABOVE | Self::BELOW) != 0 {
+            return Some(false);
+        }
+        (is_cut && all & Self::OVER != 0).then_some(true)
+    }
+}
+
+/// The slack of [`Beside`]: so much more than [`ERROR`] that what it says the separating axes say too, though
+/// those take other origins.
+const BESIDE: f64 = 64.0 * ERROR;
+
+/// Where a point lies in regard to a triangle.
+pub fn beside_triangle(triangle: [Vec3; 3], point: Vec3) -> Beside {
+    let origin = triangle[0].as_dvec3();
+    let (t, p) = (triangle.map(|p| p.as_dvec3() - origin), point.as_dvec3() - origin);
+    let sides = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let normal = sides[0].cross(sides[1]);
+    let size = t.iter().chain([&p]).fold(0.0, |m: f64, p| m.max(p.abs().max_element()));
+    let error = BESIDE * size * size * size;
+    // Products of four lengths, where a height is one of three.
+    let is_over = (0..3).all(|k| normal.cross(sides[k]).dot(p - t[k]) > error * size);
+    Beside::of(normal.dot(p), error, is_over)
+}
+
+/// Where a point lies in regard to a segment of the plane.
+pub fn beside_segment(segment: [Vec2; 2], point: Vec2) -> Beside {
+    let origin = segment[0].as_dvec2();
+    let (along, p) = (segment[1].as_dvec2() - origin, point.as_dvec2() - origin);
+    let size = along.abs().max(p.abs()).max_element();
+    let error = BESIDE * size * size;
+    let (at, end) = (along.dot(p), along.dot(along));
+    Beside::of(along.perp().dot(p), error, at > error && end - at > error)
 }
 
 /// Whether a triangle meets a box.
@@ -165,7 +198,7 @@ mod tests {
     #[test]
     fn triangles_meet_tetrahedra_as_exact_signs_say() {
         let mut dice = Dice::new(1);
-        let (mut met, mut apart) = (0, 0);
+        let (mut met, mut apart, mut told_met, mut told_apart) = (0, 0, 0, 0);
         for case in 0..30_000 {
             let (t, c) =
                 ([0; 3].map(|_| dice.grid_point::<Vec3>(12)), [0; 4].map(|_| dice.grid_point::<Vec3>(12)));
@@ -173,12 +206,17 @@ mod tests {
             let t = if case % 2 == 0 { t } else { t.map(|p| p * 6.0 - 30.0) };
             let Some(want) = meets_by_signs(t, c) else { continue };
             assert_eq!(triangle_meets_tetrahedron(t, c), want, "case {case}: {t:?} {c:?}");
+            if let Some(told) = Beside::meet(c.iter().map(|p| beside_triangle(t, *p))) {
+                assert_eq!(told, want, "case {case}: {t:?} {c:?}");
+                *if want { &mut told_met } else { &mut told_apart } += 1;
+            }
             // The same far away and small: coordinates of the grid stay exact.
             let moved = |p: Vec3| (p + 1024.0) * 0.001_953_125;
             assert_eq!(triangle_meets_tetrahedron(t.map(moved), c.map(moved)), want, "case {case}");
             *if want { &mut met } else { &mut apart } += 1;
         }
         assert!(met > 1000 && apart > 1000, "{met} met, {apart} apart");
+        assert!(told_met > 100 && told_apart > 1000, "by corners alone: {told_met} met, {told_apart} apart");
     }
 
     #[test]
@@ -221,6 +259,9 @@ mod tests {
             let inside = (0..3).all(|i| turn(t[i], t[(i + 1) % 3], s[0]) * turn(t[0], t[1], t[2]) > 0.0);
             let want = inside || edges.contains(&true);
             assert_eq!(segment_meets_triangle(s, t), want, "case {case}: {s:?} {t:?}");
+            if let Some(told) = Beside::meet(t.iter().map(|p| beside_segment(s, *p))) {
+                assert_eq!(told, want, "case {case}: {s:?} {t:?}");
+            }
             *if want { &mut met } else { &mut apart } += 1;
             let (p, q) = (dice.grid_point::<Vec2>(12), dice.grid_point::<Vec2>(12));
             let bounds = Aabb { min: p.min(q), max: p.max(q) + 1.0 };

@@ -23,7 +23,7 @@ pub use space::Cellular;
 pub use vertex_kd_tree::vertex_kd_tree;
 pub use vertex_octree::vertex_octree;
 
-use crate::geometry::{Aabb, CellId, Space, Vector};
+use crate::geometry::{Aabb, Beside, CellId, Space, Vector};
 use crate::scene::Scene;
 
 /// The other side of a face.
@@ -80,12 +80,15 @@ pub struct Tried {
     // cells, and looking a cell up takes the same time however many the primitive meets.
     last: Vec<u32>,
     number: u32,
+    /// Where each corner of cells lies in regard to the primitive, with the primitive's number.
+    beside: Vec<(u32, Beside)>,
 }
 
 impl Tried {
     /// Begins with another primitive, of so many cells.
     fn begin(&mut self, cells: usize) {
         if self.last.len() != cells || self.number == u32::MAX {
+            self.beside.clear();
             self.last.clear();
             self.last.resize(cells, 0);
             self.number = 0;

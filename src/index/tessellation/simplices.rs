@@ -12,7 +12,7 @@ use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
 use super::{Adjacency, BoxCells, Cellular, Exit, Neighbor, Tessellation, Tried};
-use crate::geometry::{Aabb, CellId, Vector};
+use crate::geometry::{Aabb, Beside, CellId, Vector};
 
 /// No neighbor.
 pub(super) const NONE: u32 = u32::MAX;
@@ -132,6 +132,20 @@ impl<S: Cellular> SimplexCells<S> {
     fn side(&self, cell: &Simplex, face: usize, point: S::Vector) -> f64 {
         S::side(&self.face(cell, face)[..S::CORNERS], point)
     }
+    /// Whether a primitive meets a cell, if where its corners lie says so. Each corner is looked at once for
+    /// a primitive, and has some twenty cells.
+    fn told_by_corners(&self, prim: &[S::Vector], cell: CellId, tried: &mut Tried) -> Option<bool> {
+        tried.beside.resize(self.points.len(), Default::default());
+        let number = tried.number;
+        let vertices = self.cells[cell.at()].vertices;
+        Beside::meet(vertices[..Self::CORNERS].iter().map(|&vertex| {
+            let known = &mut tried.beside[vertex as usize];
+            if known.0 != number {
+                *known = (number, S::beside(prim, self.points[vertex as usize]));
+            }
+            known.1
+        }))
+    }
     #[inline]
     pub(super) fn corners(&self, cell: CellId) -> [S::Vector; 4] {
         let vertices = self.cells[cell.at()].vertices;
@@ -223,9 +237,11 @@ impl<S: Cellular> Tessellation<S> for SimplexCells<S> {
                 }
                 let sides = FACES[S::Vector::AXES - 2][face].map(|k| corners[k]);
                 let reaches = |p: &S::Vector| S::side(&sides[..S::CORNERS], *p) <= 0.0;
-                if seen - start >= MANY || prim.iter().any(reaches) {
+                let is_large = seen - start >= MANY;
+                if is_large || prim.iter().any(reaches) {
                     tried.add(next);
-                    if S::meets_simplex(prim, &self.corners(next)) {
+                    let told = if is_large { self.told_by_corners(prim, next, tried) } else { None };
+                    if told.unwrap_or_else(|| S::meets_simplex(prim, &self.corners(next))) {
                         to.push(next);
                     }
                 }

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use super::simplices::{NONE, Simplex};
-use crate::geometry::{self, Aabb, Flat, Solid, Space};
+use crate::geometry::{self, Aabb, Beside, Flat, Solid, Space};
 use crate::index::Delaunay;
 
 /// A space that can be divided into cells.
@@ -13,6 +13,8 @@ pub trait Cellular: Space {
     fn meets_box(prim: &[Self::Vector], bounds: &Aabb<Self::Vector>) -> bool;
     /// Whether a primitive meets a simplex, of which the first `AXES + 1` corners count.
     fn meets_simplex(prim: &[Self::Vector], simplex: &[Self::Vector; 4]) -> bool;
+    /// Where a point lies in regard to a primitive.
+    fn beside(prim: &[Self::Vector], point: Self::Vector) -> Beside;
     /// The Delaunay triangulation of finite points; no simplex if they do not span the space. `None` when
     /// cancelled.
     fn triangulate(points: &[Self::Vector], cancelled: &dyn Fn() -> bool) -> Option<Vec<Simplex>>;
@@ -26,6 +28,10 @@ impl Cellular for Flat {
     #[inline]
     fn meets_simplex(prim: &[Vec2], [a, b, c, _]: &[Vec2; 4]) -> bool {
         geometry::segment_meets_triangle([prim[0], prim[1]], [*a, *b, *c])
+    }
+    #[inline]
+    fn beside(prim: &[Vec2], point: Vec2) -> Beside {
+        geometry::beside_segment([prim[0], prim[1]], point)
     }
     fn triangulate(points: &[Vec2], _: &dyn Fn() -> bool) -> Option<Vec<Simplex>> {
         // The crate refuses numbers whose squares vanish; they are as good as 0 beside any cell that has an
@@ -60,6 +66,10 @@ impl Cellular for Solid {
     #[inline]
     fn meets_simplex(prim: &[Vec3], simplex: &[Vec3; 4]) -> bool {
         geometry::triangle_meets_tetrahedron([prim[0], prim[1], prim[2]], *simplex)
+    }
+    #[inline]
+    fn beside(prim: &[Vec3], point: Vec3) -> Beside {
+        geometry::beside_triangle([prim[0], prim[1], prim[2]], point)
     }
     fn triangulate(points: &[Vec3], cancelled: &dyn Fn() -> bool) -> Option<Vec<Simplex>> {
         let made = Delaunay::new(points.to_vec(), cancelled)?;

@@ -240,6 +240,34 @@ fn primitives_are_assigned_to_the_cells_they_meet() {
 }
 
 #[test]
+fn what_spans_many_cells_is_assigned_by_corners_as_by_the_plain_test() {
+    fn check<S: Cellular>(seed: u64, n: u32, many: usize) {
+        let mut parts = Arc::unwrap_or_clone(samples::soup::<S>(seed, n)).into_parts();
+        // Some reach across the whole scene.
+        let mut dice = Dice::new(seed);
+        for prim in parts.prims.iter().flatten().take(40) {
+            for &corner in prim.as_ref() {
+                parts.points[corner as usize] = dice.vector(10.0);
+            }
+        }
+        let scene = Arc::new(Scene::new(parts).expect("a scene"));
+        let fine = Fineness { leaf_share: 0.01, ..FINE };
+        let boxes = vertex_octree(&scene, fine, || false).expect("not cancelled");
+        let cells = SimplexCells::<S>::of_centers(&boxes, 4, &|| false).expect("not cancelled");
+        is_assigned(&scene, "large", &cells, &|p, c| S::meets_simplex(p, &cells.corners(c)));
+        let made = Assignment::new(&scene, &cells, &Quiet).expect("not cancelled");
+        let holds = |cell: &CellId, prim: PrimId| {
+            made.shared(*cell).iter().any(|shared| made.all_shared()[*shared as usize] == prim)
+        };
+        let met = |prim: &PrimId| all(cells.count()).filter(|cell| holds(cell, *prim)).count();
+        let most = scene.live().iter().take(40).map(met).max();
+        assert!(most.is_some_and(|met| met > many), "some meet many cells: {most:?}");
+    }
+    (0..3).for_each(|seed| check::<Flat>(seed, 2000, 64));
+    (0..3).for_each(|seed| check::<Solid>(seed, 600, 200));
+}
+
+#[test]
 fn no_leaf_is_divided_below_the_share() {
     let scene = samples::soup::<Solid>(9, 3000);
     for (share, levels) in [(0.05, 5), (0.3, 2), (1.1, 0)] {
