@@ -23,6 +23,9 @@ use crate::scene::{AnyScene, Part, Progress, Scene};
 pub trait World: Methods + Drawable {}
 impl<S: Methods + Drawable> World for S {}
 
+/// Key of a method, and all its parameters.
+type Ran = (String, Vec<(Knob, KnobValue)>);
+
 /// What an experiment is run with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
@@ -34,8 +37,8 @@ pub struct Setup {
     pub check_every: usize,
     /// Size of the image, if not that of the path.
     pub size_px: Option<[u32; 2]>,
-    /// What was run so far: keys of methods, and all their parameters.
-    pub ran: RefCell<Vec<(String, Vec<(Knob, KnobValue)>)>>,
+    /// What was run so far.
+    pub ran: RefCell<Vec<Ran>>,
 }
 
 impl Default for Setup {

@@ -292,7 +292,7 @@ mod tests {
     /// A box in front of the eye. Many have a corner whose image lies close to a pixel's center.
     fn random_box<S: Drawable>(dice: &mut Dice, view: &View<S>, rays: &Rays) -> Aabb<S::Vector> {
         let pixel = [view.width, view.height].map(|pixels| f64::from(dice.below(pixels)) + 0.5);
-        let off = f64::from([0.0, 1.0 / 300.0, 20.0][dice.below(3) as usize]);
+        let off: f64 = [0.0, 1.0 / 300.0, 20.0][dice.below(3) as usize];
         let at = pixel.map(|p| p + off * f64::from(dice.signed(1.0)));
         let at = if S::CORNERS == 2 { [at[0], 0.5] } else { at };
         let (ray, depth) = (ray(rays, at), f64::from(dice.between(0.3, 20.0)));

@@ -5,11 +5,11 @@
 //!
 //! 1. [`Tiles::clear`] for a view, [`Tiles::draw`] clusters of occluders front to back. A cluster that is
 //!    hidden so far is left out whole, before any of its points is touched. Of the rest back faces go by
-//! stored    planes; what is left is set up many at a time (`setup`) and put into windows of 32×16 pixels
-//! (`window`)    by the masked update of Hasselgren, Andersson and Akenine-Möller, "Masked Software Occlusion
-//! Culling",    2016, <https://doi.org/10.2312/hpg.20161189>. A tile of 8×4 pixels knows a depth that nothing
-//! in it is    farther than, a nearer layer that is begun with the mask of its pixels, and what was ever
-//! covered.
+//!    stored planes; what is left is set up many at a time (`setup`) and put into windows of 32×16 pixels
+//!    (`window`) by the masked update of Hasselgren, Andersson and Akenine-Möller, "Masked Software Occlusion
+//!    Culling", 2016, <https://doi.org/10.2312/hpg.20161189>. A tile of 8×4 pixels knows a depth that nothing
+//!    in it is farther than, a nearer layer that is begun with the mask of its pixels, and what was ever
+//!    covered.
 //! 2. [`Tiles::hides_all`]: a box is compared with blocks of 32×16 pixels, then tiles, by its front and back
 //!    planes (`query`). Where tiles do not decide, they are shaded exactly from the primitives that their bin
 //!    kept (`resolve`).

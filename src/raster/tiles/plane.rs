@@ -5,15 +5,15 @@
 //! these bounds of it:
 //!
 //! - The half's own plane, through the same unsnapped corners, differs by nothing to the bend, on one side;
-//! and   by up to a sixth more, on both, up to a step outside it: the height of each half is at least 8/√2
-//! steps on   the grid, and more than four before snapping. [`BENT`] of the bend holds both, with the next.
+//!   and by up to a sixth more, on both, up to a step outside it: the height of each half is at least 8/√2
+//!   steps on the grid, and more than four before snapping. [`BENT`] of the bend holds both, with the next.
 //! - Centers lie up to half a step outside the half along each axis, and its depth is cut to that of its
-//! corners   there, or comes from a plane through snapped corners, which has the depth of a point half a step
-//! away. The   change over half a step ([`OUTSIDE`]) holds this.
+//!   corners there, or comes from a plane through snapped corners, which has the depth of a point half a step
+//!   away. The change over half a step ([`OUTSIDE`]) holds this.
 //! - f32, here and in the exact formula, rounds by a few 2⁻²⁴ of the changes over the primitive and the
-//! windows   around it, of the tiles' bounds, and of the depth: 2⁻²⁰ of both is added. Where rounding may
-//! make up a sixteenth of the area by   which slopes are divided, or a half is lower than that, nothing is
-//! said of slopes: the corners' own depths   are bounds.
+//!   windows around it, of the tiles' bounds, and of the depth: 2⁻²⁰ of both is added. Where rounding may
+//!   make up a sixteenth of the area by which slopes are divided, or a half is lower than that, nothing is
+//!   said of slopes: the corners' own depths are bounds.
 
 use super::edges::center;
 use super::ready::{Corners, Pixels, Ready, SMALL, greatest4, least4};

@@ -4,10 +4,10 @@
 //!
 //! 1. its nearest depth against the farthest of each block of 32×16 pixels, many blocks at a time;
 //! 2. where it begins in those blocks ([`super::look`]) against the same; and whether it surely shows in one:
-//! it    covers the block and begins before all that is drawn there;
+//!    it covers the block and begins before all that is drawn there;
 //! 3. the same for tiles;
 //! 4. of the tiles that are left, pixels that nothing covers; then a plane that nothing in the tile is
-//! farther    than, and exact depths, each worked out when it is first asked for (`resolve`).
+//!    farther than, and exact depths, each worked out when it is first asked for (`resolve`).
 
 use super::clusters::{Boxes, Cluster, Clusters};
 use super::look::{Asked, BLOCK, Look, Span, TILE};

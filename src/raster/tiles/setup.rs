@@ -6,7 +6,7 @@
 //!    aside, the others sorted by size into three rings, so that set-up always has full lanes
 //!    ([`Draw::sort`]).
 //! 4. Sixteen of a ring are set up ([`Draw::set_up`]): edges (`edges`), depth plane with a bound on its
-//! rounding    (`plane`).
+//!    rounding (`plane`).
 
 use super::Tiles;
 use super::bins::Batch;

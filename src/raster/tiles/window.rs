@@ -9,12 +9,11 @@
 //! It is exact. A window's rows are 33 columns wide at most: farther crossings fill or empty a row whatever
 //! their fraction. For |q| ≤ 33 in f32, `e + ex·row` and `ey` are whole numbers below 2²⁴; 1/ey and the
 //! product are rounded by 2⁻²⁴ each, so q errs by less than 33·2⁻²³, and the sum with the bias ν = 2⁻¹⁷ by
-//! 2⁻¹⁹ more:
-//! 5.9·10⁻⁶ in all, less than ν = 7.6·10⁻⁶. A q that is no whole number lies at least 1/|ey| ≥ 2⁻¹⁶ =
-//! 15.3·10⁻⁶ from one, more than both together. So `⌈q − ν⌉` (edges on the left) takes whole numbers as they
-//! are and others up, and `⌈q + ν⌉` (on the right) is one more than the last pixel inside. Values beyond 2²⁴
-//! are rounded, and lie 240 columns and more from the edge. Above 256 pixels the same in doubles: q errs by
-//! less than 2⁻³⁶, ν is 2⁻²⁶, and 1/|ey| ≥ 2⁻²³.
+//! 2⁻¹⁹ more: 5.9·10⁻⁶ in all, less than ν = 7.6·10⁻⁶. A q that is no whole number lies at least 1/|ey| ≥
+//! 2⁻¹⁶ = 15.3·10⁻⁶ from one, more than both together. So `⌈q − ν⌉` (edges on the left) takes whole numbers
+//! as they are and others up, and `⌈q + ν⌉` (on the right) is one more than the last pixel inside. Values
+//! beyond 2²⁴ are rounded, and lie 240 columns and more from the edge. Above 256 pixels the same in doubles:
+//! q errs by less than 2⁻³⁶, ν is 2⁻²⁶, and 1/|ey| ≥ 2⁻²³.
 //!
 //! **The update** is that of Hasselgren, Andersson and Akenine-Möller, "Masked Software Occlusion Culling",
 //! 2016, Section 3.2, with one change: a primitive that covers a tile whole keeps the layer that was begun
