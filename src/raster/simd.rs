@@ -24,10 +24,8 @@ impl Isa {
     pub fn best() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            // F for the arithmetic, DQ for masks from signs, BW for bytes, VL since compilers mix in its
-            // shorter vectors.
+            // F for the arithmetic, DQ for masks from signs, VL since compilers mix in its shorter vectors.
             if is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512bw")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl")
             {

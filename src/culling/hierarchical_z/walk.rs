@@ -278,6 +278,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         } else {
             self.line(line::OBSCURED);
             let ahead = self.asked.get(id.at()).copied().flatten();
+            // Threads must not decide anything: what was asked ahead is what would be asked here.
+            debug_assert!(ahead.is_none_or(|ahead| ahead == self.is_obscured(id)), "asked ahead: {id:?}");
             let is_obscured = ahead.unwrap_or_else(|| self.is_obscured(id));
             self.line(line::OBSCURED);
             if is_obscured {

@@ -207,3 +207,30 @@ fn parts_of_a_primitive_are_not_judged() {
     }
     assert!(cut > 100, "{cut} show and are cut");
 }
+
+/// A wall that reaches beyond the border of the grid on all sides is cut to a square, and that to two triangles.
+/// One is nearer at a corner than what hides the whole image, the other nowhere: hidden by itself, it says
+/// nothing of the wall.
+#[test]
+fn the_far_part_of_a_wall_does_not_hide_the_wall() {
+    let view = straight_view(64, 0.1, 1000.0);
+    // 1/w = 0.1 − s (x + y), with x and y from −1 to 1 over the image; the border of the grid is at ±512.
+    let wall = [(530.0, 530.0), (-5000.0, 530.0), (530.0, -5000.0)].map(|(x, y): (f64, f64)| {
+        let w = 1.0 / (0.1 - 0.00009 * (x + y));
+        Vec3::new((x * w) as f32, (y * w) as f32, -w as f32)
+    });
+    let curtain = [(-8.0, -8.0), (-8.0, 136.0), (136.0, -8.0)].map(|(x, y)| at_px(64, x, y, 1.0 / 0.105));
+    let scene = soup(&[curtain, wall]);
+    assert_eq!(Solid::extent(&scene, &view, PrimId(1), &Options::default()), None, "it is cut");
+    for threads in [1, 3] {
+        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
+        pyramid.clear(64, 64, 1.0 / view.eye.far);
+        for prim in [PrimId(0), PrimId(1)] {
+            let sieve = Sieve { pyramid: &mut pyramid, hidden: &mut hidden };
+            let options = Options { threads, ..Options::default() };
+            Solid::sift(&mut target, sieve, &scene, &view, &[prim], &options);
+            pyramid.refresh_all(&target.depth);
+        }
+        assert_eq!(hidden, [], "{threads} threads");
+    }
+}

@@ -168,19 +168,6 @@ impl Clusters {
         all.boxes = Boxes::new(boxes);
         all
     }
-    /// How many triangles and quadrangles there are.
-    pub fn prim_count(&self) -> usize {
-        self.clusters.iter().map(|c| c.prims.len()).sum()
-    }
-    /// How many clusters.
-    pub fn len(&self) -> usize {
-        self.clusters.len()
-    }
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.clusters.is_empty()
-    }
-
     /// Appends a cluster and returns its bounds. `own`: scratch, a number for each point, all unset.
     fn add(&mut self, points: &[Vec3], prims: &[Prim], own: &mut [u32]) -> Aabb<Vec3> {
         let (first_point, first_prim) = (self.points[0].len(), self.words.len());

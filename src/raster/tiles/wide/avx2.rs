@@ -6,9 +6,9 @@ use std::arch::x86_64::*;
 use super::{Line, TRANSPOSED, Vertex, Wide, Work};
 
 /// # Safety
-/// The machine has AVX2, and with it BMI, LZCNT and POPCNT.
+/// The machine has AVX2.
 #[inline(never)]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+#[target_feature(enable = "avx2")]
 pub(super) unsafe fn run<W: Work>(work: W) -> W::Output {
     work.run(Avx2(()))
 }

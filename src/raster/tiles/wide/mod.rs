@@ -1,8 +1,8 @@
-//! Eight or sixteen lanes: the operations that the tiles of depth are drawn and asked with.
+//! Lanes: the operations that the tiles of depth are drawn and asked with.
 //!
-//! One kernel, written once over [`Wide`], runs on AVX-512 (16 lanes), AVX2 (8) and anywhere (8, in arrays).
-//! All give the same bits: no operation is fused, none is approximate, and lanes are independent. Masks hold
-//! one truth a lane.
+//! One kernel, written once over [`Wide`], runs on AVX2 and anywhere, in arrays; eight lanes at a time, on
+//! machines with wider registers too. Both give the same bits: no operation is fused, none is approximate, and
+//! lanes are independent. Masks hold one truth a lane.
 #![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "instruction sets"))]
 
 /// An array from an expression in a number, written out: closures are not compiled for the instruction set.
@@ -27,9 +27,9 @@ macro_rules! each {
 }
 pub(in crate::raster) use each;
 
-// The contract of the tokens of both SIMD sets, on which every unsafe block of theirs rests:
+// The contract of a token of an instruction set, on which every unsafe block of its module rests:
 //
-// 1. A token proves its instruction set. Its field is private to its module, and only `run` there makes one,
+// 1. It proves its instruction set. Its field is private to its module, and only `run` there makes one,
 //    whose callers promise the set. Intrinsics that take and give values, as most do, need nothing else.
 // 2. What reads or writes memory first takes a part of the slice that is as long as the access, which panics
 //    where the slice is too short. Unaligned forms are used, but for lines, which are aligned to 64 bytes.
@@ -54,8 +54,6 @@ const TRANSPOSED: [u8; 16] = [0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
 mod portable;
 
 use super::Line;
@@ -73,12 +71,9 @@ pub(in crate::raster) fn run<W: Work>(isa: Isa, work: W) -> W::Output {
     // Sets are ordered by width, and a machine with one has all narrower ones.
     match isa.min(Isa::best()) {
         Isa::Portable => work.run(portable::Portable),
-        // SAFETY: `best` found the instruction set.
+        // SAFETY: `best` found it, or the wider one that a machine has besides.
         #[cfg(target_arch = "x86_64")]
-        Isa::Avx2 => unsafe { avx2::run(work) },
-        // SAFETY: `best` found the instruction set.
-        #[cfg(target_arch = "x86_64")]
-        Isa::Avx512 => unsafe { avx512::run(work) },
+        Isa::Avx2 | Isa::Avx512 => unsafe { avx2::run(work) },
         #[cfg(not(target_arch = "x86_64"))]
         _ => work.run(portable::Portable),
     }
@@ -86,7 +81,7 @@ pub(in crate::raster) fn run<W: Work>(isa: Isa, work: W) -> W::Output {
 
 /// Lanes of floats `F`, integers `I`, doubles `D` and truths `M`.
 pub(in crate::raster) trait Wide: Copy {
-    /// How many: 8 or 16.
+    /// How many: a divisor of 16, and at least 8.
     const N: usize;
     type F: Copy;
     type I: Copy;
