@@ -46,8 +46,8 @@ const STEEPEST: f32 = 1e28;
 const FLAT: f64 = 1.0 / (1u64 << 28) as f64;
 
 /// By how much a fragment may be nearer than the point of its primitive that is drawn there, relative to that
-/// point's depth: whoever bounds fragments by the geometry allows for it. The tilt of planes, and what rounding
-/// may add.
+/// point's depth: whoever bounds fragments by the geometry allows for it. The tilt of planes, and what
+/// rounding may add.
 pub const DEPTH_SLACK: f64 = DEPTH_TILT + ROUNDED;
 /// Half of it is for [`lowered`], the rest for corners, sums and bounds in f32.
 const ROUNDED: f64 = 1.0 / (1 << 17) as f64;
@@ -159,8 +159,8 @@ fn unsnapped(from: &Vertex, to: &Vertex) -> [f64; 2] {
     [x + (b[0] - a[0]), y + (b[1] - a[1])]
 }
 
-/// Slopes of the plane that rises by two amounts on the ways to two places, one over twice the area that these
-/// span, and whether that is clear.
+/// Slopes of the plane that rises by two amounts on the ways to two places, one over twice the area that
+/// these span, and whether that is clear.
 #[inline(always)]
 fn slopes([p, q]: [[f64; 2]; 2], rise: [f64; 2]) -> ([f64; 2], f64, bool) {
     // Cramer's rule in f64. Between snapped places products and area are exact.

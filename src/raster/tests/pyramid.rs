@@ -208,7 +208,7 @@ fn parts_of_a_primitive_are_not_judged() {
     assert!(cut > 100, "{cut} show and are cut");
 }
 
-/// A wall that reaches beyond the border of the grid on all sides is cut to a square, and that to two triangles.
+/// A wall that reaches beyond the border of the grid on all sides is cut to a square, and that in two.
 /// One is nearer at a corner than what hides the whole image, the other nowhere: hidden by itself, it says
 /// nothing of the wall.
 #[test]

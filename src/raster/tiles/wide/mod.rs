@@ -1,8 +1,8 @@
 //! Lanes: the operations that the tiles of depth are drawn and asked with.
 //!
 //! One kernel, written once over [`Wide`], runs on AVX2 and anywhere, in arrays; eight lanes at a time, on
-//! machines with wider registers too. Both give the same bits: no operation is fused, none is approximate, and
-//! lanes are independent. Masks hold one truth a lane.
+//! machines with wider registers too. Both give the same bits: no operation is fused, none is approximate,
+//! and lanes are independent. Masks hold one truth a lane.
 #![cfg_attr(target_arch = "x86_64", expect(unsafe_code, reason = "instruction sets"))]
 
 /// An array from an expression in a number, written out: closures are not compiled for the instruction set.
