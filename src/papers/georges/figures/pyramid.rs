@@ -22,9 +22,9 @@ const STACKED: usize = 1;
 fn cells() -> Vec<Entry> {
     let entry = |role, label: &str| entry(role, Swatch::Line, label);
     vec![
-        entry(Role::Hidden, "the face lies behind the cell"),
+        entry(Role::Hidden, "what is asked for lies behind the cell"),
         entry(Role::Undecided, "it may not: the cells below are read"),
-        entry(Role::Visible, "a sample shows the face"),
+        entry(Role::Visible, "a sample shows it"),
         entry(Role::Current, "read last"),
     ]
 }
