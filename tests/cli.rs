@@ -803,13 +803,18 @@ fn occlusion_is_measured_on_an_input_that_others_read_too() {
     fs::write(folder.join("cams.txt"), camera).expect("a written file");
     let call =
         ["bench", "occlusion", "--mesh", "wall.obj", "--boxes", "boxes.txt", "--cams", "cams.txt", "--size"];
-    let said = done(&folder, &[&call[..], &["64x64", "--repeat", "2", "--dump-vis", "vis"]].concat());
-    assert!(
-        said.starts_with("RESULT render_ms=")
-            && said.contains(" pct_occluded_of_infrustum=33.333 false=0 hash="),
-        "{said}"
-    );
-    assert_eq!(fs::read(folder.join("vis")).expect("a written file"), [1, 0, 3, 0]);
+    for method in ["hierarchical-z", "tiles"] {
+        let more = ["64x64", "--method", method, "--repeat", "2", "--dump-vis", "vis"];
+        let said = done(&folder, &[&call[..], &more].concat());
+        assert!(
+            said.starts_with("RESULT render_ms=")
+                && said.contains(" pct_occluded_of_infrustum=33.333 false=0 hash="),
+            "{method}: {said}"
+        );
+        assert_eq!(fs::read(folder.join("vis")).expect("a written file"), [1, 0, 3, 0], "{method}");
+    }
+    let set = ["64x64", "--method", "tiles", "--set", "coherence=true"];
+    assert!(refused(&folder, &[&call[..], &set].concat(), 2).contains("tiles have no parameters"));
     let wide = refused(&folder, &[&call[..], &["64x32"]].concat(), 1);
     assert!(wide.contains("cams.txt line 1") && wide.contains("square"), "{wide}");
     fs::write(folder.join("cams.txt"), "1 2 3\n").expect("a written file");
