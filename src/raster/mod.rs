@@ -38,7 +38,7 @@ pub use simd::Isa;
 pub use srgb::{srgb, srgb_bytes};
 pub use stand_in::StandIn;
 pub use through::look_through;
-pub use tiles::{Answer, Boxes, Clusters, Tiles};
+pub use tiles::{Answer, Boxes, Clusters, Fate, Hears, How, Outcome, Question, Read, Tiles};
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::{Scene, Surfaces};

@@ -47,12 +47,25 @@ pub struct PyramidCell {
 }
 
 impl PyramidCell {
+    /// Levels of [`super::Tiles`], above all of a pyramid: tiles of 8×4 pixels and blocks of 32×16.
+    pub const TILE: u8 = 32;
+    pub const BLOCK: u8 = 33;
+
+    /// Sides of the cells of a level in pixels, as shifts.
+    pub fn shifts(level: u8) -> [u32; 2] {
+        match level {
+            Self::TILE => [3, 2],
+            Self::BLOCK => [5, 4],
+            _ => [level.into(); 2],
+        }
+    }
     /// The pixels that it stands for, in an image of this size.
     pub fn pixels(self, width: u32, height: u32) -> PixelRect {
-        let along = |at: u16, size: u32| {
-            ((u32::from(at) << self.level).min(size), ((u32::from(at) + 1) << self.level).min(size))
+        let along = |at: u16, shift: u32, size: u32| {
+            ((u32::from(at) << shift).min(size), ((u32::from(at) + 1) << shift).min(size))
         };
-        let ((x0, x1), (y0, y1)) = (along(self.x, width), along(self.y, height));
+        let [across, down] = Self::shifts(self.level);
+        let ((x0, x1), (y0, y1)) = (along(self.x, across, width), along(self.y, down, height));
         PixelRect { x0, x1, y0, y1 }
     }
 }

@@ -11,6 +11,9 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
+use super::Fate;
+use super::setup::Told;
+
 use crate::geometry::{Aabb, PrimId, Solid};
 use crate::scene::{Scene, Surfaces};
 
@@ -91,6 +94,18 @@ pub struct Clusters {
     pub(super) any_two_sided: bool,
     /// Unit normals and offsets from the cluster's middle, of the first and the second triangle.
     pub(super) planes: [Vec<f32>; 8],
+    /// The scene's primitives that a primitive is made of: twice the same for a triangle.
+    pub(super) ids: Vec<[PrimId; 2]>,
+    groups: Vec<Group>,
+    /// Primitives that are in no cluster, group by group.
+    apart: Vec<PrimId>,
+}
+
+/// What became of a group: its clusters, and its primitives that are in none.
+#[derive(Clone, Debug)]
+struct Group {
+    clusters: Range<usize>,
+    apart: Range<usize>,
 }
 
 /// The bit of a word.
@@ -103,10 +118,20 @@ const LEAST_COSINE: f64 = 0.9;
 /// Sines of the corners of a quadrangle: flatter ones would turn over on the pixel grid.
 const LEAST_SINE: f64 = 1e-3;
 
-/// Three corners, and whether both sides are seen.
-type Triangle = ([u32; 3], bool);
-/// Four corners; those of a triangle end with the same twice.
-type Prim = ([u32; 4], bool);
+/// A triangle of the scene, its points welded.
+struct Triangle {
+    corners: [u32; 3],
+    is_two_sided: bool,
+    id: PrimId,
+}
+/// One or two triangles.
+struct Prim {
+    /// Those of a triangle end with the same twice.
+    corners: [u32; 4],
+    is_two_sided: bool,
+    /// Of a triangle twice.
+    ids: [PrimId; 2],
+}
 
 /// The word of a primitive's first triangle, or of the second one.
 pub(super) fn half(word: u64, second: bool) -> u64 {
@@ -149,13 +174,18 @@ impl Clusters {
         let mut boxes = Vec::new();
         let mut own = vec![u32::MAX; points.len()];
         for group in groups {
-            // 1. Points at one place are one.
-            let opaque = group.iter().filter(|&&prim| !surfaces.show_through(scene, prim));
-            let triangles: Vec<Triangle> = opaque
-                .filter_map(|&prim| Some((scene.corners(prim)?, scene.is_two_sided(prim))))
-                .map(|(corners, two_sided)| (corners.map(|c| place[c as usize]), two_sided))
-                .filter(|([a, b, c], _)| a != b && b != c && c != a)
-                .collect();
+            let (first_cluster, first_apart) = (boxes.len(), all.apart.len());
+            let mut triangles = Vec::with_capacity(group.len());
+            for &id in group {
+                // 1. Points at one place are one.
+                let Some([a, b, c]) = scene.corners(id).map(|t| t.map(|c| place[c as usize])) else { continue };
+                if surfaces.show_through(scene, id) || a == b || b == c || c == a {
+                    all.apart.push(id);
+                } else {
+                    let is_two_sided = scene.is_two_sided(id);
+                    triangles.push(Triangle { corners: [a, b, c], is_two_sided, id });
+                }
+            }
             // 2. Quadrangles.
             let mut prims = pair(points, &triangles);
             // 3. Clusters.
@@ -164,16 +194,57 @@ impl Clusters {
             for part in parts {
                 boxes.push(all.add(points, &prims[part], &mut own));
             }
+            let (clusters, apart) = (first_cluster..boxes.len(), first_apart..all.apart.len());
+            all.groups.push(Group { clusters, apart });
         }
         all.boxes = Boxes::new(boxes);
         all
+    }
+    /// The primitives of a group, by its number, that are in no cluster: what lets light through, and triangles
+    /// that are a line or a point, which cover nothing.
+    pub fn apart(&self, group: usize) -> &[PrimId] {
+        &self.apart[self.groups[group].apart.clone()]
+    }
+    /// The clusters of a group.
+    pub(super) fn of_group(&self, group: usize) -> &[Cluster] {
+        &self.clusters[self.groups[group].clusters.clone()]
+    }
+    /// What became of the primitives of a group, from the tags of what faced the eye and of what showed.
+    pub(super) fn fates(&self, group: usize, skipped: &[bool], told: &Told, to: &mut Vec<(PrimId, Fate)>) {
+        let Some(first) = self.of_group(group).first().map(|c| c.prims.start) else { return };
+        let past = self.of_group(group).last().map_or(first, |c| c.prims.end);
+        // Of each primitive the parts that faced the eye, and above them those that showed.
+        let mut parts = vec![0u8; past - first];
+        told.faced.iter().for_each(|t| parts[(t >> 2) as usize - first] |= (t & 3) as u8);
+        told.shown.iter().for_each(|t| parts[(t >> 2) as usize - first] |= ((t & 3) << 2) as u8);
+        let is_drawn = |id: PrimId| skipped.get(id.at()).is_some_and(|&is| is);
+        for prim in self.of_group(group).iter().flat_map(|c| c.prims.clone()) {
+            let (ids, parts) = (self.ids[prim], parts[prim - first]);
+            let halves = if ids[0] == ids[1] { 1 } else { 2 };
+            for (k, &id) in ids[..halves].iter().enumerate().filter(|(_, id)| !is_drawn(**id)) {
+                let fate = match (parts >> k & 1, parts >> (k + 2) & 1) {
+                    (0, _) => Fate::Away,
+                    (_, 0) => Fate::Hidden,
+                    _ => Fate::Shown,
+                };
+                to.push((id, fate));
+            }
+        }
+    }
+    /// Bytes that they take.
+    pub fn bytes(&self) -> usize {
+        let columns = self.points.iter().chain(&self.planes).map(|v| size_of_val(&v[..])).sum::<usize>();
+        let boxes = self.boxes.low.iter().chain(&self.boxes.high).map(|v| size_of_val(&v[..])).sum::<usize>();
+        let prims = size_of_val(&self.words[..]) + size_of_val(&self.ids[..]) + size_of_val(&self.apart[..]);
+        columns + boxes + prims + size_of_val(&self.clusters[..]) + size_of_val(&self.groups[..])
     }
     /// Appends a cluster and returns its bounds. `own`: scratch, a number for each point, all unset.
     fn add(&mut self, points: &[Vec3], prims: &[Prim], own: &mut [u32]) -> Aabb<Vec3> {
         let (first_point, first_prim) = (self.points[0].len(), self.words.len());
         let mut used = Vec::new();
-        for &(corners, is_two_sided) in prims {
+        for &Prim { corners, is_two_sided, ids } in prims {
             self.any_two_sided |= is_two_sided;
+            self.ids.push(ids);
             let mut word = if is_two_sided { TWO_SIDED } else { 0 };
             for (k, &c) in corners.iter().enumerate() {
                 if own[c as usize] == u32::MAX {
@@ -189,7 +260,7 @@ impl Clusters {
         let bounds = Aabb::of(used.iter().map(|&c| points[c as usize]));
         let middle = bounds.center();
         let from_middle = |c: u32| points[c as usize].as_dvec3() - middle.as_dvec3();
-        for &([a, b, c, d], _) in prims {
+        for &Prim { corners: [a, b, c, d], .. } in prims {
             let second = if c == d { [a, b, c] } else { [a, c, d] };
             for (k, [a, b, c]) in [[a, b, c], second].into_iter().enumerate() {
                 // Corners run clockwise on the screen: the other way round about the normal.
@@ -217,6 +288,7 @@ impl Clusters {
             p.resize(p.len().next_multiple_of(16), last);
         }
         self.words.resize(self.words.len().next_multiple_of(16), 0);
+        self.ids.resize(self.words.len(), [PrimId(0); 2]);
         for (k, plane) in self.planes.iter_mut().enumerate() {
             let beyond = if k % 4 == 3 { f32::MAX } else { 0.0 };
             plane.resize(plane.len().next_multiple_of(16), beyond);
@@ -249,11 +321,17 @@ fn pair(points: &[Vec3], triangles: &[Triangle]) -> Vec<Prim> {
         let (i, j) = (i as usize, j as usize);
         if !used[i] && !used[j] {
             (used[i], used[j]) = (true, true);
-            prims.push(([a, c, b, d], triangles[i].1));
+            // The triangles a c b and a b d.
+            let ids = [triangles[i].id, triangles[j].id];
+            prims.push(Prim { corners: [a, c, b, d], is_two_sided: triangles[i].is_two_sided, ids });
         }
     }
-    let left = triangles.iter().zip(used).filter(|(_, used)| !used);
-    prims.extend(left.map(|(&([a, b, c], is_two_sided), _)| ([a, c, b, b], is_two_sided)));
+    let left = triangles.iter().zip(used).filter(|(_, used)| !used).map(|(t, _)| t);
+    prims.extend(left.map(|&Triangle { corners: [a, b, c], is_two_sided, id }| Prim {
+        corners: [a, c, b, b],
+        is_two_sided,
+        ids: [id; 2],
+    }));
     prims
 }
 
@@ -267,10 +345,10 @@ struct Candidate {
 
 fn candidates(points: &[Vec3], triangles: &[Triangle]) -> Vec<Candidate> {
     let at = |i: u32| points[i as usize].as_dvec3();
-    let normals: Vec<DVec3> = triangles.iter().map(|t| normal(points, t.0)).collect();
+    let normals: Vec<DVec3> = triangles.iter().map(|t| normal(points, t.corners)).collect();
     let mut edges: Vec<([u32; 2], u32)> = (0u32..)
         .zip(triangles)
-        .flat_map(|(i, (t, _))| [[0, 1], [1, 2], [2, 0]].map(|[a, b]| ([t[a], t[b]], i)))
+        .flat_map(|(i, t)| [[0, 1], [1, 2], [2, 0]].map(|[a, b]| ([t.corners[a], t.corners[b]], i)))
         .collect();
     edges.sort_unstable();
     let mut found = Vec::new();
@@ -278,13 +356,13 @@ fn candidates(points: &[Vec3], triangles: &[Triangle]) -> Vec<Candidate> {
         // The neighbors run along their common edge the other way.
         let from = edges.partition_point(|e| e.0 < [b, a]);
         for &(_, j) in edges[from..].iter().take_while(|e| e.0 == [b, a]) {
-            let ((t, t_sides), (u, u_sides)) = (triangles[i as usize], triangles[j as usize]);
+            let (t, u) = (&triangles[i as usize], &triangles[j as usize]);
             let (n, m) = (normals[i as usize], normals[j as usize]);
-            if j <= i || t_sides != u_sides || n.dot(m) < LEAST_COSINE {
+            if j <= i || t.is_two_sided != u.is_two_sided || n.dot(m) < LEAST_COSINE {
                 continue;
             }
             let other = |t: [u32; 3]| t.into_iter().find(|&c| c != a && c != b);
-            let (Some(c), Some(d)) = (other(t), other(u)) else { continue };
+            let (Some(c), Some(d)) = (other(t.corners), other(u.corners)) else { continue };
             let corners = [a, d, b, c];
             if is_convex(&corners.map(at), (n + m).normalize_or_zero()) {
                 let size = at(a).distance(at(b)) + at(c).distance(at(d));
@@ -314,13 +392,13 @@ fn split(points: &[Vec3], prims: &mut [Prim], first: usize, parts: &mut Vec<Rang
         }
         return;
     }
-    let center = |p: &Prim| p.0.iter().map(|&c| points[c as usize]).sum::<Vec3>();
+    let center = |p: &Prim| p.corners.iter().map(|&c| points[c as usize]).sum::<Vec3>();
     let extent = Aabb::of(prims.iter().map(center)).size();
     let axis = (0..3).fold(0, |best, a| if extent[a] > extent[best] { a } else { best });
     let middle = prims.len() / 2;
     prims.select_nth_unstable_by(middle, |a, b| {
         // Equal centers in the order of their corners, so that every run splits alike.
-        center(a)[axis].total_cmp(&center(b)[axis]).then(a.0.cmp(&b.0))
+        center(a)[axis].total_cmp(&center(b)[axis]).then(a.corners.cmp(&b.corners))
     });
     let (low, high) = prims.split_at_mut(middle);
     split(points, low, first, parts);

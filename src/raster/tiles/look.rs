@@ -31,7 +31,7 @@ pub(super) const PIXEL: [f32; 2] = [BESIDE_PX, BESIDE_PX];
 const ROUNDING: f32 = 1.0 / (1 << 20) as f32;
 
 /// The view, with what f32 rounds of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Look {
     pub eye: [f32; 3],
     near: f32,
@@ -200,6 +200,15 @@ impl Asked {
         let past = |v: i32, side: u32| ((v - 1) >> side) as usize + 1;
         [(self.x0 >> 5) as usize, past(self.x1, 5), (self.y0 >> 4) as usize, past(self.y1, 4)]
     }
+    /// The pixels of a tile, given by its first one, that lie in its rectangle.
+    #[inline(always)]
+    pub fn pixels(&self, [x, y]: [i32; 2]) -> u32 {
+        let range = |from: i32, past: i32, most: i32| (from.clamp(0, most), past.clamp(0, most));
+        let (x0, x1) = range(self.x0 - x, self.x1 - x, 8);
+        let (y0, y1) = range(self.y0 - y, self.y1 - y, 4);
+        let across = ((1u64 << x1) - (1 << x0)) * 0x0101_0101;
+        (across & ((1u64 << (8 * y1)) - (1 << (8 * y0)))) as u32
+    }
     /// The tiles of a block that its rectangle touches.
     #[inline(always)]
     pub fn tiles(&self, strip: usize, row: usize) -> u32 {
@@ -250,6 +259,10 @@ pub(super) struct Span {
 }
 
 impl Span {
+    /// Everywhere, no nearer than a depth.
+    pub fn everywhere(nearest: f32) -> Self {
+        Self { nearest, ..Self::default() }
+    }
     #[inline(always)]
     pub fn new(look: &Look, eye: &[f64; 3], [low, high]: [[f32; 3]; 2], nearest: f32) -> Self {
         let mut span = Self { nearest, ..Self::default() };

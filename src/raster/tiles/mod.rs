@@ -23,6 +23,7 @@
 mod bins;
 mod clusters;
 mod edges;
+mod heard;
 mod look;
 mod plane;
 mod query;
@@ -33,13 +34,16 @@ mod wide;
 mod window;
 
 pub use clusters::{Boxes, Clusters};
-pub use query::Answer;
+pub use heard::{Hears, Outcome, Read};
+pub use query::{Answer, How, Question};
 
 use self::bins::Bins;
-use self::setup::Scratch;
+use self::look::Look;
+use self::setup::{Scratch, Told};
+use super::PyramidCell;
 use super::simd::Isa;
 use super::vertex::Camera;
-use crate::geometry::{Solid, View};
+use crate::geometry::{PrimId, Solid, View};
 
 /// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +66,7 @@ const UNBEGUN: f32 = f32::MAX;
 #[derive(Clone, Debug, Default)]
 pub struct Tiles {
     camera: Camera,
+    look: Look,
     view: Option<View<Solid>>,
     /// Size in pixels.
     width: i32,
@@ -87,11 +92,24 @@ pub struct Tiles {
     resolved: Resolved,
 }
 
+/// What became of a primitive that was to be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// It faces away from the eye.
+    Away,
+    /// It shows nowhere: out of view, between pixel centers, or in no tile nearer than all that is there.
+    Hidden,
+    /// It may show.
+    Shown,
+}
+
 /// Tiles that were looked at closer.
 #[derive(Clone, Debug, Default)]
 struct Resolved {
     /// For each tile of a block in turn its number in `floors`, or [`Resolved::NOT`].
     at: Vec<[u32; 16]>,
+    /// Of each of the floors its block and tile.
+    order: Vec<(u32, u32)>,
     /// A plane that no pixel of it is farther than: depth at the center, changes a column and a row; and its
     /// number in `depths`, or [`Resolved::NOT`].
     floors: Vec<([f32; 3], u32)>,
@@ -131,6 +149,7 @@ impl Tiles {
         self.bin_rows = view.height.div_ceil(64) as usize;
         self.rows = self.bin_rows * 16 + 4;
         self.camera = Camera::new(view);
+        self.look = Look::new(&self.camera, f64::from(view.width), f64::from(view.height));
         self.view = Some(*view);
         // An empty pixel is as deep as the far plane, as in an image.
         let cleared = self.camera.depth_far;
@@ -143,11 +162,36 @@ impl Tiles {
         self.bins.clear(if keeps { self.strips * (self.bin_rows + 1) } else { 0 });
         self.scratch.clear(self.strips);
         self.forget();
+        self.resolved.at.resize(self.strips * self.block_rows, [Resolved::NOT; 16]);
     }
     /// Draws occluders front to back, those clusters that are not hidden when their turn comes. `one_sided`:
     /// primitives have a front only, unless their material has two sides.
     pub fn draw(&mut self, clusters: &Clusters, one_sided: bool, isa: Isa) {
         query::draw(self, clusters, one_sided, isa);
+    }
+    /// Draws a group of occluders and tells what became of each primitive, in the order of the group's clusters:
+    /// all that face the eye are drawn, but for those that are drawn already.
+    pub fn draw_group(
+        &mut self,
+        clusters: &Clusters,
+        group: usize,
+        how: How<'_>,
+        isa: Isa,
+        fates: &mut Vec<(PrimId, Fate)>,
+    ) {
+        self.scratch.told = Some(Told::default());
+        query::draw_group(self, clusters, group, how, isa);
+        let told = self.scratch.told.take().unwrap_or_default();
+        clusters.fates(group, how.skipped, &told, fates);
+    }
+    /// Whether something is hidden by what is drawn. What is read goes to `hears`; what changes is what
+    /// [`Tiles::refresh`] of the cells changes that it hears of.
+    pub fn hides<H: Hears>(&mut self, question: Question, isa: Isa, hears: &mut H) -> bool {
+        query::hides(self, question, isa, hears)
+    }
+    /// Brings a block up to date from its tiles, or a tile by exact depths, which were kept for it.
+    pub fn refresh(&mut self, cell: PyramidCell, isa: Isa) {
+        query::refresh_cell(self, cell, isa);
     }
     /// Whether boxes are hidden by what is drawn. `exact`: tiles that do not decide are shaded, which needs
     /// what [`Tiles::clear`] was told to keep; else they count as showing the box.
@@ -191,12 +235,13 @@ impl Tiles {
     }
     /// Forgets what was looked at closer: more is drawn.
     fn forget(&mut self) {
-        let blocks = self.strips * self.block_rows;
-        if !self.resolved.floors.is_empty() || self.resolved.at.len() != blocks {
-            refill(&mut self.resolved.at, blocks, [Resolved::NOT; 16]);
-            self.resolved.floors.clear();
-            self.resolved.depths.clear();
+        // Few tiles are; to fill all of them anew would take longer than to draw a small group.
+        for &(block, tile) in &self.resolved.order {
+            self.resolved.at[block as usize][tile as usize] = Resolved::NOT;
         }
+        self.resolved.order.clear();
+        self.resolved.floors.clear();
+        self.resolved.depths.clear();
     }
 }
 

@@ -10,11 +10,14 @@
 //!    farther than, and exact depths, each worked out when it is first asked for (`resolve`).
 
 use super::clusters::{Boxes, Cluster, Clusters};
-use super::look::{Asked, BLOCK, Look, Span, TILE};
+use super::heard::{Hears, Nobody, Outcome, Read};
+use super::look::{Asked, BLOCK, Look, PIXEL, Span, TILE};
 use super::resolve::{cover, resolve};
 use super::setup::Draw;
 use super::wide::{self, Wide, Work};
 use super::{Resolved, Tiles};
+use crate::geometry::PixelRect;
+use crate::raster::PyramidCell;
 use crate::raster::simd::Isa;
 
 /// What is said of a box.
@@ -37,10 +40,40 @@ pub(super) fn hides_all(tiles: &mut Tiles, boxes: &Boxes, exact: bool, isa: Isa,
     wide::run(isa, AskAll { tiles, boxes, exact, answers });
 }
 
-impl Tiles {
-    fn look(&self) -> Look {
-        Look::new(&self.camera, f64::from(self.width), f64::from(self.height))
-    }
+/// See [`Tiles::draw_group`].
+pub(super) fn draw_group(tiles: &mut Tiles, clusters: &Clusters, group: usize, how: How<'_>, isa: Isa) {
+    wide::run(isa, DrawGroup { tiles, clusters, group, how });
+}
+/// See [`Tiles::hides`].
+pub(super) fn hides<H: Hears>(tiles: &mut Tiles, question: Question, isa: Isa, hears: &mut H) -> bool {
+    wide::run(isa, Ask { tiles, question, hears })
+}
+/// See [`Tiles::refresh`].
+pub(super) fn refresh_cell(tiles: &mut Tiles, cell: PyramidCell, isa: Isa) {
+    wide::run(isa, Refresh { tiles, cell });
+}
+
+/// How primitives are drawn.
+#[derive(Clone, Copy)]
+pub struct How<'a> {
+    /// They have a front only, unless their material has two sides.
+    pub one_sided: bool,
+    /// Of each primitive of the scene whether it is drawn already; none if empty.
+    pub skipped: &'a [bool],
+}
+
+/// What is asked for: what lies in a rectangle of pixels, no nearer than a depth; or a box there.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
+    /// The pixels that it can cover.
+    pub pixels: PixelRect,
+    /// Its nearest depth, `1/w`.
+    pub nearest: f32,
+    /// Least and greatest corner of the box, and of the box of all that is drawn with what it holds, which
+    /// says how near that comes.
+    pub boxes: Option<[[[f32; 3]; 2]; 2]>,
+    /// Whether tiles that do not decide are shaded; else they count as showing it.
+    pub exact: bool,
 }
 
 /// All clusters, front to back.
@@ -56,19 +89,44 @@ impl Work for DrawAll<'_> {
     fn run<L: Wide>(self, l: L) {
         let Self { tiles, clusters, one_sided } = self;
         tiles.forget();
-        let look = tiles.look();
-        let (mut seen, mut asked) = (Vec::new(), Vec::new());
+        let look = tiles.look;
+        let (mut seen, mut asked, mut open) = (Vec::new(), Vec::new(), Vec::new());
         look.in_view(l, &clusters.boxes, &mut seen);
         front_to_back(&look, &clusters.boxes, &mut seen);
         look.project(l, &clusters.boxes, &seen, &mut asked);
         for a in &asked {
-            let bounds = clusters.boxes.at(a.id as usize);
-            if a.crosses_near || !l.apart(HiddenSoFar { tiles, look: &look, asked: a, bounds }) {
+            let own = Span::new(&look, &tiles.camera.eye, clusters.boxes.at(a.id as usize), a.nearest);
+            let (spans, hears) = (Spans { own, whole: None }, &mut Nobody);
+            // By tiles alone: most are far behind, and the others draw what hides more.
+            let hidden = Fine { tiles, asked: a, spans, exact: false, open: &mut open, hears };
+            if a.crosses_near || !(a.is_empty() || l.apart(hidden)) {
                 let cluster = &clusters.clusters[a.id as usize];
-                l.apart(DrawCluster { tiles, clusters, one_sided, cluster });
+                l.apart(DrawCluster { tiles, clusters, how: How { one_sided, skipped: &[] }, cluster });
             }
         }
-        Draw { l, tiles, clusters, one_sided }.flush();
+        Draw { l, tiles, clusters, one_sided, skipped: &[] }.flush();
+    }
+}
+
+/// The clusters of a group, all of them.
+struct DrawGroup<'a> {
+    tiles: &'a mut Tiles,
+    clusters: &'a Clusters,
+    group: usize,
+    how: How<'a>,
+}
+
+impl Work for DrawGroup<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Wide>(self, l: L) {
+        let Self { tiles, clusters, group, how } = self;
+        tiles.forget();
+        for cluster in clusters.of_group(group) {
+            l.apart(DrawCluster { tiles, clusters, how, cluster });
+        }
+        // Whoever asks next is to see all of it.
+        Draw { l, tiles, clusters, one_sided: how.one_sided, skipped: how.skipped }.flush();
     }
 }
 
@@ -87,7 +145,7 @@ fn front_to_back(look: &Look, boxes: &Boxes, ids: &mut [i32]) {
 struct DrawCluster<'a> {
     tiles: &'a mut Tiles,
     clusters: &'a Clusters,
-    one_sided: bool,
+    how: How<'a>,
     cluster: &'a Cluster,
 }
 
@@ -95,8 +153,8 @@ impl Work for DrawCluster<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
-        let Self { tiles, clusters, one_sided, cluster } = self;
-        Draw { l, tiles, clusters, one_sided }.cluster(cluster);
+        let Self { tiles, clusters, how: How { one_sided, skipped }, cluster } = self;
+        Draw { l, tiles, clusters, one_sided, skipped }.cluster(cluster);
     }
 }
 
@@ -116,7 +174,7 @@ impl Work for AskAll<'_> {
         answers.clear();
         answers.resize(boxes.len(), Answer::Outside);
         finish(l, tiles);
-        let look = tiles.look();
+        let look = tiles.look;
         let (mut seen, mut asked, mut open) = (Vec::new(), Vec::new(), Vec::new());
         look.in_view(l, boxes, &mut seen);
         look.project(l, boxes, &seen, &mut asked);
@@ -128,8 +186,9 @@ impl Work for AskAll<'_> {
             } else if behind_blocks(l, tiles, a) {
                 Answer::Hidden
             } else {
-                let bounds = boxes.at(a.id as usize);
-                let fine = Fine { tiles, look: &look, asked: a, bounds, exact, open: &mut open };
+                let span = Span::new(&look, &tiles.camera.eye, boxes.at(a.id as usize), a.nearest);
+                let (spans, hears) = (Spans { own: span, whole: None }, &mut Nobody);
+                let fine = Fine { tiles, asked: a, spans, exact, open: &mut open, hears };
                 if l.apart(fine) { Answer::Hidden } else { Answer::Visible }
             };
         }
@@ -145,11 +204,12 @@ fn finish<L: Wide>(l: L, tiles: &mut Tiles) {
         }
     }
 }
-/// Brings the farthest depth of a block up to date.
+/// Brings the farthest depth of a block up to date. Whether it was not.
 #[inline(always)]
-fn refresh<L: Wide>(l: L, tiles: &mut Tiles, strip: usize, row: usize) {
+fn refresh<L: Wide>(l: L, tiles: &mut Tiles, strip: usize, row: usize) -> bool {
     let at = row * tiles.stride() + strip;
-    tiles.block_far[at] = farthest(l, tiles, strip, row);
+    let far = farthest(l, tiles, strip, row);
+    std::mem::replace(&mut tiles.block_far[at], far) != far
 }
 #[inline(always)]
 fn farthest<L: Wide>(l: L, tiles: &Tiles, strip: usize, row: usize) -> f32 {
@@ -181,24 +241,24 @@ fn reached<L: Wide>(l: L, tiles: &Tiles, a: &Asked, begin: usize, row: usize, pa
     let far = l.load(&tiles.block_far[row * tiles.stride() + begin..]);
     l.both(l.first(past - begin), l.ge(l.splat(a.nearest), far))
 }
-/// 2. Of those the ones where the box may be, and is not behind all.
+/// 2. Of those the ones where it may be, and is not behind all.
 #[inline(always)]
-fn open_blocks<L: Wide>(l: L, tiles: &Tiles, span: &Span, begin: usize, row: usize, reached: L::M) -> u32 {
+fn open_blocks<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, begin: usize, row: usize, reached: L::M) -> u32 {
     if l.bits(reached) == 0 {
         return 0;
     }
     let far = l.load(&tiles.block_far[row * tiles.stride() + begin..]);
     let (x, y) = row_of_blocks(l, begin, row);
-    let (begins, ends) = span.outer(l, x, y, BLOCK);
-    l.bits(l.both(reached, l.both(l.ge(begins, ends), l.ge(begins, far))))
+    let (begins, meets) = spans.outer(l, x, y, BLOCK);
+    l.bits(l.both(reached, l.both(meets, l.ge(begins, far))))
 }
-/// Whether the box covers one of the blocks of a row and begins before all that is drawn in it.
+/// Of the blocks of a row those that it covers, beginning before all that is drawn there.
 #[inline(always)]
-fn surely<L: Wide>(l: L, tiles: &Tiles, span: &Span, begin: usize, row: usize, past: usize) -> bool {
+fn surely<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, begin: usize, row: usize, past: usize) -> u32 {
     let (x, y) = row_of_blocks(l, begin, row);
-    let (begins, ends) = span.inner(l, x, y, BLOCK);
+    let (begins, ends) = spans.own.inner(l, x, y, BLOCK);
     let near = l.load(&tiles.block_near[row * tiles.stride() + begin..]);
-    l.bits(l.both(l.first(past - begin), l.both(l.ge(begins, ends), l.ge(begins, near)))) != 0
+    l.bits(l.both(l.first(past - begin), l.both(l.ge(begins, ends), l.ge(begins, near))))
 }
 /// Centers of the blocks from one on, along a row.
 #[inline(always)]
@@ -218,128 +278,353 @@ fn tiles_of_block<L: Wide>(l: L, strip: usize, row: usize, part: usize) -> (L::F
 }
 /// 3. The tiles of a block that do not hide a box.
 #[inline(always)]
-fn open_tiles<L: Wide>(l: L, tiles: &Tiles, span: &Span, a: &Asked, strip: usize, row: usize) -> u32 {
+fn open_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, a: &Asked, strip: usize, row: usize) -> u32 {
     let mut open = 0;
     for part in 0..16 / L::N {
         let first = tiles.first_line(strip, row) + part * (L::N / 4);
         let far = l.load_farthest(&tiles.lines[first..]);
         let (x, y) = tiles_of_block(l, strip, row, part);
-        let (begins, ends) = span.outer(l, x, y, TILE);
-        open |= l.bits(l.both(l.ge(begins, ends), l.ge(begins, far))) << (part * L::N);
+        let (begins, meets) = spans.outer(l, x, y, TILE);
+        open |= l.bits(l.both(meets, l.ge(begins, far))) << (part * L::N);
     }
     open & a.tiles(strip, row)
 }
 /// Those that surely show a box: it covers all of the tile, and something in the tile is not covered, or
 /// nothing in the block is nearer.
 #[inline(always)]
-fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, span: &Span, strip: usize, row: usize) -> u32 {
+fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, strip: usize, row: usize) -> u32 {
     let before = l.splat(tiles.block_near[row * tiles.stride() + strip]);
     let mut sure = 0;
     for part in 0..16 / L::N {
         let first = tiles.first_line(strip, row) + part * (L::N / 4);
         let ever = l.load_ever(&tiles.lines[first..]);
         let (x, y) = tiles_of_block(l, strip, row, part);
-        let (begins, ends) = span.inner(l, x, y, TILE);
+        let (begins, ends) = spans.own.inner(l, x, y, TILE);
         let may_be_hidden = l.without(l.eq_i(ever, l.splat_i(-1)), l.ge(begins, before));
         sure |= l.bits(l.without(l.ge(begins, ends), may_be_hidden)) << (part * L::N);
     }
     sure
 }
 
-/// Whether a cluster is hidden by what is drawn so far, from tiles alone.
-struct HiddenSoFar<'a> {
-    tiles: &'a mut Tiles,
-    look: &'a Look,
-    asked: &'a Asked,
-    bounds: [[f32; 3]; 2],
+/// A box, and the box of all that is drawn with what it holds, where that is another one: it says how near
+/// that comes, and the box itself where it may be.
+#[derive(Clone, Copy)]
+struct Spans {
+    own: Span,
+    whole: Option<Span>,
 }
 
-impl Work for HiddenSoFar<'_> {
-    type Output = bool;
+impl Spans {
+    /// Over cells the nearest depths at which it begins, and where it may be.
     #[inline(always)]
-    fn run<L: Wide>(self, l: L) -> bool {
-        let Self { tiles, look, asked: a, bounds } = self;
-        if a.is_empty() {
-            return true;
+    fn outer<L: Wide>(&self, l: L, x: L::F, y: L::F, half: [f32; 2]) -> (L::F, L::M) {
+        let (begins, ends) = self.own.outer(l, x, y, half);
+        let meets = l.ge(begins, ends);
+        match &self.whole {
+            Some(whole) => (whole.outer(l, x, y, half).0, meets),
+            None => (begins, meets),
         }
-        let span = Span::new(look, &tiles.camera.eye, bounds, a.nearest);
-        let [left, right, top, bottom] = a.blocks();
-        for row in top..bottom {
-            for begin in (left..right).step_by(L::N) {
-                let may = reached(l, tiles, a, begin, row, right);
-                let mut bits = open_blocks(l, tiles, &span, begin, row, may);
-                while bits != 0 {
-                    let strip = begin + bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    if open_tiles(l, tiles, &span, a, strip, row) != 0 {
-                        return false;
-                    }
-                    // What was drawn since is known now.
-                    refresh(l, tiles, strip, row);
-                }
-            }
+    }
+    /// The pixels of a tile where it may be, and not behind depths.
+    #[inline(always)]
+    fn pixels<L: Wide>(&self, l: L, at: [i32; 2], depths: &[f32; 32]) -> u32 {
+        match &self.whole {
+            Some(whole) => self.own.pixels(l, at, None) & whole.pixels(l, at, Some(depths)),
+            None => self.own.pixels(l, at, Some(depths)),
         }
-        true
+    }
+    fn is_below(&self, floor: &[f32; 3], at: [i32; 2]) -> bool {
+        self.whole.as_ref().unwrap_or(&self.own).is_below(floor, at)
     }
 }
 
-/// Whether a box is hidden that the blocks of its rectangle did not hide by its nearest depth.
-struct Fine<'a> {
+/// One question from outside.
+struct Ask<'a, H> {
     tiles: &'a mut Tiles,
-    look: &'a Look,
-    asked: &'a Asked,
-    bounds: [[f32; 3]; 2],
-    exact: bool,
-    /// Scratch: blocks with the tiles that did not decide.
-    open: &'a mut Vec<(usize, u32)>,
+    question: Question,
+    hears: &'a mut H,
 }
 
-impl Work for Fine<'_> {
+impl<H: Hears> Work for Ask<'_, H> {
     type Output = bool;
     #[inline(always)]
     fn run<L: Wide>(self, l: L) -> bool {
-        let Self { tiles, look, asked: a, bounds, exact, open } = self;
-        let span = Span::new(look, &tiles.camera.eye, bounds, a.nearest);
+        let Self { tiles, question: Question { pixels: p, nearest, boxes, exact }, hears } = self;
+        let [x0, x1, y0, y1] = [p.x0, p.x1, p.y0, p.y1].map(|v| v as i32);
+        let asked = &Asked { id: 0, x0, x1, y0, y1, nearest, crosses_near: false };
+        // What covers no pixel's center cannot show.
+        if asked.is_empty() {
+            return true;
+        }
+        let span = |bounds| Span::new(&tiles.look, &tiles.camera.eye, bounds, nearest);
+        let spans = match boxes {
+            Some([own, whole]) => Spans { own: span(own), whole: (whole != own).then(|| span(whole)) },
+            None => Spans { own: Span::everywhere(nearest), whole: None },
+        };
+        let (open, exact) = (&mut Vec::new(), exact && tiles.keeps);
+        Fine { tiles, asked, spans, exact, open, hears }.run(l)
+    }
+}
+
+/// A cell is brought up to date, as a question does it: a block from its tiles, a tile by exact depths.
+struct Refresh<'a> {
+    tiles: &'a mut Tiles,
+    cell: PyramidCell,
+}
+
+impl Work for Refresh<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Wide>(self, l: L) {
+        let Self { tiles, cell } = self;
+        let (x, y) = (usize::from(cell.x), usize::from(cell.y));
+        if cell.level == PyramidCell::BLOCK {
+            refresh(l, tiles, x, y);
+        } else {
+            let (block, tile) = (y / 4 * tiles.strips + x / 4, y % 4 * 4 + x % 4);
+            look_closer(l, tiles, block, tile);
+        }
+    }
+}
+
+/// Whether something is hidden.
+struct Fine<'a, H> {
+    tiles: &'a mut Tiles,
+    asked: &'a Asked,
+    spans: Spans,
+    exact: bool,
+    /// Scratch: blocks with the tiles that did not decide.
+    open: &'a mut Vec<(usize, u32)>,
+    hears: &'a mut H,
+}
+
+impl<H: Hears> Work for Fine<'_, H> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<L: Wide>(mut self, l: L) -> bool {
+        let a = self.asked;
         let [left, right, top, bottom] = a.blocks();
         // What shows mostly shows in the middle.
         let middle = ((left + right) / 2).saturating_sub(8).max(left);
-        if exact && surely(l, tiles, &span, middle, (top + bottom) / 2, right) {
+        if self.exact && self.shows_surely(l, middle, (top + bottom) / 2, right) {
             return false;
         }
-        open.clear();
+        self.open.clear();
         for row in top..bottom {
             for begin in (left..right).step_by(L::N) {
-                let may = reached(l, tiles, a, begin, row, right);
-                let mut bits = open_blocks(l, tiles, &span, begin, row, may);
-                if bits != 0 && exact && surely(l, tiles, &span, begin, row, right) {
+                let may = reached(l, self.tiles, a, begin, row, right);
+                let mut bits = open_blocks(l, self.tiles, &self.spans, begin, row, may);
+                if bits != 0 && self.exact && self.shows_surely(l, begin, row, right) {
                     return false;
                 }
+                let mut told = begin;
                 while bits != 0 {
                     let strip = begin + bits.trailing_zeros() as usize;
                     bits &= bits - 1;
-                    let found = open_tiles(l, tiles, &span, a, strip, row);
-                    if found == 0 {
-                        continue;
-                    }
-                    if !exact || found & sure_tiles(l, tiles, &span, strip, row) != 0 {
+                    told = self.tell_blocks(l, row, told, strip + 1);
+                    let found = open_tiles(l, self.tiles, &self.spans, a, strip, row);
+                    let sure = if self.exact { found & sure_tiles(l, self.tiles, &self.spans, strip, row) } else { found };
+                    self.tell_tiles(l, strip, row, found, sure);
+                    if sure != 0 {
                         return false;
                     }
-                    open.push((row * tiles.strips + strip, found));
+                    if found == 0 {
+                        self.refresh(l, strip, row);
+                    } else {
+                        self.open.push((row * self.tiles.strips + strip, found));
+                    }
                 }
+                self.tell_blocks(l, row, told, right.min(begin + L::N));
             }
         }
         // 4. First the pixels that nothing covers, then exact depths.
-        for &(block, found) in open.iter() {
-            if shows_bare(l, tiles, &span, block, found) {
-                return false;
+        (0..self.open.len()).all(|k| !self.shows_bare(l, self.open[k]))
+            && (0..self.open.len()).all(|k| !self.shows(l, self.open[k]))
+    }
+}
+
+impl<H: Hears> Fine<'_, H> {
+    #[inline(always)]
+    fn shows_surely<L: Wide>(&mut self, l: L, begin: usize, row: usize, past: usize) -> bool {
+        let sure = surely(l, self.tiles, &self.spans, begin, row, past);
+        if H::LISTENS && sure != 0 {
+            let strip = begin + sure.trailing_zeros() as usize;
+            self.tell(l, BLOCK, PyramidCell::BLOCK, [strip, row], Some(Outcome::Shows));
+        }
+        sure != 0
+    }
+    /// Brings a block up to date whose tiles hide what its own depth does not.
+    #[inline(always)]
+    fn refresh<L: Wide>(&mut self, l: L, strip: usize, row: usize) {
+        if refresh(l, self.tiles, strip, row) {
+            self.hears.refreshes(cell_at(PyramidCell::BLOCK, [strip, row]));
+        }
+    }
+    /// Whether it may show at a pixel of these tiles that nothing covers.
+    #[inline(always)]
+    fn shows_bare<L: Wide>(&mut self, l: L, (block, mut found): (usize, u32)) -> bool {
+        let (row, strip) = (block / self.tiles.strips, block % self.tiles.strips);
+        while found != 0 {
+            let tile = found.trailing_zeros() as usize;
+            found &= found - 1;
+            let at = first_pixel(self.tiles, block, tile);
+            let line = &self.tiles.lines[self.tiles.first_line(strip, row) + (tile >> 2)];
+            let bare = !line.ever[tile & 3] & self.asked.pixels(at);
+            let shows = if bare == 0 { 0 } else { self.spans.own.pixels(l, at, None) & bare };
+            if shows != 0 {
+                if H::LISTENS {
+                    self.tell_pixel(l, at, shows.trailing_zeros(), self.tiles.camera.depth_far);
+                }
+                return true;
             }
         }
-        for &(block, found) in open.iter() {
-            if shows(l, tiles, &span, block, found) {
-                return false;
+        false
+    }
+    /// Whether it may show at a pixel of these tiles, by exact depths where nothing less decides.
+    #[inline(always)]
+    fn shows<L: Wide>(&mut self, l: L, (block, mut found): (usize, u32)) -> bool {
+        while found != 0 {
+            let tile = found.trailing_zeros() as usize;
+            found &= found - 1;
+            let pixel = first_pixel(self.tiles, block, tile);
+            let known = self.tiles.resolved.at[block][tile];
+            let at = if known == Resolved::NOT { cover(self.tiles, block, tile) } else { known as usize };
+            if self.is_below(l, at, pixel) {
+                continue;
+            }
+            if self.tiles.resolved.floors[at].1 == Resolved::NOT {
+                look_closer(l, self.tiles, block, tile);
+                if H::LISTENS {
+                    self.hears.refreshes(tile_at(pixel));
+                }
+                if self.is_below(l, at, pixel) {
+                    continue;
+                }
+            }
+            let depths = self.tiles.resolved.depths[self.tiles.resolved.floors[at].1 as usize];
+            let shows = self.spans.pixels(l, pixel, &depths) & self.asked.pixels(pixel);
+            if H::LISTENS {
+                self.tell_exact(l, pixel, &depths, shows);
+            }
+            if shows != 0 {
+                return true;
             }
         }
-        true
+        false
+    }
+    /// Whether it lies behind the plane that is known of a tile.
+    #[inline(always)]
+    fn is_below<L: Wide>(&mut self, l: L, at: usize, pixel: [i32; 2]) -> bool {
+        let floor = self.tiles.resolved.floors[at].0;
+        let is_below = self.spans.is_below(&floor, pixel);
+        if H::LISTENS && is_below {
+            let nearest = self.spans.begins_at(l, [pixel[0] as f32 + 4.0, pixel[1] as f32 + 2.0]);
+            // Both in the middle of the tile; it lies behind the plane all over it.
+            self.hears.reads(Read { cell: tile_at(pixel), held: floor[0], nearest, outcome: Outcome::Behind });
+        }
+        is_below
+    }
+}
+
+/// A cell by its column and row.
+fn cell_at(level: u8, [x, y]: [usize; 2]) -> PyramidCell {
+    PyramidCell { level, x: x as u16, y: y as u16 }
+}
+/// The tile at its first pixel.
+fn tile_at([x, y]: [i32; 2]) -> PyramidCell {
+    cell_at(PyramidCell::TILE, [x as usize / 8, y as usize / 4])
+}
+/// Works out the depths of a tile's pixels.
+#[inline(always)]
+fn look_closer<L: Wide>(l: L, tiles: &mut Tiles, block: usize, tile: usize) {
+    if tiles.resolved.at[block][tile] == Resolved::NOT {
+        cover(tiles, block, tile);
+    }
+    resolve(l, tiles, block, tile);
+    refresh(l, tiles, block % tiles.strips, block / tiles.strips);
+}
+
+/// What is told to who listens: the very numbers that were compared, made once more.
+impl<H: Hears> Fine<'_, H> {
+    /// Compares one cell, given by column and row, and tells it; `None`: what follows is that it hides or is
+    /// below it, and nothing where it does not reach. Sides of cells follow from their half extents.
+    fn tell<L: Wide>(&mut self, l: L, half: [f32; 2], level: u8, [x, y]: [usize; 2], shows: Option<Outcome>) {
+        let cell = cell_at(level, [x, y]);
+        let (column, row) = if level == PyramidCell::BLOCK { (32 * x + 16, 16 * y + 8) } else { (8 * x + 4, 4 * y + 2) };
+        let held = if level == PyramidCell::BLOCK {
+            self.tiles.block_far[y * self.tiles.stride() + x]
+        } else {
+            self.tiles.lines[x / 4 * self.tiles.rows + y].far[x % 4]
+        };
+        let (begins, meets) = self.spans.outer(l, l.splat(column as f32), l.splat(row as f32), half);
+        let nearest = self.asked.nearest;
+        // Its nearest depth alone is compared first, and decides without the planes.
+        let read = if level == PyramidCell::BLOCK && nearest < held {
+            Read { cell, held, nearest, outcome: Outcome::Behind }
+        } else if l.bits(meets) & 1 == 0 && shows.is_none() {
+            return;
+        } else {
+            let nearest = l.least(begins);
+            let outcome = if nearest < held { Outcome::Behind } else { shows.unwrap_or(Outcome::Descends) };
+            Read { cell, held, nearest, outcome }
+        };
+        self.hears.reads(read);
+    }
+    /// Blocks of a row from one up to another; returns the other.
+    #[inline(always)]
+    fn tell_blocks<L: Wide>(&mut self, l: L, row: usize, from: usize, past: usize) -> usize {
+        if H::LISTENS {
+            (from..past).for_each(|strip| self.tell(l, BLOCK, PyramidCell::BLOCK, [strip, row], None));
+        }
+        past
+    }
+    /// The tiles of a block: `found` do not hide it, and of those `sure` show it, of which one is told.
+    #[inline(always)]
+    fn tell_tiles<L: Wide>(&mut self, l: L, strip: usize, row: usize, found: u32, sure: u32) {
+        if !H::LISTENS {
+            return;
+        }
+        let touched = self.asked.tiles(strip, row);
+        for tile in (0..16).filter(|k| touched >> k & 1 == 1) {
+            let at = [4 * strip + (tile & 3), 4 * row + (tile >> 2)];
+            let is_sure = sure >> tile & 1 == 1;
+            debug_assert!(found >> tile & 1 == 1 || !is_sure);
+            self.tell(l, TILE, PyramidCell::TILE, at, is_sure.then_some(Outcome::Shows));
+            if is_sure {
+                return;
+            }
+        }
+    }
+    /// The pixel of a tile where it shows.
+    fn tell_pixel<L: Wide>(&mut self, l: L, [x, y]: [i32; 2], bit: u32, held: f32) {
+        let (x, y) = (x as usize + bit as usize % 8, y as usize + bit as usize / 8);
+        let nearest = self.spans.begins_at(l, [x as f32 + 0.5, y as f32 + 0.5]);
+        self.hears.reads(Read { cell: cell_at(0, [x, y]), held, nearest, outcome: Outcome::Shows });
+    }
+    /// The pixel where it shows, or if none does of those where it may be the one that hides it by the least.
+    fn tell_exact<L: Wide>(&mut self, l: L, at: [i32; 2], depths: &[f32; 32], shows: u32) {
+        if shows != 0 {
+            let bit = shows.trailing_zeros();
+            return self.tell_pixel(l, at, bit, depths[bit as usize]);
+        }
+        let on = self.spans.own.pixels(l, at, None) & self.asked.pixels(at);
+        let read = |bit: u32| {
+            let (x, y) = (at[0] as usize + bit as usize % 8, at[1] as usize + bit as usize / 8);
+            let nearest = self.spans.begins_at(l, [x as f32 + 0.5, y as f32 + 0.5]);
+            Read { cell: cell_at(0, [x, y]), held: depths[bit as usize], nearest, outcome: Outcome::Behind }
+        };
+        let reads = (0..32).filter(|bit| on >> bit & 1 == 1).map(read);
+        let least = reads.reduce(|a, b| if b.held - b.nearest < a.held - a.nearest { b } else { a });
+        if let Some(least) = least {
+            self.hears.reads(least);
+        }
+    }
+}
+
+impl Spans {
+    /// The nearest depth at which it begins at a point of the image, as at a pixel's center.
+    fn begins_at<L: Wide>(&self, l: L, [x, y]: [f32; 2]) -> f32 {
+        l.least(self.outer(l, l.splat(x), l.splat(y), PIXEL).0)
     }
 }
 
@@ -348,53 +633,4 @@ impl Work for Fine<'_> {
 fn first_pixel(tiles: &Tiles, block: usize, tile: usize) -> [i32; 2] {
     let (row, strip) = (block / tiles.strips, block % tiles.strips);
     [(32 * strip + 8 * (tile & 3)) as i32, (16 * row + 4 * (tile >> 2)) as i32]
-}
-/// The pixels of a tile that lie in the image.
-#[inline(always)]
-fn in_image(tiles: &Tiles, [x, y]: [i32; 2]) -> u32 {
-    let (columns, rows) = ((tiles.width - x).clamp(0, 8), (tiles.height - y).clamp(0, 4));
-    let across = (1u32 << columns) - 1;
-    ((u64::from(across * 0x0101_0101)) & ((1u64 << (8 * rows)) - 1)) as u32
-}
-/// Whether a box may show at a pixel of these tiles that nothing covers.
-#[inline(always)]
-fn shows_bare<L: Wide>(l: L, tiles: &Tiles, span: &Span, block: usize, mut found: u32) -> bool {
-    let (row, strip) = (block / tiles.strips, block % tiles.strips);
-    while found != 0 {
-        let tile = found.trailing_zeros() as usize;
-        found &= found - 1;
-        let at = first_pixel(tiles, block, tile);
-        let line = &tiles.lines[tiles.first_line(strip, row) + (tile >> 2)];
-        let bare = !line.ever[tile & 3] & in_image(tiles, at);
-        if bare != 0 && span.pixels(l, at, None) & bare != 0 {
-            return true;
-        }
-    }
-    false
-}
-/// Whether a box may show at a pixel of these tiles, by exact depths where nothing less decides.
-#[inline(always)]
-fn shows<L: Wide>(l: L, tiles: &mut Tiles, span: &Span, block: usize, mut found: u32) -> bool {
-    while found != 0 {
-        let tile = found.trailing_zeros() as usize;
-        found &= found - 1;
-        let pixel = first_pixel(tiles, block, tile);
-        let known = tiles.resolved.at[block][tile];
-        let at = if known == Resolved::NOT { cover(tiles, block, tile) } else { known as usize };
-        if span.is_below(&tiles.resolved.floors[at].0, pixel) {
-            continue;
-        }
-        if tiles.resolved.floors[at].1 == Resolved::NOT {
-            resolve(l, tiles, block, tile);
-            refresh(l, tiles, block % tiles.strips, block / tiles.strips);
-            if span.is_below(&tiles.resolved.floors[at].0, pixel) {
-                continue;
-            }
-        }
-        let depths = &tiles.resolved.depths[tiles.resolved.floors[at].1 as usize];
-        if span.pixels(l, pixel, Some(depths)) & in_image(tiles, pixel) != 0 {
-            return true;
-        }
-    }
-    false
 }

@@ -37,6 +37,7 @@ pub(super) fn cover(tiles: &mut Tiles, block: usize, tile: usize) -> usize {
     }
     let at = tiles.resolved.floors.len();
     tiles.resolved.floors.push((best, Resolved::NOT));
+    tiles.resolved.order.push((block as u32, tile as u32));
     tiles.resolved.at[block][tile] = at as u32;
     at
 }

@@ -24,15 +24,41 @@ use crate::raster::vertex::{GUARD, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
 pub(super) struct Scratch {
     /// Points of the cluster at hand.
     corners: Vec<Vertex>,
-    /// Words of what faces the eye of it, and of what needs clipping.
-    front: Vec<u64>,
-    clipped: Vec<u64>,
+    /// Words of what faces the eye of it, with their tags; and of what needs clipping.
+    front: Front,
+    clipped: Vec<(u64, i32)>,
     /// Triangles that the grid turned over or that clipping made.
-    turned: Vec<[Vertex; 3]>,
+    turned: Vec<([Vertex; 3], i32)>,
     rings: [Ring; 3],
     ready: Option<Box<Ready>>,
     /// For each strip the tiles of a bin that a primitive may show in, covers whole, and its nearest depth.
     pub hits: Vec<(u64, u64, f32)>,
+    /// Tags of what faced the eye, and of what may show: where someone asks, else nothing.
+    pub told: Option<Told>,
+}
+
+/// Words and tags of what faces the eye. A tag says which primitive it is and which parts of it: the number
+/// among all words, shifted by two, and a bit for each of the two triangles.
+#[derive(Clone, Debug, Default)]
+struct Front {
+    words: Vec<u64>,
+    tags: Vec<i32>,
+}
+
+impl Front {
+    fn push(&mut self, word: u64, prim: usize, parts: i32) {
+        self.words.push(word);
+        self.tags.push((prim as i32) << 2 | parts);
+    }
+}
+/// Both triangles of a primitive.
+const BOTH: i32 = 3;
+
+/// What became of what was drawn, by tags.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Told {
+    pub faced: Vec<i32>,
+    pub shown: Vec<i32>,
 }
 
 impl Scratch {
@@ -42,16 +68,17 @@ impl Scratch {
     }
 }
 
-/// Primitives that wait to be set up: by columns x, y, z and packed of the four corners.
+/// Primitives that wait to be set up: by columns x, y, z and packed of the four corners, and their tags.
 #[derive(Clone, Debug)]
 struct Ring {
     values: [[i32; 48]; 16],
+    tags: [i32; 48],
     count: usize,
 }
 
 impl Default for Ring {
     fn default() -> Self {
-        Self { values: [[0; 48]; 16], count: 0 }
+        Self { values: [[0; 48]; 16], tags: [0; 48], count: 0 }
     }
 }
 
@@ -65,6 +92,8 @@ pub(super) struct Draw<'a, L> {
     pub tiles: &'a mut Tiles,
     pub clusters: &'a Clusters,
     pub one_sided: bool,
+    /// Primitives of the scene that are drawn already; none if empty.
+    pub skipped: &'a [bool],
 }
 
 impl<L: Wide> Draw<'_, L> {
@@ -72,15 +101,21 @@ impl<L: Wide> Draw<'_, L> {
     #[inline(always)]
     pub fn cluster(&mut self, c: &Cluster) {
         let mut front = std::mem::take(&mut self.tiles.scratch.front);
-        front.clear();
+        front.words.clear();
+        front.tags.clear();
         self.front_faces(c, &mut front);
-        if let Some(&last) = front.last() {
+        if let Some(&last) = front.words.last() {
+            if let Some(told) = &mut self.tiles.scratch.told {
+                told.faced.extend_from_slice(&front.tags);
+            }
             self.project(c);
             // Whole vectors: the last word again, and its lanes left out.
-            let count = front.len();
-            front.resize(count.next_multiple_of(16), last);
-            for (k, words) in front.chunks_exact(16).enumerate() {
-                self.gather(words, count - 16 * k);
+            let count = front.words.len();
+            front.words.resize(count.next_multiple_of(16), last);
+            front.tags.resize(front.words.len(), 0);
+            let tags = front.tags.chunks_exact(16);
+            for (k, (words, tags)) in front.words.chunks_exact(16).zip(tags).enumerate() {
+                self.gather(words, tags, count - 16 * k);
             }
             self.clip_all(c);
         }
@@ -106,7 +141,7 @@ impl<L: Wide> Draw<'_, L> {
 
     /// 1. The words of what shows its front, or either side where both are seen.
     #[inline(always)]
-    fn front_faces(&self, c: &Cluster, front: &mut Vec<u64>) {
+    fn front_faces(&self, c: &Cluster, front: &mut Front) {
         let (l, camera, all) = (self.l, &self.tiles.camera, self.clusters);
         let off = |a: usize| (camera.eye[a] - f64::from(c.middle[a])) as f32;
         let eye = [off(0), off(1), off(2)];
@@ -123,8 +158,13 @@ impl<L: Wide> Draw<'_, L> {
                 rest = l.without(rest, away);
             }
             let (mut whole, mut rest) = (l.bits(both), l.bits(rest));
+            if !self.skipped.is_empty() {
+                let drawn = self.drawn(first);
+                (whole, rest) = (whole & !drawn, rest & !drawn);
+            }
             while whole != 0 {
-                front.push(all.words[first + whole.trailing_zeros() as usize]);
+                let prim = first + whole.trailing_zeros() as usize;
+                front.push(all.words[prim], prim, BOTH);
                 whole &= whole - 1;
             }
             while rest != 0 {
@@ -132,6 +172,13 @@ impl<L: Wide> Draw<'_, L> {
                 rest &= rest - 1;
             }
         }
+    }
+    /// Of a vector of primitives those whose triangles are all drawn already.
+    #[inline(never)]
+    fn drawn(&self, first: usize) -> u32 {
+        let ids = self.clusters.ids[first..].iter().take(L::N).enumerate();
+        let is_drawn = |id: crate::geometry::PrimId| self.skipped[id.at()];
+        ids.map(|(lane, ids)| u32::from(is_drawn(ids[0]) && is_drawn(ids[1])) << lane).sum()
     }
     /// How far the eye lies before the planes of a vector of primitives; `which`: their first column.
     #[inline(always)]
@@ -142,20 +189,20 @@ impl<L: Wide> Draw<'_, L> {
     }
     /// The parts of one primitive that are seen, decided exactly, as they run on the screen.
     #[inline(never)]
-    fn front_parts(&self, c: &Cluster, prim: usize, front: &mut Vec<u64>) {
+    fn front_parts(&self, c: &Cluster, prim: usize, front: &mut Front) {
         let word = self.clusters.words[prim];
         let is_two_sided = !self.one_sided || word & TWO_SIDED != 0;
         let shows = [half(word, false), half(word, true)].map(|w| self.shows_front(c, w));
-        let mut put = |word: u64, shows_front: bool| match (shows_front, is_two_sided) {
-            (true, _) => front.push(word),
-            (false, true) => front.push(reversed(word)),
+        let mut put = |word: u64, shows_front: bool, parts: i32| match (shows_front, is_two_sided) {
+            (true, _) => front.push(word, prim, parts),
+            (false, true) => front.push(reversed(word), prim, parts),
             (false, false) => {}
         };
         if !is_quadrangle(word) || shows[0] == shows[1] {
-            put(word, shows[0]);
+            put(word, shows[0], BOTH);
         } else {
-            put(half(word, false), shows[0]);
-            put(half(word, true), shows[1]);
+            put(half(word, false), shows[0], 1);
+            put(half(word, true), shows[1], 2);
         }
     }
     fn shows_front(&self, c: &Cluster, word: u64) -> bool {
@@ -210,10 +257,11 @@ impl<L: Wide> Draw<'_, L> {
 
     /// 3. Sixteen words, `count` of which are meant.
     #[inline(always)]
-    fn gather(&mut self, words: &[u64], count: usize) {
+    fn gather(&mut self, words: &[u64], tags: &[i32], count: usize) {
         let l = self.l;
         for first in (0..count.min(16)).step_by(L::N) {
             let words = &words[first..first + L::N];
+            let tags = &tags[first..first + L::N];
             let v: [[L::I; 4]; 4] = each!(4; k => l.gather(&self.tiles.scratch.corners, words, k));
             let all = l.and(l.and(v[0][3], v[1][3]), l.and(v[2][3], v[3][3]));
             let any = l.or(l.or(v[0][3], v[1][3]), l.or(v[2][3], v[3][3]));
@@ -223,20 +271,21 @@ impl<L: Wide> Draw<'_, L> {
             let clip = l.without(valid, l.eq_i(l.and(any, l.splat_i(NEEDS_CLIP as i32)), zero));
             let mut bits = l.bits(clip);
             while bits != 0 {
-                let word = words[bits.trailing_zeros() as usize];
+                let lane = bits.trailing_zeros() as usize;
+                let (word, tag) = (words[lane], tags[lane]);
                 bits &= bits - 1;
-                self.tiles.scratch.clipped.push(half(word, false));
+                self.tiles.scratch.clipped.push((half(word, false), tag));
                 if is_quadrangle(word) {
-                    self.tiles.scratch.clipped.push(half(word, true));
+                    self.tiles.scratch.clipped.push((half(word, true), tag));
                 }
             }
-            self.sort(v, l.without(valid, clip));
+            self.sort(v, l.load_i(tags), l.without(valid, clip));
         }
         self.set_up_full();
     }
     /// Drops what covers no pixel's center; the rest waits in the ring of its size.
     #[inline(always)]
-    fn sort(&mut self, v: [[L::I; 4]; 4], valid: L::M) {
+    fn sort(&mut self, v: [[L::I; 4]; 4], tags: L::I, valid: L::M) {
         let l = self.l;
         let (x, y) = (each!(4; k => v[k][0]), each!(4; k => v[k][1]));
         let (low_x, high_x) = (least4(l, x), greatest4(l, x));
@@ -258,6 +307,7 @@ impl<L: Wide> Draw<'_, L> {
                         l.compress(&mut ring.values[4 * k + j][ring.count..], mask, value);
                     }
                 }
+                l.compress(&mut ring.tags[ring.count..], mask, tags);
                 ring.count += count;
             }
         }
@@ -275,15 +325,15 @@ impl<L: Wide> Draw<'_, L> {
     /// Up to 16 triangles that the grid turned over, or that clipping made, into the rings.
     fn sort_turned(&mut self) {
         let at = self.tiles.scratch.turned.len().saturating_sub(16);
-        let some: Vec<[Vertex; 3]> = self.tiles.scratch.turned.drain(at..).collect();
+        let some: Vec<([Vertex; 3], i32)> = self.tiles.scratch.turned.drain(at..).collect();
         self.l.apart(SortTurned { draw: self, some });
     }
     /// The parts of what crosses the near plane or the guard band.
     fn clip_all(&mut self, c: &Cluster) {
-        for word in std::mem::take(&mut self.tiles.scratch.clipped) {
+        for (word, tag) in std::mem::take(&mut self.tiles.scratch.clipped) {
             let camera = self.tiles.camera;
             for [a, b, c] in clip(&camera, self.points_of(c, word).map(|p| camera.clip(p))) {
-                put_turned([a, b, c], &mut self.tiles.scratch.turned);
+                put_turned([a, b, c], tag, &mut self.tiles.scratch.turned);
             }
         }
         while self.tiles.scratch.turned.len() >= 16 {
@@ -307,30 +357,38 @@ impl<L: Wide> Draw<'_, L> {
     #[inline(always)]
     fn set_up<const SIZE: u8>(&mut self, count: usize) {
         let l = self.l;
-        let mut batch = take(&mut self.tiles.scratch.rings[SIZE as usize], count);
+        let (mut batch, tags) = take(&mut self.tiles.scratch.rings[SIZE as usize], count);
         let mut ready = self.tiles.scratch.ready.take().unwrap_or_default();
         let (mut live, mut one) = (0, 0);
         for first in (0..count).step_by(L::N) {
-            let found = self.set_up_part::<SIZE>(&batch, &mut ready, first, count - first);
+            let found = self.set_up_part::<SIZE>(&batch, &tags, &mut ready, first, count - first);
             live |= found.0 << first;
             one |= found.1 << first;
         }
         let id = self.tiles.bins.kept.len() as u32 * 16;
-        let mut keep = false;
+        let mut hits = 0u32;
         let mut bits = live & one;
         while bits != 0 {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
-            keep |= single(l, self.tiles, &ready, lane, id + lane as u32);
+            hits |= u32::from(single(l, self.tiles, &ready, lane, id + lane as u32)) << lane;
         }
         let mut bits = live & !one;
         while bits != 0 {
             let lane = bits.trailing_zeros() as usize;
             bits &= bits - 1;
             let tiles = &mut *self.tiles;
-            keep |= l.apart(Several::<SIZE> { tiles, ready: &ready, lane, id: id + lane as u32 });
+            let hit = l.apart(Several::<SIZE> { tiles, ready: &ready, lane, id: id + lane as u32 });
+            hits |= u32::from(hit) << lane;
         }
-        if keep && self.tiles.keeps {
+        if let Some(told) = &mut self.tiles.scratch.told {
+            let mut bits = hits;
+            while bits != 0 {
+                told.shown.push(tags[bits.trailing_zeros() as usize]);
+                bits &= bits - 1;
+            }
+        }
+        if hits != 0 && self.tiles.keeps {
             for i in 0..16 {
                 // From tile to tile, eight columns and four rows.
                 let floor = [ready.floor[i], ready.along[i] * 0.125, ready.down[i] * 0.25];
@@ -348,6 +406,7 @@ impl<L: Wide> Draw<'_, L> {
     fn set_up_part<const SIZE: u8>(
         &mut self,
         batch: &Batch,
+        tags: &[i32; 16],
         t: &mut Ready,
         first: usize,
         count: usize,
@@ -371,7 +430,7 @@ impl<L: Wide> Draw<'_, L> {
             let lane = first + bits.trailing_zeros() as usize;
             bits &= bits - 1;
             for part in [[0, 1, 2], [0, 2, 3]] {
-                put_turned(part.map(|j| batch.corner(j, lane)), &mut self.tiles.scratch.turned);
+                put_turned(part.map(|j| batch.corner(j, lane)), tags[lane], &mut self.tiles.scratch.turned);
             }
         }
         let mut live = l.without(l.without(meant, apart), shape.flat);
@@ -469,22 +528,24 @@ fn beyond<L: Wide>(l: L, v: L::D, snapped: L::I) -> L::I {
 }
 /// Takes up to 16 out of a ring.
 #[inline(always)]
-fn take(ring: &mut Ring, count: usize) -> Batch {
-    let mut corners = [[[0; 16]; 4]; 4];
+fn take(ring: &mut Ring, count: usize) -> (Batch, [i32; 16]) {
+    let (mut corners, mut tags) = ([[[0; 16]; 4]; 4], [0; 16]);
     for (to, column) in corners.as_flattened_mut().iter_mut().zip(&mut ring.values) {
         to.copy_from_slice(&column[..16]);
         column.copy_within(16..32, 0);
     }
+    tags.copy_from_slice(&ring.tags[..16]);
+    ring.tags.copy_within(16..32, 0);
     ring.count -= count;
-    Batch { corners, floor: [[0.0; 16]; 3], column: [0; 16], row: [0; 16] }
+    (Batch { corners, floor: [[0.0; 16]; 3], column: [0; 16], row: [0; 16] }, tags)
 }
 
 /// A triangle as it runs clockwise on the grid, unless it covers nothing there.
-fn put_turned([a, b, c]: [Vertex; 3], to: &mut Vec<[Vertex; 3]>) {
+fn put_turned([a, b, c]: [Vertex; 3], tag: i32, to: &mut Vec<([Vertex; 3], i32)>) {
     match area([&a, &b, &c]) {
         0 => {}
-        1.. => to.push([a, b, c]),
-        _ => to.push([a, c, b]),
+        1.. => to.push(([a, b, c], tag)),
+        _ => to.push(([a, c, b], tag)),
     }
 }
 
@@ -499,8 +560,8 @@ impl<M: Wide> Work for SetUp<'_, '_, M> {
     type Output = ();
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
-        let Draw { tiles, clusters, one_sided, .. } = self.draw;
-        let mut draw = Draw { l, tiles, clusters, one_sided: *one_sided };
+        let Draw { tiles, clusters, one_sided, skipped, .. } = self.draw;
+        let mut draw = Draw { l, tiles, clusters, one_sided: *one_sided, skipped };
         match self.size {
             SMALL => draw.set_up::<SMALL>(self.count),
             MIDDLING => draw.set_up::<MIDDLING>(self.count),
@@ -512,17 +573,18 @@ impl<M: Wide> Work for SetUp<'_, '_, M> {
 /// Triangles that were turned round.
 struct SortTurned<'a, 'b, L> {
     draw: &'b mut Draw<'a, L>,
-    some: Vec<[Vertex; 3]>,
+    some: Vec<([Vertex; 3], i32)>,
 }
 
 impl<M: Wide> Work for SortTurned<'_, '_, M> {
     type Output = ();
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
-        let Draw { tiles, clusters, one_sided, .. } = self.draw;
-        let mut draw = Draw { l, tiles, clusters, one_sided: *one_sided };
-        let mut values = [[0; 16]; 16];
-        for (i, t) in self.some.iter().enumerate() {
+        let Draw { tiles, clusters, one_sided, skipped, .. } = self.draw;
+        let mut draw = Draw { l, tiles, clusters, one_sided: *one_sided, skipped };
+        let (mut values, mut tags) = ([[0; 16]; 16], [0; 16]);
+        for (i, (t, tag)) in self.some.iter().enumerate() {
+            tags[i] = *tag;
             for j in 0..4 {
                 let c = t[j.min(2)];
                 let v = [c.x, c.y, c.z.to_bits() as i32, c.packed as i32];
@@ -531,7 +593,7 @@ impl<M: Wide> Work for SortTurned<'_, '_, M> {
         }
         for first in (0..self.some.len()).step_by(L::N) {
             let v = each!(4; j => each!(4; k => l.load_i(&values[4 * k + j][first..])));
-            draw.sort(v, l.first(self.some.len() - first));
+            draw.sort(v, l.load_i(&tags[first..]), l.first(self.some.len() - first));
         }
         draw.set_up_full();
     }
