@@ -101,7 +101,7 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
         Occluders::in_tiles(&mesh, &boxes)
     } else {
         let cubes = Obscurer::new(&mesh, &settings, &Quiet)?;
-        Occluders::Cubes(Box::new(cubes.ok_or(CliError::Interrupted)?))
+        Occluders::Cubes(Box::new(cubes.ok_or(CliError::Interrupted)?), Boxes::new(boxes.iter().copied()))
     };
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
@@ -163,8 +163,8 @@ fn view(c: &[f64], eye: Vec3, all: &Aabb<Vec3>, [width, height]: [u32; 2]) -> Re
 
 /// What draws occluders and answers.
 enum Occluders {
-    /// The method's octree.
-    Cubes(Box<Obscurer<Solid>>),
+    /// The method's octree, and the boxes to ask for.
+    Cubes(Box<Obscurer<Solid>>, Boxes),
     /// The depth structure by itself.
     Tiles(Box<InTiles>),
 }
@@ -191,7 +191,7 @@ impl Occluders {
     }
     fn render(&mut self, view: &View<Solid>) {
         match self {
-            Self::Cubes(cubes) => _ = cubes.render(view, true),
+            Self::Cubes(cubes, _) => _ = cubes.render(view),
             Self::Tiles(all) => {
                 all.tiles.clear(view, true);
                 all.tiles.draw(&all.clusters, ONE_SIDED.one_sided, Isa::best());
@@ -199,9 +199,9 @@ impl Occluders {
         }
     }
     /// Asks for all boxes; `None`: out of view.
-    fn hides(&mut self, bounds: &[Aabb<Vec3>]) -> Vec<Option<bool>> {
+    fn hides(&mut self) -> Vec<Option<bool>> {
         match self {
-            Self::Cubes(cubes) => cubes.hides_all(bounds),
+            Self::Cubes(cubes, boxes) => cubes.hides_all(boxes),
             Self::Tiles(all) => {
                 all.tiles.hides_all(&all.boxes, true, Isa::best(), &mut all.answers);
                 let hidden =
@@ -234,7 +234,7 @@ fn measure(
         let mut answers = Vec::new();
         for _ in 0..repeat {
             render.push(timed(|| occluders.render(view)).1);
-            let (all, ms) = timed(|| occluders.hides(boxes));
+            let (all, ms) = timed(|| occluders.hides());
             query.push(ms);
             answers = all;
         }

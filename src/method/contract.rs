@@ -57,8 +57,6 @@ pub struct Frame<'a, S: Space, M: Method<S>> {
     pub params: &'a M::Params,
     /// What may end the frame early; a method that cannot be ended does not call it.
     pub limit: Option<&'a Limit<'a>>,
-    /// Whether only depths are wanted: no one will look at which primitive an image of the frame shows where.
-    pub depths_only: bool,
 }
 
 // Derived, they would ask the same of `M`.

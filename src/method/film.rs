@@ -125,7 +125,7 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
     }
     fn frame(&self) -> Frame<'_, S, M> {
         let (scene, index, view, params) = (&*self.scene, &*self.index, &self.view, &self.params);
-        Frame { index, scene, view, params, limit: None, depths_only: false }
+        Frame { index, scene, view, params, limit: None }
     }
     fn context(&self) -> Context<'_, S> {
         Context { scene: &self.scene, view: &self.view }

@@ -206,7 +206,7 @@ impl<S: Space, M: Shown<S>> Bound<S, M> {
         watch: &mut O,
     ) -> DrawList<S> {
         let (index, scene, params) = (&*self.index, &*self.scene, &self.params);
-        let frame = Frame { index, scene, view, params, limit, depths_only: false };
+        let frame = Frame { index, scene, view, params, limit };
         let mut list = DrawList::default();
         self.state.begin(&frame);
         M::cull(&frame, &mut self.memory, &mut self.state, &mut list, watch);

@@ -16,7 +16,6 @@
 
 mod image;
 mod line;
-mod outside;
 mod pyramid;
 pub mod reference;
 mod setup;
@@ -30,7 +29,6 @@ mod through;
 mod tiles;
 mod vertex;
 
-pub use outside::outside;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use setup::DEPTH_SLACK;
 pub use shade::{DepthScale, shade, shade_depth, shade_with};

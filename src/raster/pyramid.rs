@@ -47,8 +47,9 @@ pub struct PyramidCell {
 }
 
 impl PyramidCell {
-    /// Levels of [`super::Tiles`], above all of a pyramid: tiles of 8×4 pixels and blocks of 32×16.
+    /// The level of the tiles of [`super::Tiles`], 8×4 pixels: above all of a pyramid.
     pub const TILE: u8 = 32;
+    /// The level of its blocks, 32×16 pixels.
     pub const BLOCK: u8 = 33;
 
     /// Sides of the cells of a level in pixels, as shifts.

@@ -5,12 +5,13 @@ use std::marker::PhantomData;
 
 use super::buffer::Step;
 use super::faces::Faces;
-use super::query::{Answer, At, Decisive, Listener, Read};
+use super::tiled::TileStep;
+use super::query::{Answer, At, Decisive, Listener};
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{axes, integer, label, number, outline, short};
 use crate::method::{Claim, Compared, Context, Event, Field, Note, Observer, Tallied, Tally, Value};
-use crate::raster::{Extent, Options, PyramidCell};
+use crate::raster::{Extent, Hears, Options, Outcome, PyramidCell, Read};
 use crate::scene::{Scene, Surfaces};
 
 /// What happened to a buffer, or was read of it.
@@ -24,6 +25,8 @@ pub enum DepthNote<S: Faces> {
     RefreshedUnder(PixelRect, u32),
     /// The whole pyramid was brought up to date.
     RefreshedAll,
+    /// What a node holds, and was not drawn yet, was drawn into tiles: with fronts only, or from both sides.
+    Drawn(NodeId, bool),
     /// A node's box was queried.
     Answered(Answered<S>),
     /// A primitive was drawn, or left out because it lies behind its cells.
@@ -82,6 +85,9 @@ pub struct Rasterized {
     /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None`
     /// if it is not tested: it covers no pixel, had to be clipped, or the pyramid is not asked.
     pub operands: Option<(Extent, f32)>,
+    /// Among tiles the one in which it comes nearest to showing; `None` if it covers no pixel, or tiles are not
+    /// asked.
+    pub tile: Option<Read>,
     /// Whether it was left out.
     pub is_hidden: bool,
     /// Whether the pyramid was asked.
@@ -132,6 +138,111 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter
     }
 }
 
+/// Where a question about tiles stands: each is about to happen, or has just been decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The next block under what is asked for.
+    Block,
+    /// Whether it begins behind the block.
+    BehindBlock,
+    /// It covers the block, before all that is drawn there.
+    CoversBlock,
+    /// The next tile of a block.
+    Tile,
+    /// Whether it begins behind the tile.
+    BehindTile,
+    /// It covers the tile, and shows in it.
+    CoversTile,
+    /// The tile does not decide.
+    Keep,
+    /// The next of the tiles that did not.
+    Kept,
+    /// Whether it lies behind a plane that is known of the tile.
+    Plane,
+    /// The depths of the tile's pixels are worked out.
+    Resolve,
+    /// Whether it shows at a pixel.
+    Pixel,
+    /// It shows nowhere.
+    Hidden,
+}
+
+/// Reports what a question about tiles reads, as evidence about the node that is asked for, at lines of a
+/// method's pseudocode. `N` is the method's own note.
+pub struct Asking<'a, S, N, O> {
+    watch: &'a mut O,
+    lines: fn(Stage) -> Option<u8>,
+    /// Whose box it is; of what is no node nothing is said but what changes.
+    node: Option<NodeId>,
+    is_close: bool,
+    reads: u32,
+    decisive: Option<Decisive>,
+    kinds: PhantomData<(S, N)>,
+}
+
+impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Asking<'a, S, N, O> {
+    /// What is reported goes to `watch`.
+    pub fn new(watch: &'a mut O, lines: fn(Stage) -> Option<u8>, node: Option<NodeId>) -> Self {
+        Self { watch, lines, node, is_close: false, reads: 0, decisive: None, kinds: PhantomData }
+    }
+    /// The answer with what was read for it.
+    pub fn answer(mut self, is_hidden: bool, nearest: f32) -> Answer {
+        if is_hidden {
+            self.reaches(Stage::Hidden);
+        }
+        Answer { is_hidden, nearest, reads: self.reads, decisive: self.decisive }
+    }
+    fn reaches(&mut self, stage: Stage) {
+        if O::LISTENS
+            && let Some(line) = (self.lines)(stage)
+        {
+            self.watch.event(Event::Line(line));
+        }
+    }
+}
+
+impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N, O> {
+    const LISTENS: bool = O::LISTENS;
+    fn reads(&mut self, read: Read) {
+        let Some(node) = self.node else { return };
+        let [next, ask, shows] = match read.cell.level {
+            PyramidCell::BLOCK => [Some(Stage::Block), Some(Stage::BehindBlock), Some(Stage::CoversBlock)],
+            PyramidCell::TILE if !self.is_close => {
+                [Some(Stage::Tile), Some(Stage::BehindTile), Some(Stage::CoversTile)]
+            }
+            PyramidCell::TILE => [None, Some(Stage::Plane), None],
+            _ => [None, Some(Stage::Pixel), None],
+        };
+        next.into_iter().chain(ask).for_each(|stage| self.reaches(stage));
+        self.watch.note(move || DepthNote::Read(node, read).into());
+        self.reads += 1;
+        let here = Decisive::of(&read);
+        match read.outcome {
+            Outcome::Shows => {
+                shows.into_iter().for_each(|stage| self.reaches(stage));
+                self.decisive = Some(here);
+            }
+            // Kept is the cell with the least margin.
+            Outcome::Behind if self.decisive.is_none_or(|least| here.margin() < least.margin()) => {
+                self.decisive = Some(here);
+            }
+            Outcome::Descends if read.cell.level == PyramidCell::TILE => self.reaches(Stage::Keep),
+            Outcome::Behind | Outcome::Descends => {}
+        }
+    }
+    fn looks_closer(&mut self) {
+        self.is_close = true;
+        self.reaches(Stage::Kept);
+    }
+    fn refreshes(&mut self, cell: PyramidCell) {
+        if cell.level == PyramidCell::TILE {
+            self.reaches(Stage::Resolve);
+        }
+        // Whoever is asked for: a film brings up to date what the run did.
+        self.watch.note(|| DepthNote::Refreshed(cell).into());
+    }
+}
+
 /// View depth of a depth, world units.
 pub fn units(depth: f32) -> f32 {
     // Notes keep 1/w, the very number that was compared; it is inverted for readers alone.
@@ -154,6 +265,16 @@ impl<S: Faces> DepthNote<S> {
             }
             // What was only looked at, or left out, changes neither a pixel nor a tile.
             Self::Read(..) | Self::Answered(_) | Self::Rasterized(_) => None,
+            // Tiles change by steps of their own.
+            Self::Drawn(..) => None,
+        }
+    }
+    /// The change of tiles that it records; `None` if nothing changed.
+    pub fn tile_step(&self) -> Option<TileStep> {
+        match *self {
+            Self::Refreshed(cell) => Some(TileStep::Refresh(cell)),
+            Self::Drawn(node, one_sided) => Some(TileStep::Draw(node, one_sided)),
+            _ => None,
         }
     }
     /// Draws the evidence in the world.
@@ -164,6 +285,8 @@ impl<S: Faces> DepthNote<S> {
                 outline(scene, n.prim, to);
                 if let Some((extent, held)) = n.operands {
                     behind(view, extent.pixels, extent.nearest, held, to);
+                } else if let Some(r) = &n.tile {
+                    behind(view, r.cell.pixels(view.width, view.height), r.nearest, r.held, to);
                 }
             }
             Self::Read(_, n) => {
@@ -171,7 +294,7 @@ impl<S: Faces> DepthNote<S> {
                 behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
             }
             // A tile has no place in the world; the pictures of the pyramid show it.
-            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => {}
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll | Self::Drawn(..) => {}
         }
     }
 }
@@ -183,6 +306,7 @@ impl<S: Faces> Tallied for DepthNote<S> {
             Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
             // How many tiles were stale is not recorded, so the whole call counts once.
             Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
+            Self::Drawn(..) => tally.add("cubes_drawn", 1),
             Self::Answered(_) => tally.add("queries", 1),
             Self::Rasterized(n) => {
                 tally.add(if n.is_hidden { "primitives_behind" } else { "primitives_drawn" }, 1)
@@ -198,6 +322,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             Self::Refreshed(_) => "TileRefreshed",
             Self::RefreshedUnder(..) => "TilesRefreshed",
             Self::RefreshedAll => "PyramidRefreshed",
+            Self::Drawn(..) => "CubeDrawn",
             // Georges 1995, Section 3.3, calls a query an obscuration test.
             Self::Answered(_) => "ObscurationTested",
             Self::Rasterized(n) if n.is_hidden => "PrimitiveBehind",
@@ -210,6 +335,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             // It follows the reads of its query, so it is the note that the node's verdict rests on.
             Self::Answered(n) => Subject::Node(n.node),
             Self::Rasterized(n) => Subject::Prim(n.prim),
+            Self::Drawn(n, _) => Subject::Node(*n),
             // Of no node, even where a query caused it: no verdict may rest on a refresh.
             Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => Subject::None,
         }
@@ -217,7 +343,10 @@ impl<S: Faces> Note<S> for DepthNote<S> {
     fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
             Self::Answered(n) if n.answer.is_hidden => Some(Claim::Hidden),
-            Self::Rasterized(n) if n.is_hidden => Some(Claim::Hidden),
+            // What covers no pixel is not behind anything.
+            Self::Rasterized(n) if n.is_hidden && (n.operands.is_some() || n.tile.is_some()) => {
+                Some(Claim::Hidden)
+            }
             // A cell hides a part of a box at most.
             _ => None,
         }
@@ -231,8 +360,9 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Read(_, n) => Some(depths(n.nearest, n.held)),
             Self::Answered(n) => n.answer.decisive.map(|d| depths(d.nearest, d.held)),
+            Self::Rasterized(Rasterized { tile: Some(r), .. }) => Some(depths(r.nearest, r.held)),
             Self::Rasterized(n) => n.operands.map(|(extent, held)| depths(extent.nearest, held)),
-            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => None,
+            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll | Self::Drawn(..) => None,
         }
     }
     fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
@@ -243,12 +373,16 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 // View depths, so that they compare with lengths in the world.
                 fields.push(number("box_depth_units", units(n.nearest).into()));
                 fields.push(number("held_depth_units", units(n.held).into()));
-                fields.push(Field { name: "outcome", value: Value::Word(n.outcome.word().into()) });
+                fields.push(Field { name: "outcome", value: Value::Word(word(n.outcome).into()) });
                 fields
             }
             Self::Refreshed(cell) => cell_fields(*cell).to_vec(),
             Self::RefreshedUnder(pixels, most) => vec![pixels_field(*pixels), integer("most_tiles", *most)],
             Self::RefreshedAll => vec![],
+            Self::Drawn(node, one_sided) => vec![
+                integer("node", node.0),
+                Field { name: "one_sided", value: Value::Switch(*one_sided) },
+            ],
             Self::Answered(n) => n.fields(),
             Self::Rasterized(n) => n.fields(),
         }
@@ -257,8 +391,16 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         let far = 1.0 / context.view.eye.far;
         match self {
             Self::Read(node, n) => {
-                format!("The box of node {node} against {}: {}.", place(n.cell), n.comparison())
+                format!("The box of node {node} against {}: {}.", place(n.cell), comparison(n))
             }
+            Self::Refreshed(cell) if cell.level == PyramidCell::BLOCK => {
+                format!("All tiles of {} hide it, so what the block holds is brought up to date.", place(*cell))
+            }
+            Self::Refreshed(cell) if cell.level == PyramidCell::TILE => format!(
+                "Masks and bounds do not decide in {}: the depths of its pixels are worked out, from the \
+                 primitives that were drawn there.",
+                place(*cell)
+            ),
             Self::Refreshed(cell) => {
                 format!(
                     "Something was drawn under {} since it was read: its tile is brought up to date, with \
@@ -274,6 +416,12 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 )
             }
             Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
+            Self::Drawn(node, one_sided) => format!(
+                "What node {node} holds is drawn into the tiles{}, many {}s at a time. What became of each \
+                 follows.",
+                if *one_sided { ", as far as it faces the eye" } else { "" },
+                S::PRIM
+            ),
             Self::Answered(n) => n.sentence(far),
             Self::Rasterized(n) => n.sentence(context.scene, far),
         }
@@ -404,7 +552,38 @@ fn pixels_field(r: PixelRect) -> Field {
     Field { name: "pixels", value: Value::List([r.x0, r.x1, r.y0, r.y1].map(f64::from).to_vec()) }
 }
 fn cell_fields(cell: PyramidCell) -> [Field; 3] {
-    [integer("level", cell.level.into()), integer("column", cell.x.into()), integer("row", cell.y.into())]
+    // Of tiles the levels are pixel, tile and block.
+    let level = match cell.level {
+        PyramidCell::TILE => 1,
+        PyramidCell::BLOCK => 2,
+        level => level,
+    };
+    [integer("level", level.into()), integer("column", cell.x.into()), integer("row", cell.y.into())]
+}
+
+/// One word for an outcome, as tables have it.
+pub fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Behind => "behind",
+        Outcome::Descends => "descend",
+        Outcome::Shows => "visible",
+    }
+}
+
+/// The comparison of a read as it is written beside a cell, such as `box 6, cell 9: not behind, descend`.
+pub fn comparison(read: &Read) -> String {
+    let then = match read.outcome {
+        Outcome::Behind => "behind",
+        Outcome::Descends => "not behind, descend",
+        Outcome::Shows => "not behind: visible",
+    };
+    let cell = match read.cell.level {
+        0 => "pixel",
+        PyramidCell::TILE => "tile",
+        PyramidCell::BLOCK => "block",
+        _ => "cell",
+    };
+    format!("box {}, {cell} {}: {then}", short(1.0 / read.nearest), short(1.0 / read.held))
 }
 
 /// A cell in words.
@@ -412,6 +591,8 @@ pub fn place(cell: PyramidCell) -> String {
     match cell.level {
         // Level 0 is the image itself and is not called a cell.
         0 => format!("pixel ({}, {})", cell.x, cell.y),
+        PyramidCell::TILE => format!("tile ({}, {})", cell.x, cell.y),
+        PyramidCell::BLOCK => format!("block ({}, {})", cell.x, cell.y),
         level => format!("cell ({}, {}) of level {level}", cell.x, cell.y),
     }
 }
@@ -444,16 +625,47 @@ impl Rasterized {
             fields.push(number("nearest_depth_units", nearest.into()));
             fields.push(number("held_depth_units", held.into()));
             fields.push(number("margin_units", f64::from(nearest) - f64::from(held)));
+        } else if let Some(r) = &self.tile {
+            let (nearest, held) = (units(r.nearest), units(r.held));
+            fields.extend(cell_fields(r.cell));
+            fields.push(number("nearest_depth_units", nearest.into()));
+            fields.push(number("held_depth_units", held.into()));
+            fields.push(number("margin_units", f64::from(nearest) - f64::from(held)));
         }
         fields
     }
     /// `far`: the depth of an empty pixel.
     fn sentence<S: Faces>(&self, scene: &Scene<S>, far: f32) -> String {
-        let mut text = self.drawn::<S>(far);
+        let mut text = match &self.tile {
+            Some(read) => self.in_tiles::<S>(read, far),
+            None => self.drawn::<S>(far),
+        };
         if !self.is_hidden && self.surfaces.show_through(scene, self.prim) {
             text += " It is see-through, so it leaves the depths as they are and hides nothing.";
         }
         text
+    }
+    /// What became of it in tiles; `read`: where it comes nearest to showing.
+    fn in_tiles<S: Faces>(&self, read: &Read, far: f32) -> String {
+        let (kind, prim, tile) = (S::PRIM, self.prim, place(read.cell));
+        let (near, held) = (short(units(read.nearest)), short(units(read.held)));
+        if self.is_hidden {
+            format!(
+                "The {kind} {prim} is left out: in every tile that it covers it lies behind all that is drawn. \
+                 The closest is {tile}, where it begins at depth {near} and the farthest thing drawn is at \
+                 {held}."
+            )
+        } else if read.held <= far {
+            format!(
+                "The {kind} {prim} is drawn: in {tile} it comes as near as {near}, and as far as the tile \
+                 knows, nothing is drawn yet somewhere in it."
+            )
+        } else {
+            format!(
+                "The {kind} {prim} is drawn: in {tile} it comes as near as {near}, and as far as the tile \
+                 knows, the farthest thing drawn in it is at {held}."
+            )
+        }
     }
     fn drawn<S: Faces>(&self, far: f32) -> String {
         let (kind, prim) = (S::PRIM, self.prim);
@@ -468,7 +680,9 @@ impl Rasterized {
             );
         }
         let Some((extent, held)) = self.operands else {
-            return if self.is_sieved {
+            return if self.is_hidden {
+                format!("The {kind} {prim} is left out: it lies beside the image or between pixel centers.")
+            } else if self.is_sieved {
                 format!(
                     "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by \
                      the near plane or the image's wide border."

@@ -8,15 +8,16 @@
 mod buffer;
 mod evidence;
 mod faces;
+mod levels;
 pub mod picture;
 mod planes;
 mod query;
 #[cfg(test)]
 mod tests;
+mod tiled;
 
 pub use buffer::{Buffer, Step};
-pub use evidence::{Answered, DepthNote, Ground, QueryReporter, Rasterized};
+pub use evidence::{Answered, Asking, DepthNote, Ground, QueryReporter, Rasterized, Stage};
 pub use faces::{Faces, footprint, project_sphere};
-#[cfg(test)]
-pub use query::Outcome;
-pub use query::{Answer, At, Decisive, Held, Listener, Nobody, Query, hides, hides_all};
+pub use query::{Answer, At, Decisive, Nobody, Query, hides};
+pub use tiled::{TileStep, Tiled, deciding};

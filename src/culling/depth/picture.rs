@@ -5,14 +5,13 @@
 
 use glam::{Vec2, vec2};
 
-use super::buffer::Buffer;
-use super::evidence::{Answered, DepthNote, place, units};
+use super::evidence::{Answered, DepthNote, comparison, place, units};
 use super::faces::Faces;
-use super::query::{Outcome, Read};
+use super::levels::Levels;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
 use crate::geometry::{NodeId, View};
 use crate::method::evidence::short;
-use crate::raster::{DepthScale, PyramidCell, shade_depth};
+use crate::raster::{DepthScale, Outcome, PyramidCell, Read, shade_depth};
 
 /// Width of a picture in points.
 pub const WIDTH_PT: f32 = 480.0;
@@ -64,7 +63,7 @@ pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote
 /// Where a level stands on paper: its corner, the size of a cell, and how far the image goes.
 #[derive(Clone, Copy)]
 struct Frame {
-    level: u32,
+    level: u8,
     at: Vec2,
     cell: Vec2,
     end: Vec2,
@@ -72,8 +71,8 @@ struct Frame {
 
 impl Frame {
     /// A level whose image is `size` large; cells at the far edges may be cut.
-    fn new<S: Faces>(level: u32, at: Vec2, size: Vec2, view: &View<S>) -> Self {
-        let cell = size * (1u32 << level) as f32 / vec2(view.width as f32, view.height as f32);
+    fn new<S: Faces>(level: u8, at: Vec2, size: Vec2, view: &View<S>) -> Self {
+        let cell = size * sides(level) / vec2(view.width as f32, view.height as f32);
         // A line of pixels has one row on every level.
         let cell = if view.height == 1 { vec2(cell.x, size.y) } else { cell };
         Self { level, at, cell, end: at + size }
@@ -85,32 +84,42 @@ impl Frame {
     fn cell_under(&self, at: Vec2) -> Option<PyramidCell> {
         let inside = at.cmpge(self.at).all() && at.cmplt(self.end).all();
         let place = (at - self.at) / self.cell;
-        inside.then_some(PyramidCell { level: self.level as u8, x: place.x as u16, y: place.y as u16 })
+        inside.then_some(PyramidCell { level: self.level, x: place.x as u16, y: place.y as u16 })
     }
 }
 
-/// The levels that are shown, and where.
-fn frames<S: Faces>(buffer: &Buffer<S>, view: &View<S>) -> (Vec<Frame>, f32) {
-    let (root, top) = (buffer.pyramid().root(), 12.0);
+/// Sides of the cells of a level, pixels.
+fn sides(level: u8) -> Vec2 {
+    Vec2::from(PyramidCell::shifts(level).map(|shift| (1u32 << shift) as f32))
+}
+
+/// The levels that are shown, and where; after them the place of the layers that are begun, if there are any.
+fn frames<S: Faces>(of: &impl Levels, view: &View<S>) -> (Vec<Frame>, Option<Frame>, f32) {
+    let (all, top) = (of.levels(), 12.0);
+    let more = usize::from(of.begun().is_some());
     if S::CORNERS == 2 {
-        // Strips of one width below each other: a cell stands right below the two that it stands for.
-        let frame = |level: u32| {
-            Frame::new(level, vec2(0.0, top + level as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
+        // Strips of one width below each other: a cell stands right below those that it stands for.
+        let frame = |k: usize, level: u8| {
+            Frame::new(level, vec2(0.0, top + k as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
         };
-        return ((0..=root).map(frame).collect(), (root + 1) as f32 * STRIP_PITCH_PT);
+        let frames: Vec<Frame> = all.iter().enumerate().map(|(k, &level)| frame(k, level)).collect();
+        let begun = (more > 0).then(|| frame(all.len(), 0));
+        return (frames, begun, (all.len() + more) as f32 * STRIP_PITCH_PT);
     }
-    let shown: Vec<u32> = (0..=root)
-        .filter(|&l| buffer.pyramid().size(l).0.max(buffer.pyramid().size(l).1) <= MOST_COLUMNS)
-        .collect();
+    let is_shown = |level: &u8| of.size(*level).into_iter().max() <= Some(MOST_COLUMNS);
+    let shown: Vec<u8> = all.into_iter().filter(is_shown).collect();
     // All of one size, so that a place is found again on each, and coarse cells have room for their values.
-    let in_row = shown.len().clamp(1, 4);
+    let count = shown.len() + more;
+    let in_row = count.clamp(1, 4);
     // More between the rows, where the names of the levels stand.
     let gap = vec2(8.0, 16.0);
     let width = (WIDTH_PT - gap.x * (in_row - 1) as f32) / in_row as f32;
     let size = vec2(width, width * view.height as f32 / view.width.max(1) as f32);
     let at = |k: usize| vec2(0.0, top) + (size + gap) * vec2((k % in_row) as f32, (k / in_row) as f32);
-    let frames = shown.iter().enumerate().map(|(k, &level)| Frame::new(level, at(k), size, view)).collect();
-    (frames, shown.len().div_ceil(in_row) as f32 * (size.y + gap.y))
+    let frame = |(k, &level): (usize, &u8)| Frame::new(level, at(k), size, view);
+    let frames = shown.iter().enumerate().map(frame).collect();
+    let begun = (more > 0).then(|| Frame::new(0, at(shown.len()), size, view));
+    (frames, begun, count.div_ceil(in_row) as f32 * (size.y + gap.y))
 }
 
 /// Height of a strip and distance from one to the next, in flatland.
@@ -119,59 +128,56 @@ const STRIP_PITCH_PT: f32 = 26.0;
 
 /// Some cells of a level as an image, one cell a pixel.
 fn image<S: Faces>(
-    buffer: &Buffer<S>,
+    of: &impl Levels,
     view: &View<S>,
-    level: u32,
+    level: u8,
     [x0, x1, y0, y1]: [u32; 4],
     scale: DepthScale,
 ) -> Pixels {
     let cells = (y0..y1)
-        .flat_map(|y| (x0..x1).map(move |x| PyramidCell { level: level as u8, x: x as u16, y: y as u16 }));
-    let depths: Vec<f32> = cells.map(|c| buffer.farthest(c)).collect();
+        .flat_map(|y| (x0..x1).map(move |x| PyramidCell { level, x: x as u16, y: y as u16 }));
+    let depths: Vec<f32> = cells.map(|c| of.farthest(c)).collect();
     Pixels {
         width: x1 - x0,
         height: y1 - y0,
         // On the scale of the whole image: one gray is one depth on every level.
-        rgba: shade_depth(&depths, &buffer.target().depth, 1.0 / view.eye.far, scale).into(),
+        rgba: shade_depth(&depths, of.depths(), 1.0 / view.eye.far, scale).into(),
     }
 }
 
 /// The frame with the level's name and its image, and values where there is room.
 fn draw_level<S: Faces>(
-    buffer: &Buffer<S>,
+    of: &impl Levels,
     view: &View<S>,
     frame: &Frame,
     scale: DepthScale,
     to: &mut Drawing,
 ) {
-    let (columns, rows) = buffer.pyramid().size(frame.level);
-    let title = match frame.level {
-        // Short: with its size it would reach the next level's name.
-        0 => "level 0: the z-buffer".into(),
-        l => format!("level {l}, {columns} × {rows}"),
-    };
+    let [columns, rows] = of.size(frame.level);
+    let title = of.title(frame.level);
     to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
     // Whole cells first, then those that the image's edge cuts.
     // The pixels of an image mark are all of one size, which cut cells are not: they have marks of their own.
-    let split = |cells: u32, pixels: u32| {
-        if pixels >> frame.level == cells {
+    let [across, down] = PyramidCell::shifts(frame.level);
+    let split = |cells: u32, pixels: u32, shift: u32| {
+        if pixels >> shift == cells {
             vec![[0, cells]]
         } else {
             vec![[0, cells - 1], [cells - 1, cells]]
         }
     };
-    for [y0, y1] in split(rows, view.height) {
-        for [x0, x1] in split(columns, view.width).into_iter().filter(|_| y1 > y0) {
+    for [y0, y1] in split(rows, view.height, down) {
+        for [x0, x1] in split(columns, view.width, across).into_iter().filter(|_| y1 > y0) {
             if x1 > x0 {
                 let cell =
-                    |x: u32, y: u32| PyramidCell { level: frame.level as u8, x: x as u16, y: y as u16 };
+                    |x: u32, y: u32| PyramidCell { level: frame.level, x: x as u16, y: y as u16 };
                 let corners = [frame.rect(cell(x0, y0))[0], frame.rect(cell(x1 - 1, y1 - 1))[1]];
-                let pixels = image(buffer, view, frame.level, [x0, x1, y0, y1], scale);
+                let pixels = image(of, view, frame.level, [x0, x1, y0, y1], scale);
                 to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
             }
         }
     }
-    stale(buffer, frame, to);
+    stale(of, frame, to);
     to.outline(
         Layer::Scene,
         Role::Faint,
@@ -180,10 +186,10 @@ fn draw_level<S: Faces>(
     );
     for y in 0..rows as u16 {
         for x in 0..columns as u16 {
-            let cell = PyramidCell { level: frame.level as u8, x, y };
+            let cell = PyramidCell { level: frame.level, x, y };
             // No number where it is stale: it would be read as the truth.
             let text =
-                if is_stale(buffer, cell) { "stale".into() } else { value(buffer.farthest(cell), view) };
+                if of.is_stale(cell) { "stale".into() } else { value(of.farthest(cell), view) };
             let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
             // All cells of a level are of one size: as a rule all have room for their values or none has.
             if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
@@ -195,17 +201,12 @@ fn draw_level<S: Faces>(
     }
 }
 
-/// Whether a cell holds less than the truth, since something was drawn under it and it was not read since.
-fn is_stale<S: Faces>(buffer: &Buffer<S>, cell: PyramidCell) -> bool {
-    cell.level > 0 && buffer.pyramid().is_stale_below(cell)
-}
-
 /// Marks what is not up to date, in runs along the rows.
-fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
+fn stale(of: &impl Levels, frame: &Frame, to: &mut Drawing) {
     // Below the level of tiles all cells of a tile are alike.
-    let level = frame.level.max(if frame.level == 0 { 0 } else { 4.min(buffer.pyramid().root()) });
-    let (columns, rows) = buffer.pyramid().size(level);
-    let tile = Frame { level, cell: frame.cell * (1u32 << (level - frame.level)) as f32, ..*frame };
+    let level = of.stale_level(frame.level);
+    let [columns, rows] = of.size(level);
+    let tile = Frame { level, cell: frame.cell * sides(level) / sides(frame.level), ..*frame };
     let tile = if frame.end.y - frame.at.y <= STRIP_PT {
         Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile }
     } else {
@@ -215,7 +216,7 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
     let mut open: Vec<([u32; 2], u32)> = Vec::new();
     // Over the shades and under the cells that were read: a hatch lets the gray beneath it be seen.
     let mut close = |[x0, x1]: [u32; 2], y0: u32, y1: u32| {
-        let cell = |x: u32, y: u32| PyramidCell { level: level as u8, x: x as u16, y: y as u16 };
+        let cell = |x: u32, y: u32| PyramidCell { level, x: x as u16, y: y as u16 };
         let ([a, _], [_, b]) = (tile.rect(cell(x0, y0)), tile.rect(cell(x1 - 1, y1 - 1)));
         to.push(
             Layer::Nodes,
@@ -228,7 +229,7 @@ fn stale<S: Faces>(buffer: &Buffer<S>, frame: &Frame, to: &mut Drawing) {
     for y in 0..=rows {
         let mut runs: Vec<[u32; 2]> = Vec::new();
         for x in (0..columns).filter(|&x| {
-            y < rows && is_stale(buffer, PyramidCell { level: level as u8, x: x as u16, y: y as u16 })
+            y < rows && of.is_stale(PyramidCell { level, x: x as u16, y: y as u16 })
         }) {
             match runs.last_mut().filter(|run| run[1] == x) {
                 Some(run) => run[1] += 1,
@@ -279,7 +280,7 @@ fn role_of(read: &Read) -> Role {
 fn light(reads: &Reads, frames: &[Frame], to: &mut Drawing) {
     for (number, read) in reads.all.iter().enumerate() {
         // A level whose cells are too fine to be shown has no frame.
-        let Some(frame) = frames.iter().find(|f| f.level == u32::from(read.cell.level)) else { continue };
+        let Some(frame) = frames.iter().find(|f| f.level == read.cell.level) else { continue };
         let [a, b] = frame.rect(read.cell);
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
         to.outline(Layer::Emphasis, role_of(read), Subject::None, corners);
@@ -317,7 +318,7 @@ fn comparisons(reads: &Reads, top: f32, to: &mut Drawing) -> f32 {
         None => (first..reads.len()).collect(),
     };
     for (line, (number, read)) in shown.into_iter().map(|n| (n, &reads[n])).enumerate() {
-        let text = format!("{}. {}: {}", number + 1, place(read.cell), read.comparison());
+        let text = format!("{}. {}: {}", number + 1, place(read.cell), comparison(read));
         to.text(
             Layer::Labels,
             if Some(number) == named { Role::Ink } else { Role::Faint },
@@ -342,10 +343,26 @@ fn comparisons(reads: &Reads, top: f32, to: &mut Drawing) -> f32 {
 }
 
 /// The levels side by side, each as large as the others; in flatland strips below each other.
-pub fn levels<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
-    let (frames, height) = frames(buffer, view);
+pub fn levels<S: Faces>(of: &impl Levels, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
+    let (frames, begun, height) = frames(of, view);
     let mut to = Drawing::default();
-    frames.iter().for_each(|f| draw_level(buffer, view, f, scale, &mut to));
+    frames.iter().for_each(|f| draw_level(of, view, f, scale, &mut to));
+    if let (Some(frame), Some(depths)) = (begun, of.begun()) {
+        to.text(
+            Layer::Labels,
+            Role::Ink,
+            frame.at - vec2(0.0, 3.0),
+            LABEL_PT,
+            Anchor::Start,
+            "masks: nearer layers",
+        );
+        let rgba = shade_depth(depths, of.depths(), 1.0 / view.eye.far, scale).into();
+        let pixels = Pixels { width: view.width, height: view.height, rgba };
+        let corners = [frame.at, frame.end];
+        to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
+        let [a, b] = corners;
+        to.outline(Layer::Scene, Role::Faint, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
+    }
     light(reads, &frames, &mut to);
     let mut bottom = comparisons(reads, 4.0 + height, &mut to);
     if to.items.iter().any(|i| i.role == Role::Approximated) {
@@ -382,7 +399,7 @@ impl Stack {
     fn rows(
         &self,
         k: usize,
-        level: u32,
+        level: u8,
         height: u32,
         [columns, rows]: [u32; 2],
         all: &Pixels,
@@ -392,7 +409,7 @@ impl Stack {
         // into several where there are few.
         let thin = rows.max((self.depth as u32).min(64));
         for line in 0..thin {
-            let row = ((line * height / thin) >> level).min(rows - 1) as usize;
+            let row = ((line * height / thin) >> PyramidCell::shifts(level)[1]).min(rows - 1) as usize;
             let (y0, y1) = (line as f32 / thin as f32, (line + 1) as f32 / thin as f32);
             let rgba: Vec<u8> =
                 all.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
@@ -406,9 +423,8 @@ impl Stack {
 }
 
 /// The levels above each other, seen askew, the image at the bottom.
-pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
-    let root = buffer.pyramid().root();
-    let shown: Vec<u32> = (0..=root).filter(|&l| buffer.pyramid().size(l).0 <= MOST_COLUMNS).collect();
+pub fn stacked<S: Faces>(of: &impl Levels, view: &View<S>, reads: &Reads, scale: DepthScale) -> Drawing {
+    let shown: Vec<u8> = of.levels().into_iter().filter(|&l| of.size(l)[0] <= MOST_COLUMNS).collect();
     let (base, lean, rise) = (WIDTH_PT * 0.62, WIDTH_PT * 0.2, 46.0);
     let depth = (base * 0.45 * view.height as f32 / view.width.max(1) as f32).clamp(14.0, base * 0.6);
     let top = 14.0 + rise * shown.len().saturating_sub(1) as f32;
@@ -416,15 +432,14 @@ pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scal
     let mut to = Drawing::default();
     // From the image up: what is drawn later lies on top, as the upper level does.
     for (k, &level) in shown.iter().enumerate() {
-        let (columns, rows) = buffer.pyramid().size(level);
-        let pixels = image(buffer, view, level, [0, columns, 0, rows], scale);
+        let [columns, rows] = of.size(level);
+        let pixels = image(of, view, level, [0, columns, 0, rows], scale);
         let corners = stack.quad(k, Vec2::ZERO, Vec2::ONE);
         to.push(Layer::Scene, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
         stack.rows(k, level, view.height, [columns, rows], &pixels, &mut to);
         to.outline(Layer::Scene, Role::Faint, Subject::None, corners);
-        let side =
-            vec2((1u32 << level) as f32 / view.width as f32, (1u32 << level) as f32 / view.height as f32);
-        for (number, read) in reads.all.iter().enumerate().filter(|(_, r)| u32::from(r.cell.level) == level) {
+        let side = sides(level) / vec2(view.width as f32, view.height as f32);
+        for (number, read) in reads.all.iter().enumerate().filter(|(_, r)| r.cell.level == level) {
             let a = side * vec2(read.cell.x.into(), read.cell.y.into());
             let lit = stack.quad(k, a, (a + side).min(Vec2::ONE));
             to.outline(Layer::Emphasis, role_of(read), Subject::None, lit);
@@ -435,7 +450,7 @@ pub fn stacked<S: Faces>(buffer: &Buffer<S>, view: &View<S>, reads: &Reads, scal
             }
         }
         let name = vec2(lean + base + 6.0, stack.at(k, vec2(1.0, 0.0)).y + 4.0);
-        let text = format!("level {level}, {columns} × {rows}");
+        let text = of.title(level);
         to.text(Layer::Labels, Role::Ink, name, LABEL_PT, Anchor::Start, text);
     }
     let bottom = comparisons(reads, top + depth + 2.0, &mut to);
@@ -511,9 +526,9 @@ pub fn finished(mut to: Drawing, bottom: f32, title: &str) -> Drawing {
 }
 
 /// The value of the cell under a point of [`levels`], in words.
-pub fn probe<S: Faces>(buffer: &Buffer<S>, view: &View<S>, at: Vec2) -> Option<String> {
-    let cell = frames(buffer, view).0.iter().find_map(|f| f.cell_under(at))?;
+pub fn probe<S: Faces>(of: &impl Levels, view: &View<S>, at: Vec2) -> Option<String> {
+    let cell = frames(of, view).0.iter().find_map(|f| f.cell_under(at))?;
     let stale =
-        if is_stale(buffer, cell) { " as far as it is known; drawn into since it was last read" } else { "" };
-    Some(format!("{}: farthest {}{stale}", place(cell), value(buffer.farthest(cell), view)))
+        if of.is_stale(cell) { " as far as it is known; drawn into since it was last read" } else { "" };
+    Some(format!("{}: farthest {}{stale}", place(cell), value(of.farthest(cell), view)))
 }

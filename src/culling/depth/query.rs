@@ -26,8 +26,7 @@ use super::buffer::{Buffer, Step};
 use super::faces::{Faces, footprint};
 use super::planes::{Over, Planes, below, middle};
 use crate::geometry::{Aabb, Footprint, PixelRect};
-use crate::method::evidence::short;
-use crate::raster::{PyramidCell, outside};
+use crate::raster::{Outcome, PyramidCell, Read};
 
 /// A cell that decided, and the two depths that were compared there, `1/w`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,8 +39,12 @@ pub struct Decisive {
 }
 
 impl Decisive {
+    /// The cell of a read.
+    pub(super) fn of(read: &Read) -> Self {
+        Self { cell: read.cell, held: read.held, nearest: read.nearest }
+    }
     /// By how much the cell hides it, `1/w`; negative or 0 if it does not.
-    fn margin(&self) -> f32 {
+    pub(super) fn margin(&self) -> f32 {
         self.held - self.nearest
     }
 }
@@ -74,52 +77,6 @@ impl Answer {
         if decides {
             self.decisive = other.decisive;
         }
-    }
-}
-
-/// How a cell compared with a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// It lies behind all that is drawn in the cell.
-    Behind,
-    /// It may not; the cells below are asked.
-    Descends,
-    /// A pixel that it covers shows nothing nearer.
-    Shows,
-}
-
-impl Outcome {
-    /// One word for tables.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Behind => "behind",
-            Self::Descends => "descend",
-            Self::Shows => "visible",
-        }
-    }
-}
-
-/// A cell of the pyramid was read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Read {
-    /// The cell.
-    pub cell: PyramidCell,
-    /// Its farthest depth, and the nearest at which the box begins in it, `1/w`.
-    pub held: f32,
-    pub nearest: f32,
-    /// What followed.
-    pub outcome: Outcome,
-}
-
-impl Read {
-    /// The comparison as it is written beside a cell, such as `box 6, cell 9: not behind, descend`.
-    pub fn comparison(&self) -> String {
-        let then = match self.outcome {
-            Outcome::Behind => "behind",
-            Outcome::Descends => "not behind, descend",
-            Outcome::Shows => "not behind: visible",
-        };
-        format!("box {}, cell {}: {then}", short(1.0 / self.nearest), short(1.0 / self.held))
     }
 }
 
@@ -177,83 +134,19 @@ impl Listener for Nobody {
     fn reads(&mut self, _: Read) {}
 }
 
-/// What is drawn so far, to be read and perhaps to be brought up to date.
-pub trait Held<S: Faces> {
-    fn buffer(&self) -> &Buffer<S>;
-    /// Whether the tile of a cell is stale and may be brought up to date.
-    fn would_refresh(&self, cell: PyramidCell) -> bool;
-    fn refresh(&mut self, cell: PyramidCell);
-}
-
-impl<S: Faces> Held<S> for &mut Buffer<S> {
-    fn buffer(&self) -> &Buffer<S> {
-        self
-    }
-    #[inline]
-    fn would_refresh(&self, cell: PyramidCell) -> bool {
-        self.pyramid().is_stale(cell)
-    }
-    fn refresh(&mut self, cell: PyramidCell) {
-        self.step(Step::Refresh(cell));
-    }
-}
-
-/// For several threads at once; what is stale stays so.
-impl<S: Faces> Held<S> for &Buffer<S> {
-    fn buffer(&self) -> &Buffer<S> {
-        self
-    }
-    fn would_refresh(&self, _: PyramidCell) -> bool {
-        false
-    }
-    fn refresh(&mut self, _: PyramidCell) {}
-}
-
 /// Whether a box is hidden by what is drawn for the buffer's view, by its planes; `None` if it lies outside
 /// the view. A box that reaches the near plane is not hidden.
 #[inline]
 pub fn hides<S: Faces>(
-    buffer: impl Held<S>,
+    buffer: &mut Buffer<S>,
     bounds: &Aabb<S::Vector>,
     listener: impl Listener,
 ) -> Option<Answer> {
+    let seen = buffer.projected()?;
     // All planes at a time, by the bound that keeps primitives out of the image.
-    if buffer.buffer().projected()?.frustum.excludes(bounds) {
+    if seen.frustum.excludes(bounds) {
         return None;
     }
-    hides_in_view(buffer, bounds, listener)
-}
-
-/// The same of many boxes, of which those out of view are found many at a time: whether each is hidden, in
-/// order.
-pub fn hides_all<S: Faces>(
-    buffer: &mut Buffer<S>,
-    boxes: &[Aabb<S::Vector>],
-    answers: &mut Vec<Option<bool>>,
-) {
-    answers.clear();
-    let mut words = Vec::with_capacity(boxes.len().div_ceil(16));
-    if let Some(seen) = buffer.projected() {
-        outside(&seen.frustum, boxes, &mut words);
-    }
-    // A buffer without a view hides nothing and shows nothing.
-    words.resize(boxes.len().div_ceil(16), u16::MAX);
-    for (boxes, word) in boxes.chunks(16).zip(words) {
-        answers.extend(boxes.iter().enumerate().map(|(lane, bounds)| {
-            let answer = (word >> lane & 1 == 0).then(|| hides_in_view(&mut *buffer, bounds, Nobody));
-            answer.flatten().map(|a| a.is_hidden)
-        }));
-    }
-}
-
-/// Whether a box that the planes of the view do not exclude is hidden.
-#[inline]
-fn hides_in_view<S: Faces>(
-    buffer: impl Held<S>,
-    bounds: &Aabb<S::Vector>,
-    listener: impl Listener,
-) -> Option<Answer> {
-    let seen = buffer.buffer().projected()?;
     let view = &seen.view;
     match footprint(view, &seen.projection, bounds) {
         Footprint::Outside => None,
@@ -275,9 +168,9 @@ struct Both {
 }
 
 /// One query.
-pub struct Query<'a, S: Faces, B: Held<S>, L> {
+pub struct Query<'a, S: Faces, L> {
     /// What is drawn so far.
-    buffer: B,
+    buffer: &'a mut Buffer<S>,
     /// What receives the reads.
     listener: L,
     answer: Answer,
@@ -289,9 +182,9 @@ pub struct Query<'a, S: Faces, B: Held<S>, L> {
     planes: Option<Both>,
 }
 
-impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
+impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
     /// A query for something that comes no nearer than a depth, `1/w`.
-    pub fn new(buffer: B, nearest: f32, listener: L) -> Self {
+    pub fn new(buffer: &'a mut Buffer<S>, nearest: f32, listener: L) -> Self {
         let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
         Self { buffer, listener, answer, pixels: PixelRect::default(), asked: None, planes: None }
     }
@@ -324,13 +217,13 @@ impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
         // A departure from Section 3.2, which begins at "the single finest resolution pixel in the pyramid
         // that still completely covers the bounding box area": what lies across a border of large cells
         // would begin far up.
-        let (first, last) = self.buffer.buffer().pyramid().cover(pixels);
+        let (first, last) = self.buffer.pyramid().cover(pixels);
         for y in first.y..=last.y {
             for x in first.x..=last.x {
                 let cell = PyramidCell { level: first.level, x, y };
                 // Where the nearest corner does not decide, the planes are asked.
                 let mut known = [self.answer.nearest, -1.0];
-                if self.answer.nearest >= self.buffer.buffer().farthest(cell) {
+                if self.answer.nearest >= self.buffer.farthest(cell) {
                     let pixels = self.pixels_of(cell);
                     let over = self.of_cells(&middle(cell), [pixels; 4]);
                     if !over.meets[0] {
@@ -363,7 +256,7 @@ impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
             let fills = pixels.map(|c| if holds(c) { nearest } else { -1.0 });
             return Over { meets: [true; 4], up: [nearest; 4], fills };
         };
-        let rays = self.buffer.buffer().rays();
+        let rays = self.buffer.rays();
         let planes = self.planes.get_or_insert_with(|| Both {
             bounds: Planes::new(rays, bounds),
             whole: (whole != bounds).then(|| Planes::new(rays, whole)),
@@ -380,13 +273,13 @@ impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
         self.listener.reaches(At::Descent);
         self.listener.reaches(At::Compare);
         self.answer.reads += 1;
-        let mut held = self.buffer.buffer().farthest(cell);
+        let mut held = self.buffer.farthest(cell);
         // A stale cell holds too far a depth: what is behind it is hidden all the same, and only what is not
         // is worth a refresh.
-        if up >= held && self.buffer.would_refresh(cell) {
+        if up >= held && self.buffer.pyramid().is_stale(cell) {
             self.listener.refreshes(cell);
-            self.buffer.refresh(cell);
-            held = self.buffer.buffer().farthest(cell);
+            self.buffer.step(Step::Refresh(cell));
+            held = self.buffer.farthest(cell);
         }
         // Section 3.2: obscured if "the closest face z is further than the sample z". Depths are 1/w, so
         // farther is less. Equal depths count as seen, since ids then decide.
@@ -450,11 +343,11 @@ impl<'a, S: Faces, B: Held<S>, L: Listener> Query<'a, S, B, L> {
     }
     /// Whether the depth of a cell is that of a pixel of it. Above the tiles it may be out of date.
     fn is_known(&self, cell: PyramidCell) -> bool {
-        cell.level <= TILE_LEVEL && !self.buffer.buffer().pyramid().is_stale(cell)
+        cell.level <= TILE_LEVEL && !self.buffer.pyramid().is_stale(cell)
     }
     #[inline]
     fn pixels_of(&self, cell: PyramidCell) -> PixelRect {
-        let target = self.buffer.buffer().target();
+        let target = self.buffer.target();
         cell.pixels(target.width, target.height)
     }
 }

@@ -7,15 +7,16 @@
 //! 1. the cubes that were visible in the last frame are drawn, which almost completes the z-buffer
 //!    (Section 3.3);
 //! 2. the octree (Section 3.1) is visited front to back. A cube whose box the z-pyramid hides is dropped
-//!    with all below it (Section 3.2, [`crate::culling::depth`]); another one is drawn and goes onto the
-//!    visible list;
+//!    with all below it (Section 3.2); another one is drawn and goes onto the visible list;
 //! 3. what the list holds and the finished image does not show leaves it (Section 3.3).
 //!
-//! Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the
+//! The z-buffer and its pyramid are tiles ([`crate::raster::Tiles`]): pixels, tiles and blocks are the levels
+//! that are asked. Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the
 //! drawing of what they hold; memory O(cubes) from frame to frame.
 
 mod code;
 mod evidence;
+mod index;
 pub mod parts;
 mod picture;
 #[cfg(test)]
@@ -26,12 +27,12 @@ use std::sync::Arc;
 
 use self::code::{CODE, DEPARTURES, STANDS, has_line};
 pub(crate) use self::evidence::Evidence;
+use self::index::CubeIndex;
 use self::walk::{Scratch, Walk};
 use super::cubes::Cubes;
 use super::depth::picture::probe;
-use super::depth::{Buffer, Faces};
+use super::depth::{Faces, Tiled};
 use crate::drawing::Drawing;
-use crate::index::Octree;
 use crate::method::{
     Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
     surface_knobs, words,
@@ -107,9 +108,9 @@ pub(crate) struct Memory {
 
 impl<S: Faces> Method<S> for HierarchicalZ {
     type Params = Params;
-    type Index = Octree<S::Vector>;
+    type Index = CubeIndex<S>;
     type Memory = Memory;
-    type State = Buffer<S>;
+    type State = Tiled<S>;
     type Note = Evidence<S>;
     const CARD: Card = Card {
         key: "hierarchical-z",
@@ -154,7 +155,7 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         let test = Knob::new(
             "primitive-test",
             "",
-            "primitives behind their pyramid cells are not drawn either",
+            "primitives that begin behind every tile that they cover are not drawn either",
             "Greene, Kass and Miller 1993, Section 3.2",
         );
         knobs.switch(test, &mut params.primitive_test);
@@ -176,24 +177,24 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         progress: &dyn Progress,
     ) -> Result<Option<Self::Index>, String> {
         keeps_nothing(saved)?;
-        Ok(params.cubes.build(scene, progress))
+        Ok(CubeIndex::build(scene, params, progress))
     }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         memory: &mut Memory,
-        buffer: &mut Buffer<S>,
+        tiled: &mut Tiled<S>,
         out: &mut DrawList<S>,
         watch: &mut O,
     ) {
         watch.event(Event::FrameBegan);
         let Memory { listed, frames, farthest, scratch } = memory;
         // Cubes that have no mark yet begin off the list.
-        listed.resize(frame.index.nodes().len(), false);
+        listed.resize(frame.index.octree().nodes().len(), false);
         // Without the list of the last frame every cube that is reached is queried, as in a first frame.
         if !frame.params.coherence {
             listed.fill(false);
         }
-        let mut walk = Walk::new(frame, listed, scratch, buffer, out, watch);
+        let mut walk = Walk::new(frame, listed, scratch, tiled, out, watch);
         walk.run();
         // Section 3.3: against the final z-buffer, so after all is drawn. No list is kept without coherence.
         if frame.params.coherence {
@@ -206,16 +207,15 @@ impl<S: Faces> Method<S> for HierarchicalZ {
     }
 }
 
-impl<S: Faces> State<S, HierarchicalZ> for Buffer<S> {
-    // A copy of the images costs as much as drawing about this many primitives.
-    const KEYFRAME_NOTES: usize = 1 << 14;
+impl<S: Faces> State<S, HierarchicalZ> for Tiled<S> {
+    // A copy of the tiles and of what they keep takes about as long as drawing this many primitives.
+    const KEYFRAME_NOTES: usize = 1 << 13;
     fn begin(&mut self, frame: &Frame<'_, S, HierarchicalZ>) {
-        // Queries read depths alone: where nobody looks at the image, it need not know its primitives.
-        if frame.depths_only { self.clear_depths(frame.view) } else { self.clear(frame.view) }
+        self.clear(frame.view, frame.index.clusters(), frame.scene.prim_count());
     }
-    fn apply(&mut self, scene: &Scene<S>, note: &Evidence<S>) {
-        // Everything else that is recorded leaves the buffer as it is.
-        if let Some(step) = note.depth().and_then(|n| n.step(scene)) {
+    fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
+        // Everything else that is recorded leaves the tiles as they are.
+        if let Some(step) = note.depth().and_then(|n| n.tile_step()) {
             self.step(step);
         }
     }
@@ -233,6 +233,6 @@ impl<S: Faces> Shown<S> for HierarchicalZ {
     }
     fn probe(moment: &Moment<'_, S, Self>, which: usize, at: glam::Vec2) -> Option<String> {
         // Of the pictures only the levels beside each other show cells that are not askew.
-        (which == 0).then(|| probe(moment.state, moment.frame.view, at))?
+        (which == 0).then(|| probe(&moment.state.levels(), moment.frame.view, at))?
     }
 }

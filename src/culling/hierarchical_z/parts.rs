@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::index::CubeIndex;
 use super::{HierarchicalZ, Memory, Params};
 use crate::culling::depth::picture::{last_reads, levels};
-use crate::culling::depth::{Buffer, DepthNote, Faces, Nobody, Query, QueryReporter, hides, hides_all};
+use crate::culling::depth::{Buffer, DepthNote, Faces, Query, QueryReporter, Tiled};
 use crate::drawing::Drawing;
-use crate::geometry::{Aabb, Eye, NodeId, PixelRect, Solid, View};
-use crate::index::Octree;
+use crate::geometry::{Eye, NodeId, PixelRect, Solid, View};
 use crate::method::{DrawList, Frame, Method, Recorder, SettingError, Settings, State, Unobserved, params};
-use crate::raster::{DepthScale, Options, Target};
+use crate::raster::{Boxes, DepthScale, Options};
 use crate::scene::{Parts, Progress, Scene, SceneError};
 
 /// Key of the method whose parts these are.
@@ -21,10 +21,10 @@ pub const METHOD: &str = <HierarchicalZ as Method<Solid>>::CARD.key;
 /// Occluders of a scene, to be drawn for a view and then asked about boxes.
 pub struct Obscurer<S: Faces> {
     scene: Arc<Scene<S>>,
-    index: Octree<S::Vector>,
+    index: CubeIndex<S>,
     params: Params,
     memory: Memory,
-    state: Buffer<S>,
+    state: Tiled<S>,
 }
 
 impl<S: Faces> Obscurer<S> {
@@ -45,15 +45,14 @@ impl<S: Faces> Obscurer<S> {
             index,
             params,
             memory: Memory::default(),
-            state: Buffer::default(),
+            state: Tiled::default(),
         }))
     }
-    /// Draws a frame, with what is remembered of the last one. Returns what was drawn. `depths_only`: boxes
-    /// can be queried, and the image has no items; half the memory to clear and to fill.
-    pub fn render(&mut self, view: &View<S>, depths_only: bool) -> DrawList<S> {
+    /// Draws a frame, with what is remembered of the last one. Returns what the image needs.
+    pub fn render(&mut self, view: &View<S>) -> DrawList<S> {
         let mut list = DrawList::default();
         let (index, scene, params) = (&self.index, &*self.scene, &self.params);
-        let frame = Frame { index, scene, view, params, limit: None, depths_only };
+        let frame = Frame { index, scene, view, params, limit: None };
         // As a run does it, with nobody listening.
         self.state.begin(&frame);
         HierarchicalZ::cull(&frame, &mut self.memory, &mut self.state, &mut list, &mut Unobserved);
@@ -63,28 +62,9 @@ impl<S: Faces> Obscurer<S> {
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }
-    /// Whether a box is hidden by what was drawn last, by its planes; `None` if it is out of view.
-    pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<bool> {
-        // By planes whatever the parameter `query` is: they say most.
-        hides(&mut self.state, bounds, Nobody).map(|answer| answer.is_hidden)
-    }
-    /// The same of many boxes, in order.
-    pub fn hides_all(&mut self, boxes: &[Aabb<S::Vector>]) -> Vec<Option<bool>> {
-        let mut answers = Vec::with_capacity(boxes.len());
-        hides_all(&mut self.state, boxes, &mut answers);
-        answers
-    }
-    /// Makes the whole pyramid stale, so that there is something to bring up to date; for timing.
-    pub fn touch_all(&mut self, view: &View<S>) {
-        self.state.touch(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height });
-    }
-    /// Brings the whole pyramid up to date.
-    pub fn refresh_all(&mut self) {
-        self.state.refresh_all();
-    }
-    /// The image that was drawn.
-    pub fn target(&self) -> &Target {
-        self.state.target()
+    /// Whether boxes are hidden by what was drawn last, by their planes, in order; `None` if one is out of view.
+    pub fn hides_all(&mut self, boxes: &Boxes) -> Vec<Option<bool>> {
+        self.state.hides_all(boxes)
     }
 }
 

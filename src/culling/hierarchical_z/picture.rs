@@ -3,7 +3,7 @@
 use super::evidence::Evidence;
 use crate::culling::cubes::CubeNote;
 use crate::culling::depth::picture::{Lists, last_reads, levels, stacked};
-use crate::culling::depth::{Buffer, DepthNote, Faces};
+use crate::culling::depth::{DepthNote, Faces, Tiled};
 use crate::drawing::Drawing;
 use crate::geometry::View;
 use crate::raster::DepthScale;
@@ -13,7 +13,7 @@ pub(super) const PICTURES: &[&str] = &["z-pyramid", "z-pyramid, stacked", "visib
 
 /// Draws picture `which`.
 pub(super) fn picture<S: Faces>(
-    buffer: &Buffer<S>,
+    tiled: &Tiled<S>,
     view: &View<S>,
     notes: &[Evidence<S>],
     which: usize,
@@ -23,8 +23,8 @@ pub(super) fn picture<S: Faces>(
     let reads = || last_reads(notes.iter().rev().map(Evidence::depth));
     // In the order of `PICTURES`.
     match which {
-        0 => levels(buffer, view, &reads(), scale),
-        1 => stacked(buffer, view, &reads(), scale),
+        0 => levels(&tiled.levels(), view, &reads(), scale),
+        1 => stacked(&tiled.levels(), view, &reads(), scale),
         _ => lists(notes).draw(),
     }
 }

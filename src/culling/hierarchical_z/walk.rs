@@ -1,35 +1,32 @@
 //! The traversal of one frame, in the incremental and the two-pass form.
 
-use rayon::prelude::*;
-
 use super::code::line;
 use super::evidence::Evidence;
+use super::index::CubeIndex;
 use super::{Form, Params, Volume};
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, At, Buffer, DepthNote, Faces, Ground, Held, Listener, Nobody, Query, QueryReporter,
-    Rasterized, Step, footprint, project_sphere,
+    Answer, Answered, Asking, DepthNote, Faces, Ground, Rasterized, Stage, TileStep, Tiled, deciding,
+    footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
-    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View,
-    nearest_depth,
+    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector,
+    View, nearest_depth,
 };
 use crate::index::{Octree, OctreeNode};
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
-use crate::raster::Options;
+use crate::raster::{Fate, Question};
 use crate::scene::Scene;
 
 /// Buffers that frames reuse. A copy of the memory does not hold them.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// Shared primitives that this frame has drawn, by id.
-    drawn: Vec<bool>,
     /// Cubes that were drawn from the list.
     cubes: Vec<bool>,
-    /// Primitives of the cube at hand.
-    prims: Vec<PrimId>,
+    /// What became of the primitives of the cube at hand.
+    fates: Vec<(PrimId, Fate)>,
 }
 
 impl Clone for Scratch {
@@ -38,30 +35,20 @@ impl Clone for Scratch {
     }
 }
 
-/// Fewer primitives are drawn on one thread: handing them out would take longer.
-const PARALLEL_PRIMS: usize = 2048;
-/// Threads that draw: all of the pool that the run was put into, or the calling one alone.
-fn threads() -> usize {
-    rayon::current_thread_index().map_or(1, |_| rayon::current_num_threads())
-}
-
 /// The traversal of one frame.
 pub(super) struct Walk<'a, S: Faces, O> {
-    index: &'a Octree<S::Vector>,
+    index: &'a CubeIndex<S>,
     scene: &'a Scene<S>,
     view: &'a View<S>,
     frustum: Frustum<S::Vector>,
     projection: Projection<S::Vector>,
     params: &'a Params,
-    options: Options,
-    buffer: &'a mut Buffer<S>,
-    drawn: &'a mut [bool],
+    tiled: &'a mut Tiled<S>,
     cubes: &'a mut [bool],
-    prims: &'a mut Vec<PrimId>,
+    fates: &'a mut Vec<(PrimId, Fate)>,
     listed: &'a mut [bool],
-    /// Two-pass form: cubes that are drawn together with others; and what was queried ahead.
+    /// Two-pass form: cubes that are drawn together with others.
     waiting: Vec<NodeId>,
-    asked: Vec<Option<bool>>,
     /// Visited cubes that passed primitives on to several children.
     passing: Vec<NodeId>,
     /// Cubes that came onto the list.
@@ -72,20 +59,18 @@ pub(super) struct Walk<'a, S: Faces, O> {
 
 impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// A frame that is yet to be walked.
-    pub(super) fn new<M: Method<S, Params = Params, Index = Octree<S::Vector>>>(
+    pub(super) fn new<M: Method<S, Params = Params, Index = CubeIndex<S>>>(
         frame: &Frame<'a, S, M>,
         listed: &'a mut [bool],
         scratch: &'a mut Scratch,
-        buffer: &'a mut Buffer<S>,
+        tiled: &'a mut Tiled<S>,
         out: &'a mut DrawList<S>,
         watch: &'a mut O,
     ) -> Self {
         let Frame { index, scene, view, params, .. } = *frame;
-        let Scratch { drawn, cubes, prims } = scratch;
+        let Scratch { cubes, fates } = scratch;
         cubes.clear();
-        cubes.resize(index.nodes().len(), false);
-        drawn.clear();
-        drawn.resize(scene.prim_count(), false);
+        cubes.resize(index.octree().nodes().len(), false);
         Self {
             index,
             scene,
@@ -93,25 +78,19 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             frustum: view.frustum(),
             projection: view.projection(),
             params,
-            // The rasterizer need not look for back faces, since each cube's primitives are tested as they
-            // are gathered.
-            options: Options {
-                surfaces: params.surfaces.both_sides(),
-                threads: threads(),
-                ..Options::default()
-            },
-            buffer,
-            drawn,
+            tiled,
             cubes,
-            prims,
+            fates,
             listed,
             waiting: Vec::new(),
-            asked: Vec::new(),
             passing: Vec::new(),
             added: 0,
             out,
             watch,
         }
+    }
+    fn octree(&self) -> &'a Octree<S::Vector> {
+        self.index.octree()
     }
 
     /// Steps 1 and 2: draws the visible list, then visits the tree.
@@ -128,13 +107,6 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             if self.params.coherence {
                 self.line(line::DRAW_KEPT);
                 self.draw_together();
-            }
-            // Nothing is drawn during the visit, so all queries read the same pyramid: once is enough.
-            self.line(line::REFRESH_ALL);
-            self.refresh(DepthNote::RefreshedAll);
-            // A listener is to hear every read in the order of the traversal.
-            if self.options.threads > 1 && !O::LISTENS {
-                self.ask_ahead();
             }
         }
         // 2. Section 3.2: everything else is drawn unless the pyramid hides its box.
@@ -164,7 +136,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.stage("check");
         let interval = self.params.check_interval;
         // Where every frame checks, nothing is to be decided by the farthest depth.
-        let farthest = if interval == 1 { 0.0 } else { self.buffer.farthest_of_all() };
+        let farthest = if interval == 1 { 0.0 } else { self.tiled.tiles().farthest() };
         let listed = self.listed.iter().filter(|l| **l).count() as u32;
         let check = Check::new([frames, interval], [self.added, listed], [farthest, before]);
         self.line(line::CHECK);
@@ -175,13 +147,6 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         (check.due.is_some(), farthest)
     }
 
-    /// Brings the pyramid up to date in the way that a note says.
-    fn refresh(&mut self, note: DepthNote<S>) {
-        self.watch.note(move || Evidence::Depth(note));
-        if let Some(step) = note.step(self.scene) {
-            self.buffer.step(step);
-        }
-    }
     fn is_two_pass(&self) -> bool {
         self.params.form == Form::TwoPass
     }
@@ -196,49 +161,13 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Two-pass form on several threads: queries all cubes that the visit will query, level by level. The
-    /// pyramid does not change meanwhile, so the answers are those of one query after the other.
-    fn ask_ahead(&mut self) {
-        self.asked.clear();
-        self.asked.resize(self.index.nodes().len(), None);
-        // What threads share: the observer is not among it.
-        let (index, buffer, frustum, cubes) = (self.index, &*self.buffer, &self.frustum, &*self.cubes);
-        let (view, projection, params) = (self.view, &self.projection, self.params);
-        let is_hidden = |id: NodeId| {
-            let node = &index.nodes()[id.at()];
-            match question(node, view, projection, params) {
-                Question::Decided(ground) => ground != Ground::CrossesNear,
-                Question::Open(image, nearest) => {
-                    ask(Query::new(buffer, nearest, Nobody), params, node, image.pixels).is_hidden
-                }
-            }
-        };
-        let ask = |&(id, planes): &(NodeId, u8)| match frustum.test(&index.nodes()[id.at()].bounds, planes) {
-            FrustumTest::Outside(_) => None,
-            FrustumTest::Partial(cutting) => Some((id, cutting, !cubes[id.at()] && is_hidden(id))),
-            FrustumTest::Inside => Some((id, 0, !cubes[id.at()] && is_hidden(id))),
-        };
-        let mut level = vec![(NodeId(0), Frustum::<S::Vector>::ALL)];
-        while !level.is_empty() {
-            // A level at a time: below a hidden cube nothing is queried.
-            let answers: Vec<_> = level.par_iter().filter_map(ask).collect();
-            level.clear();
-            for (id, cutting, is_hidden) in answers {
-                self.asked[id.at()] = Some(is_hidden);
-                if !is_hidden {
-                    level.extend(index.nodes()[id.at()].children().map(|c| (NodeId(c), cutting)));
-                }
-            }
-        }
-    }
-
     /// Draws the cubes that are on the list and in view.
     fn draw_listed(&mut self, id: NodeId, planes: u8) {
         // Nothing below it is drawn from the list either, whatever marks there are.
         if !self.listed[id.at()] {
             return;
         }
-        let node = &self.index.nodes()[id.at()];
+        let node = &self.octree().nodes()[id.at()];
         let cutting = match self.frustum.test(&node.bounds, planes) {
             // Section 5.1: it keeps its mark. What leaves the view by turning is mostly still visible
             // when the view turns back.
@@ -250,13 +179,13 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.note(|| Evidence::Listed(id, true));
         self.cubes[id.at()] = true;
         self.draw_or_keep(id, [line::DRAW_LISTED, line::KEEP_LISTED]);
-        for child in front_to_back(self.index, node, self.view) {
+        for child in front_to_back(self.octree(), node, self.view) {
             self.draw_listed(child, cutting);
         }
     }
 
     fn visit(&mut self, id: NodeId, planes: u8) {
-        let index = self.index;
+        let index = self.octree();
         let node = &index.nodes()[id.at()];
         self.watch.event(Event::Entered(id));
         self.line(line::VISIT);
@@ -277,10 +206,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
         } else {
             self.line(line::OBSCURED);
-            let ahead = self.asked.get(id.at()).copied().flatten();
-            // Threads must not decide anything: what was asked ahead is what would be asked here.
-            debug_assert!(ahead.is_none_or(|ahead| ahead == self.is_obscured(id)), "asked ahead: {id:?}");
-            let is_obscured = ahead.unwrap_or_else(|| self.is_obscured(id));
+            let is_obscured = self.is_obscured(id);
             self.line(line::OBSCURED);
             if is_obscured {
                 return self.leave(id, line::HIDDEN, Verdict::Hidden);
@@ -310,135 +236,113 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Left(id));
     }
 
-    /// Draws what a cube holds and is not drawn yet.
+    /// Draws what the cubes hold that were kept.
+    fn draw_together(&mut self) {
+        std::mem::take(&mut self.waiting).into_iter().for_each(|node| self.draw(node));
+    }
+    /// Draws what a cube holds and is not drawn yet, and reports what became of each primitive.
     fn draw(&mut self, id: NodeId) {
         self.line(line::DRAW_CUBE);
-        self.prims.clear();
-        self.gather(id);
-        if self.prims.is_empty() {
+        if self.octree().own(id).is_empty() && self.octree().shared(id).is_empty() {
             return;
         }
-        let bounds = &self.index.nodes()[id.at()].bounds;
-        if self.params.primitive_test
-            && let Footprint::Seen(image) = footprint(self.view, &self.projection, bounds)
-        {
-            // A departure: the paper's pyramid is always up to date (Section 3.2). Here no more tiles are
-            // refreshed than there are primitives that could be left out because of it.
-            self.line(line::REFRESH);
-            let (pixels, most) = (image.pixels, self.prims.len() as u32);
-            self.refresh(DepthNote::RefreshedUnder(pixels, most));
-        }
-        self.rasterize();
-    }
-    /// Draws what the cubes hold that were kept, all at once.
-    fn draw_together(&mut self) {
-        self.line(line::DRAW_CUBE);
-        self.prims.clear();
-        std::mem::take(&mut self.waiting).into_iter().for_each(|node| self.gather(node));
-        self.rasterize();
-    }
-    /// Adds what a cube holds, is not drawn yet and faces the eye to the primitives at hand.
-    fn gather(&mut self, id: NodeId) {
-        self.line(line::GATHER);
-        let (index, scene, view) = (self.index, self.scene, self.view);
-        let first = self.prims.len();
-        self.prims.extend_from_slice(index.own(id));
-        // Section 3.1: a small primitive that crosses dividing planes is marked when it is drawn, so that it
-        // is drawn once.
-        for &prim in index.shared(id) {
-            if !std::mem::replace(&mut self.drawn[prim.at()], true) {
-                self.prims.push(prim);
-            }
-        }
-        if !self.params.surfaces.one_sided {
-            return;
-        }
-        // In place: the primitives of other cubes before `first` stay.
-        let mut kept = first;
-        for at in first..self.prims.len() {
-            let prim = self.prims[at];
-            if scene.faces_away(prim, view.eye.position) {
-                self.line(line::FACES_AWAY);
-                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-                self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
-            } else {
-                self.prims[kept] = prim;
-                kept += 1;
-            }
-        }
-        self.prims.truncate(kept);
-    }
-
-    /// Draws the primitives at hand, and reports what became of each.
-    fn rasterize(&mut self) {
-        let threads = if self.prims.len() < PARALLEL_PRIMS { 1 } else { self.options.threads };
-        let (scene, options) = (self.scene, &Options { threads, ..self.options });
-        // Greene, Kass and Miller 1993, Section 3.2: the pyramid also rejects single primitives.
-        let is_sieved = self.params.primitive_test;
-        let step = Step::Draw { scene, prims: self.prims, options: *options, is_sieved };
-        let hidden = self.buffer.step(step).to_vec();
-        // What was left out comes in the order of the primitives.
-        let mut next_hidden = hidden.iter().peekable();
+        let one_sided = self.params.surfaces.one_sided;
+        self.line(line::TILES);
+        self.watch.note(|| Evidence::Depth(DepthNote::Drawn(id, one_sided)));
+        let mut fates = std::mem::take(self.fates);
+        fates.clear();
+        fates.extend_from_slice(self.tiled.step(TileStep::Draw(id, one_sided)));
         self.line(line::EACH);
-        for at in 0..self.prims.len() {
-            let prim = self.prims[at];
-            let is_hidden = next_hidden.next_if(|&&h| h == prim).is_some();
-            if is_sieved {
-                self.line(line::TEST);
-            }
-            if !is_hidden {
-                self.line(line::RASTERIZE);
-            }
-            let buffer = &*self.buffer;
-            self.watch.note(move || {
-                // What was compared can still be read after drawing, which refreshes nothing.
-                let operands = is_sieved.then(|| buffer.operands(scene, prim, options)).flatten();
-                let (surfaces, window) = (options.surfaces, None);
-                let rasterized = Rasterized { prim, operands, is_hidden, is_sieved, surfaces, window };
-                Evidence::Depth(DepthNote::Rasterized(rasterized))
-            });
-            if is_hidden {
-                self.line(line::SKIP);
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
-            } else {
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
-                self.out.prims.push(prim);
+        for &(prim, fate) in &fates {
+            self.tell(prim, fate);
+        }
+        *self.fates = fates;
+    }
+    /// Reports what became of a primitive of a cube that was drawn, and lists it if it may show.
+    fn tell(&mut self, prim: PrimId, fate: Fate) {
+        let (scene, view, surfaces) = (self.scene, self.view, self.params.surfaces);
+        let is_away = match fate {
+            Fate::Apart => surfaces.one_sided && scene.faces_away(prim, view.eye.position),
+            _ => fate == Fate::Away,
+        };
+        if is_away {
+            self.line(line::FACES_AWAY);
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+            return self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
+        }
+        let is_tested = self.params.primitive_test;
+        // What hides nothing is in no tile, so it is asked for by its box.
+        let is_hidden = is_tested && (fate == Fate::Hidden || fate == Fate::Apart && self.hides_apart(prim));
+        if is_tested {
+            self.line(line::TEST);
+        }
+        if !is_hidden {
+            self.line(line::LIST);
+        }
+        let tiles = self.tiled.tiles();
+        self.watch.note(move || {
+            let tile = is_tested.then(|| deciding(tiles, scene, view, prim)).flatten();
+            let (is_sieved, operands, window) = (is_tested, None, None);
+            let drawn = Rasterized { prim, operands, tile, is_hidden, is_sieved, surfaces, window };
+            Evidence::Depth(DepthNote::Rasterized(drawn))
+        });
+        if is_hidden {
+            self.line(line::SKIP);
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+        } else {
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+            self.out.prims.push(prim);
+        }
+    }
+    /// Whether a primitive that is in no cluster is hidden, by tiles alone.
+    fn hides_apart(&mut self, prim: PrimId) -> bool {
+        let bounds = self.scene.prim_bounds(prim);
+        match footprint(self.view, &self.projection, &bounds) {
+            Footprint::Outside => true,
+            Footprint::CrossesNear => false,
+            Footprint::Seen(BoxImage { pixels, nearest }) => {
+                let boxes = Some([ends::<S>(&bounds); 2]);
+                let mut asking = Asking::new(&mut *self.watch, |_: Stage| None, None);
+                self.tiled.hides(Question { pixels, nearest, boxes, exact: false }, &mut asking)
             }
         }
     }
 
-    /// Whether the pyramid hides a cube.
+    /// Whether the tiles hide a cube.
     fn is_obscured(&mut self, node: NodeId) -> bool {
-        let cube = &self.index.nodes()[node.at()];
+        let cube = &self.octree().nodes()[node.at()];
         let question = question(cube, self.view, &self.projection, self.params);
         self.line(line::QUERY);
         self.line(line::NEAR);
         let decided = |is_hidden: bool, nearest: f32| Answer { is_hidden, nearest, reads: 0, decisive: None };
+        let is_by_planes = self.params.query == Volume::Planes;
         let (pixels, answer, ground) = match question {
-            Question::Decided(Ground::CrossesNear) => {
+            Asked::Decided(Ground::CrossesNear) => {
                 self.line(line::CROSSES);
                 (PixelRect::default(), decided(false, 1.0 / self.view.eye.near), Ground::CrossesNear)
             }
-            Question::Decided(ground) => {
+            Asked::Decided(ground) => {
                 self.line(line::NO_PIXEL);
                 (PixelRect::default(), decided(true, 1.0 / self.view.eye.near), ground)
             }
-            Question::Open(image, nearest) if image.pixels.is_empty() => {
+            Asked::Open(image, nearest) if image.pixels.is_empty() => {
                 self.line(line::NO_PIXEL);
                 (image.pixels, decided(true, nearest), Ground::Cells)
             }
-            Question::Open(image, nearest) => {
+            Asked::Open(image, nearest) => {
                 self.line(match self.params.query {
-                    Volume::Planes => line::PLANES,
+                    Volume::Planes => line::BOX,
                     Volume::Rectangles => line::RECTANGLE,
                     Volume::Sphere => line::SPHERE,
                 });
-                let reporter = QueryReporter::new(node, line_of, &mut *self.watch);
-                let query = Query::new(&mut *self.buffer, nearest, reporter);
-                (image.pixels, ask(query, self.params, cube, image.pixels), Ground::Cells)
+                let boxes = is_by_planes.then(|| [ends::<S>(&cube.bounds), ends::<S>(&cube.whole)]);
+                let question = Question { pixels: image.pixels, nearest, boxes, exact: true };
+                let mut asking = Asking::new(&mut *self.watch, line_of, Some(node));
+                let is_hidden = self.tiled.hides(question, &mut asking);
+                (image.pixels, asking.answer(is_hidden, nearest), Ground::Cells)
             }
         };
-        let (bounds, is_by_planes) = (cube.bounds, self.params.query == Volume::Planes);
+        let bounds = cube.bounds;
         self.watch.note(move || {
             let answered = Answered { node, bounds, pixels, answer, ground, is_by_planes };
             Evidence::Depth(DepthNote::Answered(answered))
@@ -448,8 +352,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Reports the primitives that a cube passed on and none of its children drew.
     fn report_unseen(&mut self, id: NodeId) {
-        for &prim in self.index.passed(id) {
-            if !self.drawn[prim.at()] {
+        for &prim in self.octree().passed(id) {
+            if !self.tiled.is_drawn(prim) {
                 self.line(line::UNSEEN);
                 self.watch.note(|| Evidence::Cube(CubeNote::SharedUnseen(prim, id)));
                 self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
@@ -462,7 +366,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if !self.listed[id.at()] {
             return;
         }
-        let node = &self.index.nodes()[id.at()];
+        let node = &self.octree().nodes()[id.at()];
         let cutting = match self.frustum.test(&node.bounds, planes) {
             FrustumTest::Outside(_) => return,
             FrustumTest::Partial(cutting) => cutting,
@@ -487,13 +391,13 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // Nothing is listed below a cube that is not: a mark that stayed would list a cube again that was
         // hidden in the last frame, as soon as one above it is seen.
         if std::mem::replace(&mut self.listed[id.at()], false) {
-            self.index.nodes()[id.at()].children().for_each(|child| self.unmark(NodeId(child)));
+            self.octree().nodes()[id.at()].children().for_each(|child| self.unmark(NodeId(child)));
         }
     }
 }
 
 /// What there is to query for a cube.
-enum Question {
+enum Asked {
     /// Nothing: it reaches the near plane and counts as visible, or lies beside the image.
     Decided(Ground),
     /// Whether what lies in this image, and no nearer than this depth, is hidden.
@@ -506,7 +410,7 @@ fn question<S: Faces>(
     view: &View<S>,
     projection: &Projection<S::Vector>,
     params: &Params,
-) -> Question {
+) -> Asked {
     let is_sphere = params.query == Volume::Sphere;
     match if is_sphere {
         project_sphere(view, &node.whole)
@@ -515,48 +419,40 @@ fn question<S: Faces>(
     } {
         // The sphere is that about the wholes already.
         Footprint::Seen(image) if is_sphere || node.whole == node.bounds => {
-            Question::Open(image, image.nearest)
+            Asked::Open(image, image.nearest)
         }
         // A shared primitive is drawn as a whole, and the part outside the cube may come nearer.
         Footprint::Seen(image) => {
-            Question::Open(image, nearest_depth(projection, &node.whole, view.eye.near))
+            Asked::Open(image, nearest_depth(projection, &node.whole, view.eye.near))
         }
         // Beside the view, but not by enough for the frustum's test.
-        Footprint::Outside => Question::Decided(Ground::BesideImage),
-        Footprint::CrossesNear => Question::Decided(Ground::CrossesNear),
+        Footprint::Outside => Asked::Decided(Ground::BesideImage),
+        Footprint::CrossesNear => Asked::Decided(Ground::CrossesNear),
     }
 }
 
-/// Queries a cube in the way that the parameters say.
-fn ask<S: Faces, B: Held<S>, L: Listener>(
-    query: Query<'_, S, B, L>,
-    params: &Params,
-    node: &OctreeNode<S::Vector>,
-    pixels: PixelRect,
-) -> Answer {
-    match params.query {
-        Volume::Planes => query.planes(&node.bounds, &node.whole, pixels),
-        Volume::Rectangles | Volume::Sphere => query.rectangle(pixels),
-    }
-}
-
-/// The lines of a query.
-fn line_of(at: At) -> Option<u8> {
-    Some(match at {
-        At::Cell => line::CELL,
-        At::AskCell => line::ASK_CELL,
-        At::Seen => line::SEEN,
-        At::Hidden => line::ALL_HIDDEN,
-        At::Descent => line::DESCENT,
-        At::Compare => line::COMPARE,
-        At::Hides => line::HIDES,
-        At::Covers => line::COVERS,
-        At::Shows => line::SHOWS,
-        At::Below => line::BELOW,
-        At::AskBelow => line::ASK_BELOW,
-        At::BelowShows => line::BELOW_SHOWS,
-        At::BelowHides => line::BELOW_HIDES,
+/// The lines of a question.
+fn line_of(stage: Stage) -> Option<u8> {
+    Some(match stage {
+        Stage::Block => line::BLOCK,
+        Stage::BehindBlock => line::BEHIND_BLOCK,
+        Stage::CoversBlock => line::COVERS_BLOCK,
+        Stage::Tile => line::TILE,
+        Stage::BehindTile => line::BEHIND_TILE,
+        Stage::CoversTile => line::COVERS_TILE,
+        Stage::Keep => line::KEEP_TILE,
+        Stage::Kept => line::KEPT,
+        Stage::Plane => line::PLANE,
+        Stage::Resolve => line::RESOLVE,
+        Stage::Pixel => line::PIXEL,
+        Stage::Hidden => line::ALL_HIDDEN,
     })
+}
+
+/// Least and greatest corner of a box as tiles are asked for it; flatland has a third axis of no size.
+fn ends<S: Space>(bounds: &Aabb<S::Vector>) -> [[f32; 3]; 2] {
+    let widen = |v: S::Vector| [0, 1, 2].map(|a| if a < S::Vector::AXES { v.get(a) } else { 0.0 });
+    [widen(bounds.min), widen(bounds.max)]
 }
 
 /// The children of a cube, those on the eye's side first.

@@ -283,7 +283,7 @@ fn figure_6_written_out() {
     let (mut list, mut recorder, mut front) =
         (DrawList::default(), Recorder::new(usize::MAX), Front::default());
     let frame =
-        Frame { index: &built, scene: &scene, view: &view, params: &params, limit: None, depths_only: false };
+        Frame { index: &built, scene: &scene, view: &view, params: &params, limit: None };
     front.begin(&frame);
     LayeredProjection::cull(&frame, &mut (), &mut front, &mut list, &mut recorder);
     let handed =

@@ -146,8 +146,7 @@ impl<S: Faces> State<S, ParallelHierarchicalZ> for Buffer<S> {
     // A copy of the images costs as much as drawing about this many primitives.
     const KEYFRAME_NOTES: usize = 1 << 14;
     fn begin(&mut self, frame: &Frame<'_, S, ParallelHierarchicalZ>) {
-        // Queries read depths alone: where nobody looks at the image, it need not know its primitives.
-        if frame.depths_only { self.clear_depths(frame.view) } else { self.clear(frame.view) }
+        self.clear(frame.view);
     }
     fn apply(&mut self, scene: &Scene<S>, note: &Evidence<S>) {
         // Everything else that is recorded leaves the buffer as it is.

@@ -571,6 +571,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
             let rasterized = Rasterized {
                 prim,
                 operands: None,
+                tile: None,
                 is_hidden: false,
                 is_sieved: false,
                 surfaces: options.surfaces,

@@ -30,7 +30,7 @@ impl<'a, S: Faces> Tried<'a, S> {
     }
     fn frame<'b>(&'b self, view: &'b View<S>) -> Frame<'b, S, ParallelHierarchicalZ> {
         let Self { index, scene, params, .. } = *self;
-        Frame { index, scene, view, params, limit: None, depths_only: false }
+        Frame { index, scene, view, params, limit: None }
     }
     fn cull<O: Observer<Evidence<S>>>(&mut self, view: &View<S>, watch: &mut O) -> DrawList<S> {
         let (mut memory, mut buffer) = (std::mem::take(&mut self.memory), std::mem::take(&mut self.buffer));

@@ -18,8 +18,9 @@ pub enum Outcome {
 pub struct Read {
     /// The cell.
     pub cell: PyramidCell,
-    /// Its farthest depth, and the nearest at which what was asked for begins in it, `1/w`.
+    /// Its farthest depth, `1/w`.
     pub held: f32,
+    /// The nearest at which what was asked for begins in it, `1/w`.
     pub nearest: f32,
     /// What followed.
     pub outcome: Outcome,
@@ -32,6 +33,9 @@ pub trait Hears {
     const LISTENS: bool;
     /// A cell was compared with what was asked for.
     fn reads(&mut self, read: Read);
+    /// A tile that did not decide is looked at closer.
+    #[inline(always)]
+    fn looks_closer(&mut self) {}
     /// What a cell holds was brought up to date: a block from its tiles, a tile by exact depths.
     fn refreshes(&mut self, cell: PyramidCell);
 }

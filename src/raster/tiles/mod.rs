@@ -39,7 +39,7 @@ pub use query::{Answer, How, Question};
 
 use self::bins::Bins;
 use self::look::Look;
-use self::setup::{Scratch, Told};
+use self::setup::Scratch;
 use super::PyramidCell;
 use super::simd::Isa;
 use super::vertex::Camera;
@@ -101,6 +101,8 @@ pub enum Fate {
     Hidden,
     /// It may show.
     Shown,
+    /// It is in no cluster, since it hides nothing: it lets light through, or is a line or a point.
+    Apart,
 }
 
 /// Tiles that were looked at closer.
@@ -179,10 +181,13 @@ impl Tiles {
         isa: Isa,
         fates: &mut Vec<(PrimId, Fate)>,
     ) {
-        self.scratch.told = Some(Told::default());
+        if clusters.of_group(group).is_empty() {
+            return;
+        }
+        self.scratch.told.begin();
         query::draw_group(self, clusters, group, how, isa);
-        let told = self.scratch.told.take().unwrap_or_default();
-        clusters.fates(group, how.skipped, &told, fates);
+        self.scratch.told.is_asked = false;
+        clusters.fates(group, how.skipped, &self.scratch.told, fates);
     }
     /// Whether something is hidden by what is drawn. What is read goes to `hears`; what changes is what
     /// [`Tiles::refresh`] of the cells changes that it hears of.
@@ -197,6 +202,31 @@ impl Tiles {
     /// what [`Tiles::clear`] was told to keep; else they count as showing the box.
     pub fn hides_all(&mut self, boxes: &Boxes, exact: bool, isa: Isa, answers: &mut Vec<Answer>) {
         query::hides_all(self, boxes, exact && self.keeps, isa, answers);
+    }
+    /// Columns and rows of tiles, or of blocks, that lie in the image.
+    pub fn size(&self, level: u8) -> [u32; 2] {
+        let [across, down] = PyramidCell::shifts(level);
+        [(self.width as u32).div_ceil(1 << across), (self.height as u32).div_ceil(1 << down)]
+    }
+    /// What a tile or a block holds: nothing in it is farther.
+    pub fn held(&self, cell: PyramidCell) -> f32 {
+        let (x, y) = (usize::from(cell.x), usize::from(cell.y));
+        match cell.level {
+            PyramidCell::BLOCK => self.block_far[y * self.stride() + x],
+            _ => self.lines[x / 4 * self.rows + y].far[x % 4],
+        }
+    }
+    /// The pixels of a tile whose nearer layer is begun, bit `8 y + x`, and what none of them is farther than.
+    pub fn begun(&self, cell: PyramidCell) -> (u32, f32) {
+        let (line, k) = (&self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)], cell.x % 4);
+        (line.mask[usize::from(k)], line.near[usize::from(k)])
+    }
+    /// The farthest depth that any tile in the image holds.
+    pub fn farthest(&self) -> f32 {
+        let [columns, rows] = self.size(PyramidCell::TILE).map(|n| n as u16);
+        let cell = |x, y| PyramidCell { level: PyramidCell::TILE, x, y };
+        let all = (0..rows).flat_map(|y| (0..columns).map(move |x| cell(x, y)));
+        all.map(|c| self.held(c)).fold(f32::INFINITY, f32::min)
     }
     /// The depths of all pixels, row by row, as [`super::Drawable::draw`] makes them of the same occluders.
     pub fn depths(&mut self, isa: Isa) -> Vec<f32> {

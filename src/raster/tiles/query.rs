@@ -467,6 +467,7 @@ impl<H: Hears> Fine<'_, H> {
         while found != 0 {
             let tile = found.trailing_zeros() as usize;
             found &= found - 1;
+            self.hears.looks_closer();
             let at = first_pixel(self.tiles, block, tile);
             let line = &self.tiles.lines[self.tiles.first_line(strip, row) + (tile >> 2)];
             let bare = !line.ever[tile & 3] & self.asked.pixels(at);
@@ -486,6 +487,7 @@ impl<H: Hears> Fine<'_, H> {
         while found != 0 {
             let tile = found.trailing_zeros() as usize;
             found &= found - 1;
+            self.hears.looks_closer();
             let pixel = first_pixel(self.tiles, block, tile);
             let known = self.tiles.resolved.at[block][tile];
             let at = if known == Resolved::NOT { cover(self.tiles, block, tile) } else { known as usize };
@@ -494,9 +496,7 @@ impl<H: Hears> Fine<'_, H> {
             }
             if self.tiles.resolved.floors[at].1 == Resolved::NOT {
                 look_closer(l, self.tiles, block, tile);
-                if H::LISTENS {
-                    self.hears.refreshes(tile_at(pixel));
-                }
+                self.hears.refreshes(tile_at(pixel));
                 if self.is_below(l, at, pixel) {
                     continue;
                 }

@@ -33,8 +33,7 @@ pub(super) struct Scratch {
     ready: Option<Box<Ready>>,
     /// For each strip the tiles of a bin that a primitive may show in, covers whole, and its nearest depth.
     pub hits: Vec<(u64, u64, f32)>,
-    /// Tags of what faced the eye, and of what may show: where someone asks, else nothing.
-    pub told: Option<Told>,
+    pub told: Told,
 }
 
 /// Words and tags of what faces the eye. A tag says which primitive it is and which parts of it: the number
@@ -54,11 +53,22 @@ impl Front {
 /// Both triangles of a primitive.
 const BOTH: i32 = 3;
 
-/// What became of what was drawn, by tags.
+/// What became of what was drawn, by tags, where someone asks.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Told {
+    pub is_asked: bool,
+    /// What faced the eye.
     pub faced: Vec<i32>,
+    /// What may show.
     pub shown: Vec<i32>,
+}
+
+impl Told {
+    pub fn begin(&mut self) {
+        self.is_asked = true;
+        self.faced.clear();
+        self.shown.clear();
+    }
 }
 
 impl Scratch {
@@ -105,7 +115,8 @@ impl<L: Wide> Draw<'_, L> {
         front.tags.clear();
         self.front_faces(c, &mut front);
         if let Some(&last) = front.words.last() {
-            if let Some(told) = &mut self.tiles.scratch.told {
+            let told = &mut self.tiles.scratch.told;
+            if told.is_asked {
                 told.faced.extend_from_slice(&front.tags);
             }
             self.project(c);
@@ -381,12 +392,11 @@ impl<L: Wide> Draw<'_, L> {
             let hit = l.apart(Several::<SIZE> { tiles, ready: &ready, lane, id: id + lane as u32 });
             hits |= u32::from(hit) << lane;
         }
-        if let Some(told) = &mut self.tiles.scratch.told {
-            let mut bits = hits;
-            while bits != 0 {
-                told.shown.push(tags[bits.trailing_zeros() as usize]);
-                bits &= bits - 1;
-            }
+        let told = &mut self.tiles.scratch.told;
+        let mut bits = if told.is_asked { hits } else { 0 };
+        while bits != 0 {
+            told.shown.push(tags[bits.trailing_zeros() as usize]);
+            bits &= bits - 1;
         }
         if hits != 0 && self.tiles.keeps {
             for i in 0..16 {

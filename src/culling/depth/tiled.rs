@@ -1,0 +1,125 @@
+//! The depths of a frame as tiles ([`Tiles`]): the large state that a run changes and a film replays.
+//!
+//! [`Tiled::clear`] for a view, [`Tiled::draw`] what nodes hold, then [`Tiled::hides`] for what is asked.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::buffer::Projected;
+use super::faces::Faces;
+use crate::geometry::{NodeId, PrimId, View};
+use crate::raster::{
+    Answer, Boxes, Clusters, Fate, Hears, How, Isa, Options, Outcome, PyramidCell,
+    Question, Read, Tiles,
+};
+use crate::scene::Scene;
+
+/// A change of the tiles. A run makes it, and a film makes it again from the note that holds its operands.
+#[derive(Clone, Copy, Debug)]
+pub enum TileStep {
+    /// A block is brought up to date from its tiles, or a tile by exact depths.
+    Refresh(PyramidCell),
+    /// What a node holds, and is not drawn yet, is drawn: with fronts only, or from both sides.
+    Draw(NodeId, bool),
+}
+
+/// Tiles, the view they are for, and what can be drawn into them.
+#[derive(Clone, Debug, Default)]
+pub struct Tiled<S: Faces> {
+    projected: Option<Projected<S>>,
+    tiles: Tiles,
+    clusters: Arc<Clusters>,
+    /// Of each primitive that nodes share whether it is drawn.
+    drawn: Vec<bool>,
+    fates: Vec<(PrimId, Fate)>,
+}
+
+/// Tiles of the same view with the same drawn into them.
+impl<S: Faces> PartialEq for Tiled<S> {
+    fn eq(&self, other: &Self) -> bool {
+        // The view's projection follows from it, and fates are no state: they are what the last drawing said.
+        let view = |b: &Self| b.projected.as_ref().map(|s| s.view);
+        view(self) == view(other) && self.tiles == other.tiles && self.drawn == other.drawn
+    }
+}
+
+impl<S: Faces> Tiled<S> {
+    /// The groups of a node: what is its own, and what it shares with others.
+    fn groups(node: NodeId) -> [usize; 2] {
+        [2 * node.at(), 2 * node.at() + 1]
+    }
+    /// Empties them for a view. `clusters`: two groups for each node, in the order of the nodes, what is its
+    /// own and what it shares with others; of a scene of `prims` primitives.
+    pub fn clear(&mut self, view: &View<S>, clusters: &Arc<Clusters>, prims: usize) {
+        self.tiles.clear(view, true);
+        self.projected = Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
+        self.clusters = clusters.clone();
+        self.drawn.clear();
+        self.drawn.resize(prims, false);
+    }
+    /// The view they are for, with its projection and planes, once there is one.
+    pub fn projected(&self) -> Option<&Projected<S>> {
+        self.projected.as_ref()
+    }
+    /// The tiles.
+    pub fn tiles(&self) -> &Tiles {
+        &self.tiles
+    }
+    /// Makes a change. Of [`TileStep::Draw`] it returns what became of each primitive that was to be drawn.
+    pub fn step(&mut self, step: TileStep) -> &[(PrimId, Fate)] {
+        // A run and its film both come through here, so that the same operands make the same change.
+        self.fates.clear();
+        match step {
+            TileStep::Refresh(cell) => self.tiles.refresh(cell, Isa::best()),
+            TileStep::Draw(node, one_sided) => self.draw(node, one_sided),
+        }
+        &self.fates
+    }
+    fn draw(&mut self, node: NodeId, one_sided: bool) {
+        let [own, shared] = Self::groups(node);
+        for (group, skipped) in [(own, &[][..]), (shared, &self.drawn[..])] {
+            let how = How { one_sided, skipped };
+            self.tiles.draw_group(&self.clusters, group, how, Isa::best(), &mut self.fates);
+            // What covers nothing, or lets light through, hides nothing: whoever draws it asks for its box.
+            let apart = self.clusters.apart(group).iter().filter(|p| !skipped.get(p.at()).is_some_and(|d| *d));
+            self.fates.extend(apart.map(|&p| (p, Fate::Apart)));
+        }
+        // Georges 1995, Section 3.1: what cubes share is marked when it is drawn, so that it is drawn once.
+        for (prim, _) in &self.fates {
+            self.drawn[prim.at()] = true;
+        }
+    }
+    /// Whether a primitive that nodes share was drawn.
+    pub fn is_drawn(&self, prim: PrimId) -> bool {
+        self.drawn[prim.at()]
+    }
+    /// Whether something is hidden by what is drawn. What is read goes to `hears`; what changes is what
+    /// [`TileStep::Refresh`] of the cells changes that it hears of.
+    pub fn hides<H: Hears>(&mut self, question: Question, hears: &mut H) -> bool {
+        self.tiles.hides(question, Isa::best(), hears)
+    }
+    /// Whether each of many boxes is hidden, by planes and exactly; `None` if it is out of view.
+    pub fn hides_all(&mut self, boxes: &Boxes) -> Vec<Option<bool>> {
+        let mut answers = Vec::new();
+        self.tiles.hides_all(boxes, true, Isa::best(), &mut answers);
+        let is_hidden = |a: &Answer| (*a != Answer::Outside).then_some(*a == Answer::Hidden);
+        answers.iter().map(is_hidden).collect()
+    }
+}
+
+/// Of the tiles that a primitive covers the one in which it comes nearest to showing, with its nearest depth
+/// there; `None` if it covers no pixel.
+pub fn deciding<S: Faces>(tiles: &Tiles, scene: &Scene<S>, view: &View<S>, prim: PrimId) -> Option<Read> {
+    let mut nearest: BTreeMap<(u16, u16), f32> = BTreeMap::new();
+    S::fragments(scene, view, prim, &Options::default(), &mut |at, depth| {
+        let (x, y) = (at as u32 % view.width, at as u32 / view.width);
+        let least = nearest.entry(((y / 4) as u16, (x / 8) as u16)).or_insert(depth);
+        *least = least.max(depth);
+    });
+    let reads = nearest.into_iter().map(|((y, x), nearest)| {
+        let cell = PyramidCell { level: PyramidCell::TILE, x, y };
+        let held = tiles.held(cell);
+        Read { cell, held, nearest, outcome: if nearest > held { Outcome::Shows } else { Outcome::Behind } }
+    });
+    reads.reduce(|a, b| if b.held - b.nearest < a.held - a.nearest { b } else { a })
+}
