@@ -4,7 +4,7 @@
 //! to its right end (excluded); one seen end-on covers none.
 
 use super::setup::{Plane, center, pixels};
-use super::vertex::{Camera, NEEDS_CLIP, REJECTS, Vertex};
+use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, Vertex};
 use super::{Extent, Options, Sieve, Target, check_size};
 use crate::geometry::{Flat, PixelRect, PrimId, View, orient2d};
 use crate::scene::Scene;
@@ -80,7 +80,7 @@ pub(super) fn fragments(
 
 /// The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`, which is
 /// tested.
-fn depth_at(plane: &Plane, x: u32) -> f32 {
+pub(super) fn depth_at(plane: &Plane, x: u32) -> f32 {
     (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high)
 }
 
@@ -90,6 +90,12 @@ struct Seen {
     plane: Plane,
     /// Whether clipping left it as it is.
     whole: bool,
+}
+
+/// The pixels of `from..to` that a segment covers, half-open.
+pub(super) fn columns(a: &Vertex, b: &Vertex, from: u32, to: u32) -> (i32, i32) {
+    // Left-inclusive: a center exactly under the right end belongs to the next segment.
+    pixels(a.x.min(b.x), a.x.max(b.x) - 1, from, to)
 }
 
 /// Makes a segment ready; `None` if it covers no center.
@@ -102,8 +108,7 @@ fn set_up(
 ) -> Option<Seen> {
     let ([a, b], whole) = clipped(camera, scene, view, prim, options)?;
     let window = options.window_of(view);
-    // Left-inclusive: a center exactly under the right end belongs to the next segment.
-    let (first, past) = pixels(a.x.min(b.x), a.x.max(b.x) - 1, window.x0, window.x1);
+    let (first, past) = columns(&a, &b, window.x0, window.x1);
     let pixels = PixelRect { x0: first.max(0) as u32, x1: past.max(0) as u32, y0: 0, y1: 1 };
     // A segment seen end-on, or between two centers, covers nothing.
     (first < past).then(|| Seen { pixels, plane: Plane::of_segment(a, b), whole })
@@ -146,9 +151,14 @@ fn clipped(
     if (a.outside() | b.outside()) & NEEDS_CLIP == 0 {
         return Some(([a, b], true));
     }
+    cut(camera, &clip).map(|ends| (ends, false))
+}
+
+/// The ends of what clipping leaves of a segment.
+pub(super) fn cut(camera: &Camera, ends: &[Clip; 2]) -> Option<[Vertex; 2]> {
     // Two ends are left, or none.
-    match *camera.clipped(&clip).corners() {
-        [a, b] => Some(([a, b].map(|c| camera.clipped_vertex(c)), false)),
+    match *camera.clipped(ends).corners() {
+        [a, b] => Some([a, b].map(|c| camera.clipped_vertex(c))),
         _ => None,
     }
 }

@@ -73,7 +73,7 @@ pub(super) const NEEDS_CLIP: u32 = NEAR | OFF_GRID;
 pub(super) const REJECTS: u32 = OFF_GRID - 1;
 
 /// The view's projection to the pixel grid.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Camera {
     pub eye: [f64; 3],
     /// Rows of x, y and w of clip space.

@@ -48,6 +48,55 @@ fn mixed(dice: &mut Dice, count: usize) -> Scene<Solid> {
     }
     with_materials(scene_of(points, prims), |at| at % 17 == 3, |at| at % 5 < 2)
 }
+/// The same in flatland: walls of houses, and segments from far below a pixel to far beyond the image, some
+/// edge-on, some before and behind the eye. `scale`: all lengths times that.
+fn flat_mixed(dice: &mut Dice, count: usize, scale: f32) -> Scene<Flat> {
+    let (mut points, mut prims) = (Vec::new(), Vec::new());
+    for _ in 0..count {
+        let first = points.len() as u32;
+        let size: f32 = [0.001, 0.02, 0.3, 3.0, 30.0, 1e5][dice.below(6) as usize];
+        let at = Vec2::new(dice.signed(8.0), dice.between(-20.0, 3.0));
+        match dice.below(4) {
+            0 => {
+                let half = Vec2::new(dice.unit(), dice.unit()) * size.min(3.0);
+                points.extend(
+                    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|c| at + half * Vec2::from(c)),
+                );
+                // Counter-clockwise corners have the left within: turned round, the front is outside.
+                prims.extend([[1, 0], [2, 1], [3, 2], [0, 3]].map(|t| t.map(|c| c + first)));
+            }
+            1 => {
+                // About toward the eyes.
+                let along = Vec2::new(dice.signed(0.01), dice.signed(1.0)) * size;
+                points.extend([at, at + along]);
+                prims.push([first, first + 1]);
+            }
+            _ => {
+                points.extend([at, at + dice.vector::<Vec2>(size)]);
+                prims.push([first, first + 1]);
+            }
+        }
+    }
+    points.iter_mut().for_each(|p| *p *= scale);
+    with_materials(scene_of(points, prims), |at| at % 17 == 3, |at| at % 5 < 2)
+}
+fn flat_view(dice: &mut Dice, width: u32, scale: f32) -> View<Flat> {
+    let position = dice.vector::<Vec2>(3.0) * scale;
+    let eye = Eye {
+        position,
+        target: position + Vec2::new(dice.signed(0.5), -1.0),
+        up: Vec2::Y,
+        fov: dice.between(0.3, 2.2),
+        near: 0.05 * scale,
+        far: 60.0 * scale,
+    };
+    View { eye, width, height: 1 }
+}
+/// Width of the line, and the scale of all lengths: in some rounds depths are so great that nothing is said
+/// of slopes.
+fn flat_size(round: u32) -> (u32, f32) {
+    ([1, 7, 8, 31, 33, 200, 1024][round as usize % 7], if round % 10 == 9 { 1e-33 } else { 1.0 })
+}
 fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
     let position = dice.point(3.0);
     let eye = Eye {
@@ -63,7 +112,7 @@ fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
 fn sizes(round: u32) -> (u32, u32) {
     [(64, 64), (97, 53), (33, 130), (1, 1), (320, 200), (700, 40)][round as usize % 6]
 }
-fn drawn(scene: &Scene<Solid>, view: &View<Solid>, surfaces: Surfaces, isa: Isa) -> Tiles {
+fn drawn<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces, isa: Isa) -> Tiles {
     // Groups of all sizes: clusters of a few primitives, and some that are split.
     let groups: Vec<&[PrimId]> = scene.live().chunks(37).collect();
     let clusters = Clusters::new(scene, surfaces, groups);
@@ -72,9 +121,9 @@ fn drawn(scene: &Scene<Solid>, view: &View<Solid>, surfaces: Surfaces, isa: Isa)
     tiles.draw(&clusters, surfaces.one_sided, isa);
     tiles
 }
-fn image(scene: &Scene<Solid>, view: &View<Solid>, surfaces: Surfaces) -> Target {
+fn image<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces) -> Target {
     let mut target = Target::new(view);
-    Solid::draw(&mut target, scene, view, scene.live(), &Options { surfaces, ..Options::default() });
+    S::draw(&mut target, scene, view, scene.live(), &Options { surfaces, ..Options::default() });
     target
 }
 
@@ -86,19 +135,35 @@ fn exact_depths_are_those_of_the_image_on_every_instruction_set() {
         let scene = mixed(&mut dice, 20 + round as usize * 7 % 400);
         let (width, height) = sizes(round);
         let view = random_view(&mut dice, width, height);
-        let surfaces = [BOTH_SIDES, ONE_SIDED][round as usize % 2];
-        let truth = image(&scene, &view, surfaces);
-        let first = drawn(&scene, &view, surfaces, Isa::Portable);
-        for isa in SETS {
-            let mut tiles = drawn(&scene, &view, surfaces, isa);
-            assert!(tiles == first, "{} left a trace in round {round}", isa.label());
-            let depths = tiles.depths(isa);
-            for (at, (&is, &should)) in depths.iter().zip(&truth.depth).enumerate() {
-                let (x, y) = (at as u32 % width, at as u32 / width);
-                assert_eq!(is.to_bits(), should.to_bits(), "({x}, {y}) holds {is}, not {should}; {round}");
-            }
+        exact_depths_are_those_of_the_image(&scene, &view, round);
+    }
+}
+#[test]
+fn exact_depths_of_flatland_are_those_of_the_line_on_every_instruction_set() {
+    let (mut dice, mut covered) = (Dice::new(75), 0);
+    for round in 0..10 * ROUNDS {
+        let (width, scale) = flat_size(round);
+        let scene = flat_mixed(&mut dice, 1 + round as usize * 7 % 400, scale);
+        let view = flat_view(&mut dice, width, scale);
+        covered += exact_depths_are_those_of_the_image(&scene, &view, round);
+    }
+    assert!(covered > 100_000, "the scenes show too little to test anything: {covered} pixels");
+}
+/// Returns how many pixels are covered.
+fn exact_depths_are_those_of_the_image<S: Drawable>(scene: &Scene<S>, view: &View<S>, round: u32) -> usize {
+    let surfaces = [BOTH_SIDES, ONE_SIDED][round as usize % 2];
+    let truth = image(scene, view, surfaces);
+    let first = drawn(scene, view, surfaces, Isa::Portable);
+    for isa in SETS {
+        let mut tiles = drawn(scene, view, surfaces, isa);
+        assert!(tiles == first, "{} left a trace in round {round}", isa.label());
+        let depths = tiles.depths(isa);
+        for (at, (&is, &should)) in depths.iter().zip(&truth.depth).enumerate() {
+            let (x, y) = (at as u32 % view.width, at as u32 / view.width);
+            assert_eq!(is.to_bits(), should.to_bits(), "({x}, {y}) holds {is}, not {should}; {round}");
         }
     }
+    truth.item.iter().filter(|&&i| i != Target::NONE).count()
 }
 const ROUNDS: u32 = 120;
 
@@ -114,6 +179,15 @@ fn a_tile_claims_nothing_nearer_than_its_farthest_pixel() {
         let tiles = drawn(&scene, &view, ONE_SIDED, Isa::best());
         tiles.assert_claims(&truth.depth);
     }
+    for round in 0..10 * ROUNDS {
+        let (width, scale) = flat_size(round);
+        // Few segments leave layers that are begun.
+        let scene = flat_mixed(&mut dice, [200, 20][round as usize % 2], scale);
+        let view = flat_view(&mut dice, width, scale);
+        let truth = image(&scene, &view, ONE_SIDED);
+        let tiles = drawn(&scene, &view, ONE_SIDED, Isa::best());
+        tiles.assert_claims(&truth.depth);
+    }
 }
 
 /// A random box, many of them small, or thin, or around what is drawn.
@@ -124,6 +198,14 @@ fn random_box(dice: &mut Dice) -> Aabb<Vec3> {
     Aabb { min: at - half, max: at + half }
 }
 
+/// The same in flatland.
+fn flat_box(dice: &mut Dice, scale: f32) -> Aabb<Vec2> {
+    let size = [0.05, 0.5, 4.0][dice.below(3) as usize];
+    let at = Vec2::new(dice.signed(8.0), dice.between(-25.0, 4.0));
+    let half = Vec2::new(dice.unit(), dice.unit()) * size;
+    Aabb { min: (at - half) * scale, max: (at + half) * scale }
+}
+
 #[test]
 fn a_hidden_box_owns_no_pixel_and_answers_do_not_depend_on_the_instruction_set() {
     let (mut dice, mut counts) = (Dice::new(73), [0usize; 3]);
@@ -131,33 +213,84 @@ fn a_hidden_box_owns_no_pixel_and_answers_do_not_depend_on_the_instruction_set()
         let scene = mixed(&mut dice, 150);
         let (width, height) = sizes(round);
         let view = random_view(&mut dice, width, height);
-        let truth = image(&scene, &view, ONE_SIDED);
         let boxes: Vec<Aabb<Vec3>> = (0..300).map(|_| random_box(&mut dice)).collect();
-        let all = Boxes::new(boxes.iter().copied());
-        let ask = |isa: Isa, exact: bool| {
-            let mut answers = Vec::new();
-            drawn(&scene, &view, ONE_SIDED, isa).hides_all(&all, exact, isa, &mut answers);
-            answers
-        };
-        let (exact, coarse) = (ask(Isa::best(), true), ask(Isa::best(), false));
-        for isa in SETS {
-            assert_eq!((&ask(isa, true), &ask(isa, false)), (&exact, &coarse), "{}", isa.label());
-        }
-        for (bounds, (&exact, &coarse)) in boxes.iter().zip(exact.iter().zip(&coarse)) {
-            counts[exact as usize] += 1;
-            assert!(coarse != Answer::Hidden || exact == Answer::Hidden, "only tiles hide {bounds:?}");
-            if exact != Answer::Visible {
-                owns_nothing(&mut dice, bounds, &view, &truth);
-            }
-        }
+        hidden_boxes_own_nothing(&mut dice, &scene, &view, &boxes, &mut counts);
     }
     assert!(counts.iter().all(|&c| c > 500), "visible, hidden, outside: {counts:?}");
 }
+#[test]
+fn a_hidden_box_of_flatland_owns_no_pixel_and_answers_do_not_depend_on_the_instruction_set() {
+    let (mut dice, mut counts) = (Dice::new(76), [0usize; 3]);
+    for round in 0..2 * ROUNDS {
+        let (width, scale) = flat_size(round);
+        let scene = flat_mixed(&mut dice, [10, 40, 150][round as usize % 3], scale);
+        let view = flat_view(&mut dice, width, scale);
+        let boxes: Vec<Aabb<Vec2>> = (0..100).map(|_| flat_box(&mut dice, scale)).collect();
+        hidden_boxes_own_nothing(&mut dice, &scene, &view, &boxes, &mut counts);
+    }
+    assert!(counts.iter().all(|&c| c > 500), "visible, hidden, outside: {counts:?}");
+}
+/// A wall across the line hides what is behind it by tiles alone, also in the tile that the edge of the image
+/// cuts, and only from its front.
+#[test]
+fn a_wall_of_flatland_hides_by_tiles_alone() {
+    for width in [1, 7, 8, 31, 33, 200, 1024] {
+        let eye = Eye {
+            position: Vec2::ZERO,
+            target: Vec2::NEG_Y,
+            up: Vec2::Y,
+            fov: std::f32::consts::FRAC_PI_2,
+            near: 0.1,
+            far: 50.0,
+        };
+        let view = View { eye, width, height: 1 };
+        // The left of a segment that runs to the right is up, where the eye is.
+        let wall = [Vec2::new(-90.0, -5.0), Vec2::new(90.0, -5.0)];
+        let behind = [Vec2::new(-30.0, -9.0), Vec2::new(30.0, -6.0)];
+        let before = [Vec2::new(-1.0, -4.0), Vec2::new(1.0, -3.0)];
+        let beside = [Vec2::new(6.0, -4.0), Vec2::new(7.0, -3.0)];
+        let boxes = Boxes::new([behind, before, beside].map(|[min, max]| Aabb { min, max }));
+        let shown = [Answer::Visible, Answer::Visible, Answer::Outside];
+        let hidden = [Answer::Hidden, Answer::Visible, Answer::Outside];
+        for (corners, should) in [([0, 1], hidden), ([1, 0], shown)] {
+            let scene: Scene<Flat> = scene_of(wall.to_vec(), vec![corners]);
+            let mut answers = Vec::new();
+            drawn(&scene, &view, ONE_SIDED, Isa::best()).hides_all(&boxes, false, Isa::best(), &mut answers);
+            assert_eq!(answers, should, "{width} pixels, the wall's corners {corners:?}");
+        }
+    }
+}
+fn hidden_boxes_own_nothing<S: Drawable>(
+    dice: &mut Dice,
+    scene: &Scene<S>,
+    view: &View<S>,
+    boxes: &[Aabb<S::Vector>],
+    counts: &mut [usize; 3],
+) {
+    let truth = image(scene, view, ONE_SIDED);
+    let all = Boxes::new(boxes.iter().copied());
+    let ask = |isa: Isa, exact: bool| {
+        let mut answers = Vec::new();
+        drawn(scene, view, ONE_SIDED, isa).hides_all(&all, exact, isa, &mut answers);
+        answers
+    };
+    let (exact, coarse) = (ask(Isa::best(), true), ask(Isa::best(), false));
+    for isa in SETS {
+        assert_eq!((&ask(isa, true), &ask(isa, false)), (&exact, &coarse), "{}", isa.label());
+    }
+    for (bounds, (&exact, &coarse)) in boxes.iter().zip(exact.iter().zip(&coarse)) {
+        counts[exact as usize] += 1;
+        assert!(coarse != Answer::Hidden || exact == Answer::Hidden, "only tiles hide {bounds:?}");
+        if exact != Answer::Visible {
+            owns_nothing(dice, bounds, view, &truth);
+        }
+    }
+}
 /// Primitives of a box, on its corners, edges and faces and within, win no pixel.
-fn owns_nothing(dice: &mut Dice, bounds: &Aabb<Vec3>, view: &View<Solid>, truth: &Target) {
+fn owns_nothing<S: Drawable>(dice: &mut Dice, bounds: &Aabb<S::Vector>, view: &View<S>, truth: &Target) {
     let mut point = || {
-        <Vec3 as Vector>::from_fn(|a| {
-            let (low, high) = (bounds.min[a], bounds.max[a]);
+        S::Vector::from_fn(|a| {
+            let (low, high) = (bounds.min.get(a), bounds.max.get(a));
             match dice.below(5) {
                 0 | 1 => low,
                 2 | 3 => high,
@@ -165,10 +298,12 @@ fn owns_nothing(dice: &mut Dice, bounds: &Aabb<Vec3>, view: &View<Solid>, truth:
             }
         })
     };
-    let triangles: Vec<[Vec3; 3]> = (0..12).map(|_| [point(), point(), point()]).collect();
-    let inside = soup(&triangles);
+    let corners = S::CORNERS as u32;
+    let points = (0..12 * corners).map(|_| point()).collect();
+    let prims = (0..12).map(|k| S::corners_from([0, 1, 2].map(|c| corners * k + c))).collect();
+    let inside: Scene<S> = scene_of(points, prims);
     for &prim in inside.live() {
-        Solid::fragments(&inside, view, prim, &Options::default(), &mut |at, depth| {
+        S::fragments(&inside, view, prim, &Options::default(), &mut |at, depth| {
             let (x, y) = (at as u32 % view.width, at as u32 / view.width);
             assert!(
                 depth < truth.depth[at],

@@ -27,8 +27,9 @@ pub(super) struct Entry {
     pub nearest: f32,
 }
 
-/// Sixteen primitives: corners as they were set up, by columns x, y, z and packed; see [`Vertex`].
-#[derive(Clone, Debug)]
+/// Sixteen primitives: corners as they were set up, by columns x, y, z and packed; see [`Vertex`]. A segment
+/// has the first two.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Batch {
     pub corners: [[[i32; 16]; 4]; 4],
     /// A plane that it is not farther than at any pixel: depth at the center of a pixel, the changes a column
@@ -49,6 +50,11 @@ impl Batch {
             z: f32::from_bits(z[which][lane] as u32),
             packed: packed[which][lane] as u32,
         }
+    }
+    /// Sets it.
+    pub fn put(&mut self, which: usize, lane: usize, v: Vertex) {
+        let values = [v.x, v.y, v.z.to_bits() as i32, v.packed as i32];
+        self.corners.iter_mut().zip(values).for_each(|(to, v)| to[which][lane] = v);
     }
 }
 

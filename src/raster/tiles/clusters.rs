@@ -1,11 +1,12 @@
-//! Occluders made ready to be drawn many at a time: clusters of quadrangles and triangles.
+//! Occluders made ready to be drawn many at a time: clusters of quadrangles and triangles, or of segments.
 //!
 //! 1. Points at one place become one.
-//! 2. Neighboring triangles that are about flat and convex together become a quadrangle ([`pair`]).
+//! 2. Neighboring triangles that are about flat and convex together become a quadrangle ([`pair`]). Segments
+//!    stay as they are.
 //! 3. Each group is split at the medians of its longest axes to clusters of at most [`Clusters::MOST`]
 //!    primitives, each with points of its own, as structures of arrays ([`split`]).
 //!
-//! Cost: O(n log n) time, about 60 bytes a triangle.
+//! Flatland lies in space at z = 0. Cost: O(n log n) time, about 60 bytes a triangle.
 
 use std::ops::Range;
 
@@ -14,7 +15,7 @@ use glam::{DVec3, Vec3};
 use super::Fate;
 use super::setup::Told;
 
-use crate::geometry::{Aabb, PrimId, Solid};
+use crate::geometry::{Aabb, PrimId, Space, Vector};
 use crate::scene::{Scene, Surfaces};
 
 /// Boxes by axes, so that many are compared at a time; padded to whole vectors.
@@ -28,11 +29,11 @@ pub struct Boxes {
 }
 
 impl Boxes {
-    /// From boxes as they are.
-    pub fn new(boxes: impl IntoIterator<Item = Aabb<Vec3>>) -> Self {
+    /// From boxes as they are, of either space.
+    pub fn new<V: Vector>(boxes: impl IntoIterator<Item = Aabb<V>>) -> Self {
         let mut all = Self::default();
         for bounds in boxes {
-            all.push(bounds);
+            all.push(Aabb { min: widened(bounds.min), max: widened(bounds.max) });
             all.count += 1;
         }
         let most = |v: &[f32]| v.iter().fold(0.0, |m: f32, x| m.max(x.abs()));
@@ -86,8 +87,8 @@ pub struct Clusters {
     /// Coordinates of the points; the points of a cluster begin at a multiple of 16.
     pub(super) points: [Vec<f32>; 3],
     /// Corners of each primitive as numbers of points of its cluster, 16 bits each, lowest first; those of a
-    /// triangle end with the same twice. They run clockwise on the screen where the front is seen. A
-    /// quadrangle
+    /// triangle end with the same twice, those of a segment with its second end three times. They run
+    /// clockwise on the screen where the front is seen; a segment has its front to the left. A quadrangle
     /// 0 1 2 3 is the triangles 0 1 2 and 0 2 3. [`TWO_SIDED`] is set where both sides are seen.
     pub(super) words: Vec<u64>,
     /// Whether any is.
@@ -118,18 +119,18 @@ const LEAST_COSINE: f64 = 0.9;
 /// Sines of the corners of a quadrangle: flatter ones would turn over on the pixel grid.
 const LEAST_SINE: f64 = 1e-3;
 
-/// A triangle of the scene, its points welded.
+/// A triangle of the scene, its points welded; a segment ends with the same corner twice.
 struct Triangle {
     corners: [u32; 3],
     is_two_sided: bool,
     id: PrimId,
 }
-/// One or two triangles.
+/// One or two triangles, or a segment.
 struct Prim {
-    /// Those of a triangle end with the same twice.
+    /// Those of a triangle end with the same twice, those of a segment with the same three times.
     corners: [u32; 4],
     is_two_sided: bool,
-    /// Of a triangle twice.
+    /// Of a triangle or a segment twice.
     ids: [PrimId; 2],
 }
 
@@ -163,12 +164,13 @@ impl Clusters {
 
     /// Makes clusters of primitives of a scene in groups; no cluster holds primitives of two groups. What
     /// lets light through hides nothing and is left out.
-    pub fn new<'a>(
-        scene: &Scene<Solid>,
+    pub fn new<'a, S: Space>(
+        scene: &Scene<S>,
         surfaces: Surfaces,
         groups: impl IntoIterator<Item = &'a [PrimId]>,
     ) -> Self {
-        let points = scene.points();
+        let points: Vec<Vec3> = scene.points().iter().map(|&p| widened(p)).collect();
+        let (points, is_flat) = (&points[..], S::CORNERS == 2);
         let place = welded(points);
         let mut all = Self::default();
         let mut boxes = Vec::new();
@@ -178,8 +180,9 @@ impl Clusters {
             let mut triangles = Vec::with_capacity(group.len());
             for &id in group {
                 // 1. Points at one place are one.
-                let Some([a, b, c]) = scene.corners(id).map(|t| t.map(|c| place[c as usize])) else { continue };
-                if surfaces.show_through(scene, id) || a == b || b == c || c == a {
+                let Some(corners) = scene.corners(id) else { continue };
+                let [a, b, c] = [0, 1, 2].map(|k| place[corners.as_ref()[k.min(S::CORNERS - 1)] as usize]);
+                if surfaces.show_through(scene, id) || a == b || c == a || b == c && !is_flat {
                     all.apart.push(id);
                 } else {
                     let is_two_sided = scene.is_two_sided(id);
@@ -187,7 +190,16 @@ impl Clusters {
                 }
             }
             // 2. Quadrangles.
-            let mut prims = pair(points, &triangles);
+            let mut prims = if is_flat {
+                let segment = |&Triangle { corners: [a, b, c], is_two_sided, id }: &Triangle| Prim {
+                    corners: [a, b, c, c],
+                    is_two_sided,
+                    ids: [id; 2],
+                };
+                triangles.iter().map(segment).collect()
+            } else {
+                pair(points, &triangles)
+            };
             // 3. Clusters.
             let mut parts = Vec::new();
             split(points, &mut prims, 0, &mut parts);
@@ -200,8 +212,8 @@ impl Clusters {
         all.boxes = Boxes::new(boxes);
         all
     }
-    /// The primitives of a group, by its number, that are in no cluster: what lets light through, and triangles
-    /// that are a line or a point, which cover nothing.
+    /// The primitives of a group, by its number, that are in no cluster: what lets light through, and those with
+    /// two corners at one place, which cover nothing.
     pub fn apart(&self, group: usize) -> &[PrimId] {
         &self.apart[self.groups[group].apart.clone()]
     }
@@ -294,6 +306,11 @@ impl Clusters {
             plane.resize(plane.len().next_multiple_of(16), beyond);
         }
     }
+}
+
+/// A point in space; flatland lies at z = 0.
+fn widened<V: Vector>(p: V) -> Vec3 {
+    Vec3::from_array(std::array::from_fn(|a| if a < V::AXES { p.get(a) } else { 0.0 }))
 }
 
 /// For each point the first one at its place.
@@ -405,8 +422,11 @@ fn split(points: &[Vec3], prims: &mut [Prim], first: usize, parts: &mut Vec<Rang
     split(points, high, first + middle, parts);
 }
 
-/// Unit normal of a triangle, on the side from which it runs counter-clockwise; 0 where it has none.
+/// Unit normal of a triangle, on the side from which it runs counter-clockwise; of a segment, whose last
+/// corners are one, in flatland to its left; 0 where it has none.
 fn normal(points: &[Vec3], corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|i| points[i as usize].as_dvec3());
-    (b - a).cross(c - a).normalize_or_zero()
+    let (u, v) = (b - a, c - a);
+    let n = if corners[1] == corners[2] { DVec3::new(-u.y, u.x, 0.0) } else { u.cross(v) };
+    n.normalize_or_zero()
 }

@@ -54,7 +54,9 @@ impl Look {
         let r = c.rows.map(glam::DVec3::from);
         let narrow = |v: glam::DVec3| v.as_vec3().to_array();
         let side = |k: usize, sign: f64| (narrow((r[2] + r[k] * sign).normalize_or_zero()), 0.0);
-        let [x, y] = [r[0] / r[0].length_squared(), r[1] / r[1].length_squared()];
+        // Flatland has no row of y, and rays that do not change along it.
+        let over = |r: glam::DVec3| if r == glam::DVec3::ZERO { r } else { r / r.length_squared() };
+        let [x, y] = [over(r[0]), over(r[1])];
         let rays = [0, 1, 2].map(|a| [x[a] * 2.0 / width, -y[a] * 2.0 / height, r[2][a] - x[a] + y[a]]);
         let greatest = |[a, b, c]: [f64; 3]| a.abs() * width + b.abs() * height + c.abs();
         Self {

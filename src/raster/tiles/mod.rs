@@ -18,6 +18,9 @@
 //! pixel was left out, and what a tile claims is never nearer than the truth. So answers depend neither on
 //! the order of drawing nor on the instruction set, whose width leaves no trace in the state either.
 //!
+//! Flatland goes the same way: its image is a line of pixels, one row of tiles, and only what a segment covers
+//! and how deep it lies there is its own (`segments`).
+//!
 //! Memory: half a byte a pixel, and some 80 bytes for each primitive that may show.
 
 mod bins;
@@ -29,6 +32,7 @@ mod plane;
 mod query;
 mod ready;
 mod resolve;
+mod segments;
 mod setup;
 mod wide;
 mod window;
@@ -43,7 +47,7 @@ use self::setup::Scratch;
 use super::PyramidCell;
 use super::simd::Isa;
 use super::vertex::Camera;
-use crate::geometry::{PrimId, Solid, View};
+use crate::geometry::{PrimId, Space, View};
 
 /// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +71,8 @@ const UNBEGUN: f32 = f32::MAX;
 pub struct Tiles {
     camera: Camera,
     look: Look,
-    view: Option<View<Solid>>,
+    /// Whether the image is flatland's line of pixels.
+    is_flat: bool,
     /// Size in pixels.
     width: i32,
     height: i32,
@@ -126,7 +131,8 @@ impl Resolved {
 /// What a frame has drawn, and nothing of how, nor of what was asked since.
 impl PartialEq for Tiles {
     fn eq(&self, other: &Self) -> bool {
-        (self.view, self.keeps) == (other.view, other.keeps)
+        (self.camera, self.is_flat, self.keeps) == (other.camera, other.is_flat, other.keeps)
+            && (self.width, self.height) == (other.width, other.height)
             && self.lines == other.lines
             && self.block_far == other.block_far
             && self.block_near == other.block_near
@@ -139,24 +145,29 @@ impl Tiles {
     ///
     /// # Panics
     /// If a side of the image exceeds [`super::Target::MAX_SIDE_PX`].
-    pub fn clear(&mut self, view: &View<Solid>, keeps: bool) {
+    pub fn clear<S: Space>(&mut self, view: &View<S>, keeps: bool) {
         assert!(
             view.width.max(view.height) <= super::Target::MAX_SIDE_PX,
             "an image side exceeds {} pixels",
             super::Target::MAX_SIDE_PX
         );
         (self.width, self.height, self.keeps) = (view.width as i32, view.height as i32, keeps);
+        self.is_flat = S::CORNERS == 2;
         self.strips = view.width.div_ceil(32) as usize;
         self.block_rows = view.height.div_ceil(16) as usize;
         self.bin_rows = view.height.div_ceil(64) as usize;
-        self.rows = self.bin_rows * 16 + 4;
+        self.rows = if self.is_flat { 4 } else { self.bin_rows * 16 + 4 };
         self.camera = Camera::new(view);
         self.look = Look::new(&self.camera, f64::from(view.width), f64::from(view.height));
-        self.view = Some(*view);
         // An empty pixel is as deep as the far plane, as in an image.
         let cleared = self.camera.depth_far;
         let line = Line { far: [cleared; 4], near: [UNBEGUN; 4], mask: [0; 4], ever: [0; 4] };
         refill(&mut self.lines, self.strips * self.rows, line);
+        if self.is_flat {
+            // The other lines of a block hold nothing that makes it farther than the one that is seen.
+            let below = Line { far: [UNBEGUN; 4], ..line };
+            self.lines.chunks_exact_mut(4).for_each(|block| block[1..].fill(below));
+        }
         // A bin's worth of rows and one more, since single windows begin at any line.
         let blocks = self.stride() * (self.bin_rows * 4 + 2);
         refill(&mut self.block_far, blocks, cleared);
@@ -166,8 +177,8 @@ impl Tiles {
         self.forget();
         self.resolved.at.resize(self.strips * self.block_rows, [Resolved::NOT; 16]);
     }
-    /// Draws occluders front to back, those clusters that are not hidden when their turn comes. `one_sided`:
-    /// primitives have a front only, unless their material has two sides.
+    /// Draws occluders of the view's space front to back, those clusters that are not hidden when their turn
+    /// comes. `one_sided`: primitives have a front only, unless their material has two sides.
     pub fn draw(&mut self, clusters: &Clusters, one_sided: bool, isa: Isa) {
         query::draw(self, clusters, one_sided, isa);
     }
@@ -249,6 +260,12 @@ impl Tiles {
                 let block = y / 16 * self.stride() + x / 32;
                 assert!(self.block_far[block] <= is, "({x}, {y}) is farther than its block");
                 assert!(self.block_near[block] >= is, "({x}, {y}) is nearer than its block");
+            }
+        }
+        if self.is_flat {
+            for (&block, lines) in self.block_far.iter().zip(self.lines.chunks_exact(4)) {
+                let least = lines[0].far.into_iter().fold(f32::INFINITY, f32::min);
+                assert_eq!(block, least, "a block is as far as the farthest of its tiles in the line");
             }
         }
     }

@@ -206,7 +206,7 @@ fn finish<L: Wide>(l: L, tiles: &mut Tiles) {
 }
 /// Brings the farthest depth of a block up to date. Whether it was not.
 #[inline(always)]
-fn refresh<L: Wide>(l: L, tiles: &mut Tiles, strip: usize, row: usize) -> bool {
+pub(super) fn refresh<L: Wide>(l: L, tiles: &mut Tiles, strip: usize, row: usize) -> bool {
     let at = row * tiles.stride() + strip;
     let far = farthest(l, tiles, strip, row);
     std::mem::replace(&mut tiles.block_far[at], far) != far

@@ -2,6 +2,7 @@
 //! the tile's bin keeps.
 
 use super::bins::Batch;
+use super::segments::shade_segment;
 use super::wide::{self, Wide, Work, each};
 use super::{Resolved, Tiles};
 use crate::raster::setup::{Plane, area, center};
@@ -53,8 +54,12 @@ pub(super) fn resolve<L: Wide>(l: L, tiles: &mut Tiles, block: usize, tile: usiz
             continue;
         }
         let batch = &tiles.bins.kept[entry.id as usize / 16];
-        shade(l, batch, entry.id as usize % 16, [0, 1, 2], [x, y], &mut depths);
-        shade(l, batch, entry.id as usize % 16, [0, 2, 3], [x, y], &mut depths);
+        if tiles.is_flat {
+            shade_segment(batch, entry.id as usize % 16, x, &mut depths);
+        } else {
+            shade(l, batch, entry.id as usize % 16, [0, 1, 2], [x, y], &mut depths);
+            shade(l, batch, entry.id as usize % 16, [0, 2, 3], [x, y], &mut depths);
+        }
         let mut least = l.load(&depths);
         for at in (L::N..32).step_by(L::N) {
             least = l.min(least, l.load(&depths[at..]));
@@ -99,7 +104,9 @@ impl Work for All<'_> {
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
         for block in 0..self.tiles.strips * self.tiles.block_rows {
-            for tile in 0..16 {
+            // Tiles that begin below the image hold nothing.
+            let lines = (self.tiles.height as usize).div_ceil(4) - 4 * (block / self.tiles.strips);
+            for tile in 0..4 * lines.min(4) {
                 let known = self.tiles.resolved.at[block][tile];
                 let at = if known == Resolved::NOT { cover(self.tiles, block, tile) } else { known as usize };
                 if self.tiles.resolved.floors[at].1 == Resolved::NOT {

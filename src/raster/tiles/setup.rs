@@ -12,9 +12,10 @@ use super::Tiles;
 use super::bins::Batch;
 use super::clusters::{Cluster, Clusters, TWO_SIDED, corner, half, is_quadrangle, reversed};
 use super::ready::{Corners, LARGE, MIDDLING, Pixels, Ready, SMALL, greatest4, least4};
+use super::segments::Segments;
 use super::wide::{Wide, Work, each};
 use super::window::{Several, single};
-use crate::geometry::orient3d;
+use crate::geometry::{orient2d, orient3d};
 use crate::raster::image::clip;
 use crate::raster::setup::area;
 use crate::raster::vertex::{GUARD, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
@@ -23,25 +24,27 @@ use crate::raster::vertex::{GUARD, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     /// Points of the cluster at hand.
-    corners: Vec<Vertex>,
+    pub corners: Vec<Vertex>,
     /// Words of what faces the eye of it, with their tags; and of what needs clipping.
     front: Front,
     clipped: Vec<(u64, i32)>,
     /// Triangles that the grid turned over or that clipping made.
     turned: Vec<([Vertex; 3], i32)>,
     rings: [Ring; 3],
-    ready: Option<Box<Ready>>,
+    pub ready: Option<Box<Ready>>,
     /// For each strip the tiles of a bin that a primitive may show in, covers whole, and its nearest depth.
     pub hits: Vec<(u64, u64, f32)>,
     pub told: Told,
+    /// Segments that are kept.
+    pub segments: usize,
 }
 
 /// Words and tags of what faces the eye. A tag says which primitive it is and which parts of it: the number
 /// among all words, shifted by two, and a bit for each of the two triangles.
 #[derive(Clone, Debug, Default)]
-struct Front {
-    words: Vec<u64>,
-    tags: Vec<i32>,
+pub(super) struct Front {
+    pub words: Vec<u64>,
+    pub tags: Vec<i32>,
 }
 
 impl Front {
@@ -74,6 +77,7 @@ impl Told {
 impl Scratch {
     pub fn clear(&mut self, strips: usize) {
         self.rings.iter_mut().for_each(|r| r.count = 0);
+        self.segments = 0;
         self.hits.resize(strips, (0, 0, 0.0));
     }
 }
@@ -120,15 +124,19 @@ impl<L: Wide> Draw<'_, L> {
                 told.faced.extend_from_slice(&front.tags);
             }
             self.project(c);
-            // Whole vectors: the last word again, and its lanes left out.
-            let count = front.words.len();
-            front.words.resize(count.next_multiple_of(16), last);
-            front.tags.resize(front.words.len(), 0);
-            let tags = front.tags.chunks_exact(16);
-            for (k, (words, tags)) in front.words.chunks_exact(16).zip(tags).enumerate() {
-                self.gather(words, tags, count - 16 * k);
+            if self.tiles.is_flat {
+                self.l.apart(Segments { draw: self, cluster: c, front: &front });
+            } else {
+                // Whole vectors: the last word again, and its lanes left out.
+                let count = front.words.len();
+                front.words.resize(count.next_multiple_of(16), last);
+                front.tags.resize(front.words.len(), 0);
+                let tags = front.tags.chunks_exact(16);
+                for (k, (words, tags)) in front.words.chunks_exact(16).zip(tags).enumerate() {
+                    self.gather(words, tags, count - 16 * k);
+                }
+                self.clip_all(c);
             }
-            self.clip_all(c);
         }
         self.tiles.scratch.front = front;
     }
@@ -219,9 +227,13 @@ impl<L: Wide> Draw<'_, L> {
     fn shows_front(&self, c: &Cluster, word: u64) -> bool {
         // The exact predicate of the rasterizer; the corners run the other way round.
         let [a, b, d] = self.points_of(c, word).map(|p| p.as_dvec3());
+        if self.tiles.is_flat {
+            let eye = glam::DVec3::from(self.tiles.camera.eye);
+            return orient2d(a.truncate(), b.truncate(), eye.truncate()) > 0.0;
+        }
         orient3d(a, d, b, glam::DVec3::from(self.tiles.camera.eye)) > 0.0
     }
-    fn points_of(&self, c: &Cluster, word: u64) -> [glam::Vec3; 3] {
+    pub(super) fn points_of(&self, c: &Cluster, word: u64) -> [glam::Vec3; 3] {
         std::array::from_fn(|j| {
             let at = c.points.start + corner(word, j);
             glam::Vec3::from(self.clusters.points.each_ref().map(|p| p[at]))

@@ -27,11 +27,11 @@ use super::{Tiles, UNBEGUN};
 /// Where a window lies: its strip, its first line, and how many tiles to the right and down of the
 /// primitive's first block.
 #[derive(Clone, Copy)]
-struct Place {
-    strip: usize,
-    line: usize,
-    right: f32,
-    below: f32,
+pub(super) struct Place {
+    pub strip: usize,
+    pub line: usize,
+    pub right: f32,
+    pub below: f32,
 }
 
 /// Draws a primitive that fits one window, which begins at any line. Whether it may show.
@@ -88,7 +88,7 @@ fn inside<L: Wide>(l: L, t: &Ready, lane: usize, k: usize, v: L::F) -> L::I {
 /// The masked update of the tiles of a window, or of a part of it. Returns which may show something of the
 /// primitive, which of these it covers whole, and its nearest depth in those.
 #[inline(always)]
-fn merge<L: Wide, const WHOLE: bool>(
+pub(super) fn merge<L: Wide, const WHOLE: bool>(
     l: L,
     tiles: &mut Tiles,
     t: &Ready,
@@ -388,14 +388,14 @@ fn wide_crossings<L: Wide>(l: L, t: &Ready, lane: usize, row: usize, left: i32) 
 }
 
 #[inline(always)]
-fn positive(v: f32) -> f32 {
+pub(super) fn positive(v: f32) -> f32 {
     if v > 0.0 { v } else { 0.0 }
 }
 #[inline(always)]
-fn lesser(a: f32, b: f32) -> f32 {
+pub(super) fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 #[inline(always)]
-fn raise(to: &mut f32, v: f32) {
+pub(super) fn raise(to: &mut f32, v: f32) {
     *to = if v > *to { v } else { *to };
 }
