@@ -1,25 +1,21 @@
-//! What the parts of `hierarchical-z` cost: bringing the pyramid up to date, a query, and whole frames, at
-//! four image sizes.
+//! What the parts of `hierarchical-z` cost: a query, culling, and whole frames, at four image sizes.
 //!
-//! `cargo bench --no-default-features --bench hierarchical_z`. Last, the two-pass form on one thread and on
-//! two, interleaved. Frames of the walk with obscuration culling are paired and interleaved with view-frustum
-//! culling and drawing of the same views; each line ends with a hash of its result.
+//! `cargo bench --no-default-features --bench hierarchical_z`. Frames of the walk with obscuration culling
+//! are paired and interleaved with view-frustum culling and drawing of the same views; each line ends with a
+//! hash of its result.
 
 use std::hint::black_box;
 use std::sync::Arc;
 
 use cullscope::culling::Methods;
 use cullscope::culling::hierarchical_z_parts::Obscurer;
-use cullscope::geometry::{Aabb, NodeId, Solid, View};
+use cullscope::geometry::{NodeId, Solid, View};
 use cullscope::measure::timed;
 use cullscope::measure::timing::{Paired, median, paired};
 use cullscope::method::{Run, Settings};
-use cullscope::raster::{Drawable, Options, Target};
+use cullscope::raster::{Boxes, Drawable, Options, Target};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
-use glam::Vec3;
 
-/// Threads that the two-pass form is measured on, against one.
-const THREADS: usize = 2;
 const SIZES: [[u32; 2]; 4] = [[256, 256], [512, 512], [1024, 1024], [1920, 1080]];
 const ROUNDS: usize = 9;
 /// Views along the path.
@@ -44,17 +40,15 @@ fn main() {
             .expect("built");
         let nodes =
             (0..frustum.hierarchy().node_count() as u32).map(|n| frustum.hierarchy().bounds(NodeId(n)));
-        let boxes: Vec<Aabb<Vec3>> = nodes.collect();
+        let boxes = Boxes::new(nodes);
         for [width, height] in SIZES {
             let views: Vec<View<Solid>> =
                 path.views.iter().step_by(step).map(|v| View { width, height, ..*v }).collect();
             let mut occluders =
                 Obscurer::new(&scene, &Settings::default(), &Quiet).expect("fine").expect("built");
-            let (mut refresh, mut query, mut answers) = (Vec::new(), Vec::new(), Vec::new());
+            let (mut cull, mut query, mut answers) = (Vec::new(), Vec::new(), Vec::new());
             for view in &views {
-                occluders.render(view, false);
-                occluders.touch_all(view);
-                refresh.push(timed(|| occluders.refresh_all()).1);
+                cull.push(timed(|| occluders.render(view)).1);
                 let (all, ms) = timed(|| occluders.hides_all(&boxes));
                 let in_view = all.iter().flatten().count().max(1);
                 query.push(ms * 1e6 / in_view as f64);
@@ -63,15 +57,14 @@ fn main() {
             let hidden = answers.iter().filter(|a| **a == 1).count() as f64
                 / answers.iter().filter(|a| **a < 3).count().max(1) as f64;
             println!(
-                "{source} {width}x{height}: pyramid {:.3} ms, query {:.0} ns a box in view ({:.1} % hidden), \
+                "{source} {width}x{height}: culling {:.3} ms, query {:.0} ns a box in view ({:.1} % hidden), \
                  hash {:016x}",
-                median(refresh),
+                median(cull),
                 median(query),
                 100.0 * hidden,
                 hash(answers.into_iter())
             );
             frames(source, &scene, &views, &mut frustum, &mut occluders);
-            threads(source, &scene, &views);
         }
     }
 }
@@ -84,7 +77,7 @@ fn frames(
     frustum: &mut Box<dyn Run<Solid>>,
     occluders: &mut Obscurer<Solid>,
 ) {
-    let mut target = Target::default();
+    let (mut target, mut other) = (Target::default(), Target::default());
     let (mut all, mut kept) = (0, 0);
     let result = paired(
         ROUNDS,
@@ -99,8 +92,11 @@ fn frames(
         },
         || {
             for view in views {
-                kept = occluders.render(view, false).prims.len();
-                black_box(occluders.target());
+                let list = occluders.render(view);
+                other.clear(view);
+                Solid::draw(&mut other, scene, view, &list.prims, &Options::default());
+                kept = list.prims.len();
+                black_box(&other);
             }
         },
     );
@@ -111,24 +107,6 @@ fn frames(
         ["frame", "culled by frustum"],
         &format!(", last view {kept} of {all} drawn"),
     );
-}
-
-/// The two-pass form on several threads against itself on one.
-fn threads(source: &str, scene: &Arc<Scene<Solid>>, views: &[View<Solid>]) {
-    let settings = Settings::of(&[("form", "two-pass")]);
-    let run = |threads: usize| {
-        let mut occluders = Obscurer::new(scene, &settings, &Quiet).expect("fine").expect("built");
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        move || {
-            pool.install(|| {
-                for view in views {
-                    black_box(occluders.render(view, false));
-                }
-            });
-        }
-    };
-    let result = paired(ROUNDS, run(1), run(THREADS));
-    say(source, views, &result, [&format!("two-pass frame on {THREADS} threads"), "on one"], "");
 }
 
 /// One line: a frame of the second way, of the first, and their ratio.

@@ -206,21 +206,6 @@ impl Pyramid {
             .into_iter()
             .for_each(|t| self.refresh_tile(depth, t));
     }
-    /// Brings the tiles under a rectangle up to date, if no more than `most` of them are stale. Returns how
-    /// many were.
-    pub fn refresh_under(&mut self, depth: &[f32], r: PixelRect, most: usize) -> usize {
-        let columns = r.x0 / TILE_PX..=(r.x1 - 1) / TILE_PX;
-        let rows = r.y0 / TILE_PX..=(r.y1 - 1) / TILE_PX;
-        let tiles = rows.flat_map(|row| columns.clone().map(move |column| (row, column)));
-        let at = tiles.map(|(row, column)| (row * self.columns + column) as usize);
-        // One more than the limit is enough to know that it is exceeded.
-        let stale: Vec<usize> = at.filter(|&t| self.state[t] & STALE != 0).take(most + 1).collect();
-        if stale.len() <= most {
-            stale.iter().for_each(|&t| self.refresh_tile(depth, t));
-        }
-        stale.len()
-    }
-
     fn refresh_tile(&mut self, depth: &[f32], tile: usize) {
         self.state[tile] = FINE_HELD;
         let (column, row) = (tile as u32 % self.columns, tile as u32 / self.columns);
@@ -302,26 +287,6 @@ impl Pyramid {
         for y in first.y..=last.y {
             for x in first.x..=last.x {
                 farthest = farthest.min(self.farthest(depth, PyramidCell { level: first.level, x, y }));
-            }
-        }
-        farthest
-    }
-    /// The farthest depth of all pixels as they are now; nothing is brought up to date.
-    pub fn farthest_of_all(&self, depth: &[f32]) -> f32 {
-        let held = &self.coarse[0].values;
-        let is_stale = |tile: &usize| self.state[*tile] & STALE != 0;
-        let fresh = (0..held.len()).filter(|t| !is_stale(t)).map(|t| held[t]);
-        let mut farthest = fresh.fold(f32::INFINITY, f32::min);
-        for tile in (0..held.len()).filter(is_stale) {
-            // No pixel of a tile is farther than what it holds: most need not be looked at.
-            if farthest <= self.far || held[tile] >= farthest {
-                continue;
-            }
-            let (x0, y0) = (tile as u32 % self.columns * TILE_PX, tile as u32 / self.columns * TILE_PX);
-            for y in y0..(y0 + TILE_PX).min(self.height) {
-                let at = (y * self.width) as usize;
-                let row = &depth[at + x0 as usize..at + (x0 + TILE_PX).min(self.width) as usize];
-                farthest = row.iter().fold(farthest, |least, &d| if d < least { d } else { least });
             }
         }
         farthest

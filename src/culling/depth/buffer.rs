@@ -18,16 +18,11 @@ pub struct Projected<S: Drawable> {
 pub enum Step<'a, S: Drawable> {
     /// The tile of a cell is brought up to date.
     Refresh(PyramidCell),
-    /// The tiles under a rectangle are, unless more than so many are stale.
-    RefreshUnder(PixelRect, u32),
-    /// The whole pyramid is.
-    RefreshAll,
-    /// Primitives are drawn; those behind their pyramid cells are left out if `is_sieved`.
+    /// Primitives are drawn.
     ///
     /// Drawing them one by one leads to the same state as drawing them at once, and so may be replayed from
-    /// one note a primitive. The image is a function of the set of primitives that are drawn. Drawing marks
-    /// tiles as stale and refreshes none, so what the pyramid holds on its levels above 0 is the same for
-    /// each of them, and level 0, which is the image, is not asked about primitives.
+    /// one note a primitive: the image is a function of the set of primitives that are drawn, and drawing
+    /// marks tiles as stale and refreshes none.
     Draw {
         /// The scene that they are of.
         scene: &'a Scene<S>,
@@ -35,8 +30,6 @@ pub enum Step<'a, S: Drawable> {
         prims: &'a [PrimId],
         /// How.
         options: Options,
-        /// Whether the pyramid is asked first.
-        is_sieved: bool,
     },
 }
 
@@ -92,11 +85,6 @@ impl<S: Drawable> Buffer<S> {
         self.target.clear(view);
         self.look(view);
     }
-    /// The same for depths alone, which are all that queries need: the image has no items.
-    pub fn clear_depths(&mut self, view: &View<S>) {
-        self.target.clear_depths(view);
-        self.look(view);
-    }
     fn look(&mut self, view: &View<S>) {
         // Once a frame: every query needs all of them.
         let projection = view.projection();
@@ -105,20 +93,14 @@ impl<S: Drawable> Buffer<S> {
         // An empty pixel is as deep as the far plane, in the pyramid as in the image.
         self.pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
     }
-    /// Makes a change. Returns the primitives that drawing left out, in their order.
+    /// Makes a change.
     #[inline]
-    pub fn step(&mut self, step: Step<'_, S>) -> &[PrimId] {
-        // A refresh leaves nothing out, whatever was drawn before it.
-        self.hidden.clear();
+    pub fn step(&mut self, step: Step<'_, S>) {
         // A run and its film both come through here, so that the same operands make the same change.
         match step {
             Step::Refresh(cell) => self.refresh(cell),
-            Step::RefreshUnder(pixels, most) => self.refresh_under(pixels, most as usize),
-            Step::RefreshAll => self.refresh_all(),
-            Step::Draw { scene, prims, options, is_sieved: true } => _ = self.draw(scene, prims, &options),
-            Step::Draw { scene, prims, options, is_sieved: false } => self.draw_all(scene, prims, &options),
+            Step::Draw { scene, prims, options } => self.draw_all(scene, prims, &options),
         }
-        &self.hidden
     }
     /// Draws primitives but for those that lie behind their pyramid cells, which are returned in the order of
     /// `prims`. The pyramid grows stale where something was drawn.
@@ -153,18 +135,10 @@ impl<S: Drawable> Buffer<S> {
         let extent = S::extent(scene, &self.projected.as_ref()?.view, prim, options)?;
         Some((extent, self.pyramid.farthest_over(&self.target.depth, extent.pixels)))
     }
-    /// Makes a part of the pyramid stale.
-    pub fn touch(&mut self, pixels: PixelRect) {
-        self.pyramid.touch(pixels);
-    }
     /// Farthest depth that is held for a cell.
     #[inline]
     pub fn farthest(&self, cell: PyramidCell) -> f32 {
         self.pyramid.farthest(&self.target.depth, cell)
-    }
-    /// Farthest depth of the whole image as it is; nothing is brought up to date.
-    pub fn farthest_of_all(&self) -> f32 {
-        self.pyramid.farthest_of_all(&self.target.depth)
     }
     /// Farthest depth of a rectangle as it is, from its pixels.
     pub fn farthest_in(&self, r: PixelRect) -> f32 {
@@ -178,13 +152,6 @@ impl<S: Drawable> Buffer<S> {
     #[inline]
     fn refresh(&mut self, cell: PyramidCell) {
         self.pyramid.refresh(&self.target.depth, cell);
-    }
-    /// Brings the tiles under a rectangle up to date if no more than `most` are stale.
-    fn refresh_under(&mut self, pixels: PixelRect, most: usize) {
-        if !pixels.is_empty() {
-            // The pyramid counts tiles up to the last pixel, which an empty rectangle has not.
-            self.pyramid.refresh_under(&self.target.depth, pixels, most);
-        }
     }
     /// Brings the whole pyramid up to date.
     pub fn refresh_all(&mut self) {

@@ -5,13 +5,13 @@ use std::marker::PhantomData;
 
 use super::buffer::Step;
 use super::faces::Faces;
-use super::tiled::TileStep;
 use super::query::{Answer, At, Decisive, Listener};
+use super::tiled::TileStep;
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::method::evidence::{axes, integer, label, number, outline, short};
 use crate::method::{Claim, Compared, Context, Event, Field, Note, Observer, Tallied, Tally, Value};
-use crate::raster::{Extent, Hears, Options, Outcome, PyramidCell, Read};
+use crate::raster::{Hears, Options, Outcome, PyramidCell, Read};
 use crate::scene::{Scene, Surfaces};
 
 /// What happened to a buffer, or was read of it.
@@ -19,12 +19,8 @@ use crate::scene::{Scene, Surfaces};
 pub enum DepthNote<S: Faces> {
     /// A cell of the pyramid was compared with a node's box.
     Read(NodeId, Read),
-    /// A tile of the pyramid was brought up to date.
+    /// A tile of the pyramid was brought up to date; or a block of tiles, or a tile by exact depths.
     Refreshed(PyramidCell),
-    /// The tiles under a rectangle were brought up to date, unless more were stale than the number says.
-    RefreshedUnder(PixelRect, u32),
-    /// The whole pyramid was brought up to date.
-    RefreshedAll,
     /// What a node holds, and was not drawn yet, was drawn into tiles: with fronts only, or from both sides.
     Drawn(NodeId, bool),
     /// A node's box was queried.
@@ -82,16 +78,13 @@ impl Ground {
 pub struct Rasterized {
     /// Which.
     pub prim: PrimId,
-    /// What was compared: where it can show and how near it comes, and the farthest depth held there. `None`
-    /// if it is not tested: it covers no pixel, had to be clipped, or the pyramid is not asked.
-    pub operands: Option<(Extent, f32)>,
-    /// Among tiles the one in which it comes nearest to showing; `None` if it covers no pixel, or tiles are not
-    /// asked.
+    /// Among tiles the one in which it comes nearest to showing; `None` if it covers no pixel, or tiles are
+    /// not asked.
     pub tile: Option<Read>,
     /// Whether it was left out.
     pub is_hidden: bool,
-    /// Whether the pyramid was asked.
-    pub is_sieved: bool,
+    /// Whether it was compared with what is drawn.
+    pub is_tested: bool,
     /// Whether it was drawn only if it faces the eye, and whether it could be see-through.
     pub surfaces: Surfaces,
     /// The part of the image it was drawn in, if not all.
@@ -254,14 +247,11 @@ impl<S: Faces> DepthNote<S> {
     pub fn step<'a>(&'a self, scene: &'a Scene<S>) -> Option<Step<'a, S>> {
         match self {
             Self::Refreshed(cell) => Some(Step::Refresh(*cell)),
-            Self::RefreshedUnder(pixels, most) => Some(Step::RefreshUnder(*pixels, *most)),
-            Self::RefreshedAll => Some(Step::RefreshAll),
             Self::Rasterized(n) if !n.is_hidden => {
-                // How many threads drew is not recorded, since the image does not depend on it. Whether the
-                // pyramid was asked is: it decides which tiles the drawing marks as stale.
+                // How many threads drew is not recorded, since the image does not depend on it.
                 let options = Options { surfaces: n.surfaces, window: n.window, ..Options::default() };
                 let prims = std::slice::from_ref(&n.prim);
-                Some(Step::Draw { scene, prims, options, is_sieved: n.is_sieved })
+                Some(Step::Draw { scene, prims, options })
             }
             // What was only looked at, or left out, changes neither a pixel nor a tile.
             Self::Read(..) | Self::Answered(_) | Self::Rasterized(_) => None,
@@ -283,9 +273,7 @@ impl<S: Faces> DepthNote<S> {
             Self::Answered(n) => n.draw(view, to),
             Self::Rasterized(n) => {
                 outline(scene, n.prim, to);
-                if let Some((extent, held)) = n.operands {
-                    behind(view, extent.pixels, extent.nearest, held, to);
-                } else if let Some(r) = &n.tile {
+                if let Some(r) = &n.tile {
                     behind(view, r.cell.pixels(view.width, view.height), r.nearest, r.held, to);
                 }
             }
@@ -294,7 +282,7 @@ impl<S: Faces> DepthNote<S> {
                 behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
             }
             // A tile has no place in the world; the pictures of the pyramid show it.
-            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll | Self::Drawn(..) => {}
+            Self::Refreshed(_) | Self::Drawn(..) => {}
         }
     }
 }
@@ -304,8 +292,6 @@ impl<S: Faces> Tallied for DepthNote<S> {
         match self {
             Self::Read(..) => tally.add("cells_read", 1),
             Self::Refreshed(_) => tally.add("tiles_refreshed", 1),
-            // How many tiles were stale is not recorded, so the whole call counts once.
-            Self::RefreshedUnder(..) | Self::RefreshedAll => tally.add("refreshes", 1),
             Self::Drawn(..) => tally.add("cubes_drawn", 1),
             Self::Answered(_) => tally.add("queries", 1),
             Self::Rasterized(n) => {
@@ -320,8 +306,6 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Read(..) => "CellRead",
             Self::Refreshed(_) => "TileRefreshed",
-            Self::RefreshedUnder(..) => "TilesRefreshed",
-            Self::RefreshedAll => "PyramidRefreshed",
             Self::Drawn(..) => "CubeDrawn",
             // Georges 1995, Section 3.3, calls a query an obscuration test.
             Self::Answered(_) => "ObscurationTested",
@@ -337,16 +321,14 @@ impl<S: Faces> Note<S> for DepthNote<S> {
             Self::Rasterized(n) => Subject::Prim(n.prim),
             Self::Drawn(n, _) => Subject::Node(*n),
             // Of no node, even where a query caused it: no verdict may rest on a refresh.
-            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll => Subject::None,
+            Self::Refreshed(_) => Subject::None,
         }
     }
     fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
             Self::Answered(n) if n.answer.is_hidden => Some(Claim::Hidden),
             // What covers no pixel is not behind anything.
-            Self::Rasterized(n) if n.is_hidden && (n.operands.is_some() || n.tile.is_some()) => {
-                Some(Claim::Hidden)
-            }
+            Self::Rasterized(n) if n.is_hidden && n.tile.is_some() => Some(Claim::Hidden),
             // A cell hides a part of a box at most.
             _ => None,
         }
@@ -360,9 +342,8 @@ impl<S: Faces> Note<S> for DepthNote<S> {
         match self {
             Self::Read(_, n) => Some(depths(n.nearest, n.held)),
             Self::Answered(n) => n.answer.decisive.map(|d| depths(d.nearest, d.held)),
-            Self::Rasterized(Rasterized { tile: Some(r), .. }) => Some(depths(r.nearest, r.held)),
-            Self::Rasterized(n) => n.operands.map(|(extent, held)| depths(extent.nearest, held)),
-            Self::Refreshed(_) | Self::RefreshedUnder(..) | Self::RefreshedAll | Self::Drawn(..) => None,
+            Self::Rasterized(n) => n.tile.map(|r| depths(r.nearest, r.held)),
+            Self::Refreshed(_) | Self::Drawn(..) => None,
         }
     }
     fn fields(&self, _: &Context<'_, S>) -> Vec<Field> {
@@ -377,12 +358,9 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 fields
             }
             Self::Refreshed(cell) => cell_fields(*cell).to_vec(),
-            Self::RefreshedUnder(pixels, most) => vec![pixels_field(*pixels), integer("most_tiles", *most)],
-            Self::RefreshedAll => vec![],
-            Self::Drawn(node, one_sided) => vec![
-                integer("node", node.0),
-                Field { name: "one_sided", value: Value::Switch(*one_sided) },
-            ],
+            Self::Drawn(node, one_sided) => {
+                vec![integer("node", node.0), Field { name: "one_sided", value: Value::Switch(*one_sided) }]
+            }
             Self::Answered(n) => n.fields(),
             Self::Rasterized(n) => n.fields(),
         }
@@ -394,7 +372,10 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                 format!("The box of node {node} against {}: {}.", place(n.cell), comparison(n))
             }
             Self::Refreshed(cell) if cell.level == PyramidCell::BLOCK => {
-                format!("All tiles of {} hide it, so what the block holds is brought up to date.", place(*cell))
+                format!(
+                    "All tiles of {} hide it, so what the block holds is brought up to date.",
+                    place(*cell)
+                )
             }
             Self::Refreshed(cell) if cell.level == PyramidCell::TILE => format!(
                 "Masks and bounds do not decide in {}: the depths of its pixels are worked out, from the \
@@ -408,14 +389,6 @@ impl<S: Faces> Note<S> for DepthNote<S> {
                     place(*cell)
                 )
             }
-            Self::RefreshedUnder(_, most) => {
-                let tiles = if *most == 1 { "1 tile is".into() } else { format!("{most} tiles are") };
-                format!(
-                    "The pyramid is brought up to date where the next cube falls, if no more than {tiles} \
-                     stale there."
-                )
-            }
-            Self::RefreshedAll => "The whole pyramid is brought up to date.".into(),
             Self::Drawn(node, one_sided) => format!(
                 "What node {node} holds is drawn into the tiles{}, many {}s at a time. What became of each \
                  follows.",
@@ -618,14 +591,8 @@ impl Rasterized {
             integer("prim", self.prim.0),
             Field { name: "hidden", value: Value::Switch(self.is_hidden) },
         ];
-        if let Some((extent, held)) = self.operands {
-            // A hidden primitive has a positive margin: its nearest point lies so far behind what is drawn.
-            let (nearest, held) = (units(extent.nearest), units(held));
-            fields.push(pixels_field(extent.pixels));
-            fields.push(number("nearest_depth_units", nearest.into()));
-            fields.push(number("held_depth_units", held.into()));
-            fields.push(number("margin_units", f64::from(nearest) - f64::from(held)));
-        } else if let Some(r) = &self.tile {
+        if let Some(r) = &self.tile {
+            // A hidden primitive has a positive margin: it begins so far behind what is drawn.
             let (nearest, held) = (units(r.nearest), units(r.held));
             fields.extend(cell_fields(r.cell));
             fields.push(number("nearest_depth_units", nearest.into()));
@@ -638,7 +605,7 @@ impl Rasterized {
     fn sentence<S: Faces>(&self, scene: &Scene<S>, far: f32) -> String {
         let mut text = match &self.tile {
             Some(read) => self.in_tiles::<S>(read, far),
-            None => self.drawn::<S>(far),
+            None => self.drawn::<S>(),
         };
         if !self.is_hidden && self.surfaces.show_through(scene, self.prim) {
             text += " It is see-through, so it leaves the depths as they are and hides nothing.";
@@ -651,9 +618,9 @@ impl Rasterized {
         let (near, held) = (short(units(read.nearest)), short(units(read.held)));
         if self.is_hidden {
             format!(
-                "The {kind} {prim} is left out: in every tile that it covers it lies behind all that is drawn. \
-                 The closest is {tile}, where it begins at depth {near} and the farthest thing drawn is at \
-                 {held}."
+                "The {kind} {prim} is left out: in every tile that it covers it lies behind all that is \
+                 drawn. The closest is {tile}, where it begins at depth {near} and the farthest thing drawn \
+                 is at {held}."
             )
         } else if read.held <= far {
             format!(
@@ -667,7 +634,7 @@ impl Rasterized {
             )
         }
     }
-    fn drawn<S: Faces>(&self, far: f32) -> String {
+    fn drawn<S: Faces>(&self) -> String {
         let (kind, prim) = (S::PRIM, self.prim);
         // Drawn in a part of the image, it is not tested: there is nothing to compare in the sentence.
         if let Some(w) = self.window {
@@ -679,34 +646,15 @@ impl Rasterized {
                 w.y1 - 1
             );
         }
-        let Some((extent, held)) = self.operands else {
-            return if self.is_hidden {
-                format!("The {kind} {prim} is left out: it lies beside the image or between pixel centers.")
-            } else if self.is_sieved {
-                format!(
-                    "The {kind} {prim} is drawn without a test: it covers no pixel's center, or it is cut by \
-                     the near plane or the image's wide border."
-                )
-            } else {
-                format!("The {kind} {prim} is drawn; no primitive is tested by itself.")
-            };
-        };
-        let (near, at) = (short(units(extent.nearest)), short(units(held)));
         if self.is_hidden {
+            format!("The {kind} {prim} is left out: it lies beside the image or between pixel centers.")
+        } else if self.is_tested {
             format!(
-                "The {kind} {prim} is left out: its nearest point, at depth {near}, lies behind all that is \
-                 drawn in its cells, which is no farther than {at}."
-            )
-        } else if held <= far {
-            format!(
-                "The {kind} {prim} is drawn: it comes as near as {near}, and as far as its cells know, \
-                 nothing is drawn yet somewhere in them."
+                "The {kind} {prim} is drawn: by its bounds it may show, though it covers no pixel's \
+                     center."
             )
         } else {
-            format!(
-                "The {kind} {prim} is drawn: it comes as near as {near}, and as far as its cells know, the \
-                 farthest thing drawn in them is at {at}, not nearer."
-            )
+            format!("The {kind} {prim} is drawn; no primitive is tested by itself.")
         }
     }
 }

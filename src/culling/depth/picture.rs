@@ -7,7 +7,7 @@ use glam::{Vec2, vec2};
 
 use super::evidence::{Answered, DepthNote, comparison, place, units};
 use super::faces::Faces;
-use super::levels::Levels;
+pub use super::levels::Levels;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
 use crate::geometry::{NodeId, View};
 use crate::method::evidence::short;
@@ -134,8 +134,7 @@ fn image<S: Faces>(
     [x0, x1, y0, y1]: [u32; 4],
     scale: DepthScale,
 ) -> Pixels {
-    let cells = (y0..y1)
-        .flat_map(|y| (x0..x1).map(move |x| PyramidCell { level, x: x as u16, y: y as u16 }));
+    let cells = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PyramidCell { level, x: x as u16, y: y as u16 }));
     let depths: Vec<f32> = cells.map(|c| of.farthest(c)).collect();
     Pixels {
         width: x1 - x0,
@@ -160,17 +159,12 @@ fn draw_level<S: Faces>(
     // The pixels of an image mark are all of one size, which cut cells are not: they have marks of their own.
     let [across, down] = PyramidCell::shifts(frame.level);
     let split = |cells: u32, pixels: u32, shift: u32| {
-        if pixels >> shift == cells {
-            vec![[0, cells]]
-        } else {
-            vec![[0, cells - 1], [cells - 1, cells]]
-        }
+        if pixels >> shift == cells { vec![[0, cells]] } else { vec![[0, cells - 1], [cells - 1, cells]] }
     };
     for [y0, y1] in split(rows, view.height, down) {
         for [x0, x1] in split(columns, view.width, across).into_iter().filter(|_| y1 > y0) {
             if x1 > x0 {
-                let cell =
-                    |x: u32, y: u32| PyramidCell { level: frame.level, x: x as u16, y: y as u16 };
+                let cell = |x: u32, y: u32| PyramidCell { level: frame.level, x: x as u16, y: y as u16 };
                 let corners = [frame.rect(cell(x0, y0))[0], frame.rect(cell(x1 - 1, y1 - 1))[1]];
                 let pixels = image(of, view, frame.level, [x0, x1, y0, y1], scale);
                 to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
@@ -188,8 +182,7 @@ fn draw_level<S: Faces>(
         for x in 0..columns as u16 {
             let cell = PyramidCell { level: frame.level, x, y };
             // No number where it is stale: it would be read as the truth.
-            let text =
-                if of.is_stale(cell) { "stale".into() } else { value(of.farthest(cell), view) };
+            let text = if of.is_stale(cell) { "stale".into() } else { value(of.farthest(cell), view) };
             let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
             // All cells of a level are of one size: as a rule all have room for their values or none has.
             if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
@@ -228,9 +221,9 @@ fn stale(of: &impl Levels, frame: &Frame, to: &mut Drawing) {
     // One row past the last, which has no runs, closes those that are still open.
     for y in 0..=rows {
         let mut runs: Vec<[u32; 2]> = Vec::new();
-        for x in (0..columns).filter(|&x| {
-            y < rows && of.is_stale(PyramidCell { level, x: x as u16, y: y as u16 })
-        }) {
+        for x in
+            (0..columns).filter(|&x| y < rows && of.is_stale(PyramidCell { level, x: x as u16, y: y as u16 }))
+        {
             match runs.last_mut().filter(|run| run[1] == x) {
                 Some(run) => run[1] += 1,
                 None => runs.push([x, x + 1]),

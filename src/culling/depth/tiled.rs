@@ -9,8 +9,7 @@ use super::buffer::Projected;
 use super::faces::Faces;
 use crate::geometry::{NodeId, PrimId, View};
 use crate::raster::{
-    Answer, Boxes, Clusters, Fate, Hears, How, Isa, Options, Outcome, PyramidCell,
-    Question, Read, Tiles,
+    Answer, Boxes, Clusters, Fate, Hears, How, Isa, Options, Outcome, PyramidCell, Question, Read, Tiles,
 };
 use crate::scene::Scene;
 
@@ -52,7 +51,8 @@ impl<S: Faces> Tiled<S> {
     /// own and what it shares with others; of a scene of `prims` primitives.
     pub fn clear(&mut self, view: &View<S>, clusters: &Arc<Clusters>, prims: usize) {
         self.tiles.clear(view, true);
-        self.projected = Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
+        self.projected =
+            Some(Projected { view: *view, projection: view.projection(), frustum: view.frustum() });
         self.clusters = clusters.clone();
         self.drawn.clear();
         self.drawn.resize(prims, false);
@@ -81,7 +81,8 @@ impl<S: Faces> Tiled<S> {
             let how = How { one_sided, skipped };
             self.tiles.draw_group(&self.clusters, group, how, Isa::best(), &mut self.fates);
             // What covers nothing, or lets light through, hides nothing: whoever draws it asks for its box.
-            let apart = self.clusters.apart(group).iter().filter(|p| !skipped.get(p.at()).is_some_and(|d| *d));
+            let apart =
+                self.clusters.apart(group).iter().filter(|p| !skipped.get(p.at()).is_some_and(|d| *d));
             self.fates.extend(apart.map(|&p| (p, Fate::Apart)));
         }
         // Georges 1995, Section 3.1: what cubes share is marked when it is drawn, so that it is drawn once.

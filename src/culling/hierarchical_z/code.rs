@@ -80,7 +80,11 @@ pub(super) const CODE: &[CodeLine] = &[
         "    if B begins behind q, wherever it is in q: next q",
         "if the nearest depth of F is behind q: next F",
     ),
-    CodeLine::departing("Obscured:10", "    if B covers q and begins before all in it: return false", "no such end"),
+    CodeLine::departing(
+        "Obscured:10",
+        "    if B covers q and begins before all in it: return false",
+        "no such end",
+    ),
     CodeLine::departing(
         "Obscured:11",
         "    for each tile r of 8×4 pixels of q that B touches",
@@ -157,7 +161,10 @@ pub(super) mod line {
 pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("NodeClassified", &["Visit:2"]),
     ("CubeListed", &["Frame:3", "Visit:4"]),
-    ("ObscurationTested", &["Obscured:3", "Obscured:4", "Obscured:10", "Obscured:13", "Obscured:18", "Obscured:19"]),
+    (
+        "ObscurationTested",
+        &["Obscured:3", "Obscured:4", "Obscured:10", "Obscured:13", "Obscured:18", "Obscured:19"],
+    ),
     ("CellRead", &["Obscured:9", "Obscured:12", "Obscured:16", "Obscured:18"]),
     ("TileRefreshed", &["Obscured:12", "Obscured:17"]),
     ("CubeDrawn", &["Draw:2"]),

@@ -6,6 +6,7 @@ use rand_pcg::rand_core::Rng;
 use super::parts::figure_1;
 use super::*;
 use crate::culling::cubes::CubeNote;
+use crate::culling::depth::picture::Levels;
 use crate::culling::depth::{Answered, Buffer, DepthNote, Ground, Query, QueryReporter};
 use crate::geometry::{Flat, NodeId, PixelRect, Solid, Space, Vector, View};
 use crate::method::{Context, Note, Recorder, Unobserved, Verdict};
@@ -122,7 +123,12 @@ fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
                 assert_eq!(render(&scene, &view, &list.prims), plain, "form {form:?}, interval {interval}");
                 // What is worked out of the tiles is the depths of the whole image, though not all is drawn.
                 let levels = tried.tiled.levels();
-                assert_eq!(levels.depths(), plain.depth, "form {form:?}, interval {interval}: its own depths");
+                assert_eq!(
+                    levels.depths(),
+                    plain.depth,
+                    "form {form:?}, interval {interval}: its own \
+                                                          depths"
+                );
             }
         }
     }

@@ -103,11 +103,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.line(line::EACH_LISTED);
             self.draw_listed(NodeId(0), Frustum::<S::Vector>::ALL);
         }
-        if self.is_two_pass() {
-            if self.params.coherence {
-                self.line(line::DRAW_KEPT);
-                self.draw_together();
-            }
+        if self.is_two_pass() && self.params.coherence {
+            self.line(line::DRAW_KEPT);
+            self.draw_together();
         }
         // 2. Section 3.2: everything else is drawn unless the pyramid hides its box.
         self.watch.stage("visit");
@@ -206,7 +204,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.event(Event::DecidedNode(id, Verdict::Partial));
         } else {
             self.line(line::OBSCURED);
-            let is_obscured = self.is_obscured(id);
+            let is_obscured = self.is_obscured(id, true);
             self.line(line::OBSCURED);
             if is_obscured {
                 return self.leave(id, line::HIDDEN, Verdict::Hidden);
@@ -282,8 +280,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let tiles = self.tiled.tiles();
         self.watch.note(move || {
             let tile = is_tested.then(|| deciding(tiles, scene, view, prim)).flatten();
-            let (is_sieved, operands, window) = (is_tested, None, None);
-            let drawn = Rasterized { prim, operands, tile, is_hidden, is_sieved, surfaces, window };
+            let drawn = Rasterized { prim, tile, is_hidden, is_tested, surfaces, window: None };
             Evidence::Depth(DepthNote::Rasterized(drawn))
         });
         if is_hidden {
@@ -308,8 +305,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
     }
 
-    /// Whether the tiles hide a cube.
-    fn is_obscured(&mut self, node: NodeId) -> bool {
+    /// Whether the tiles hide a cube. `exact`: where they do not decide, the depths of their pixels do.
+    fn is_obscured(&mut self, node: NodeId, exact: bool) -> bool {
         let cube = &self.octree().nodes()[node.at()];
         let question = question(cube, self.view, &self.projection, self.params);
         self.line(line::QUERY);
@@ -336,7 +333,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                     Volume::Sphere => line::SPHERE,
                 });
                 let boxes = is_by_planes.then(|| [ends::<S>(&cube.bounds), ends::<S>(&cube.whole)]);
-                let question = Question { pixels: image.pixels, nearest, boxes, exact: true };
+                let question = Question { pixels: image.pixels, nearest, boxes, exact };
                 let mut asking = Asking::new(&mut *self.watch, line_of, Some(node));
                 let is_hidden = self.tiled.hides(question, &mut asking);
                 (image.pixels, asking.answer(is_hidden, nearest), Ground::Cells)
@@ -374,7 +371,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         };
         self.line(line::EACH_CHECKED);
         self.line(line::CHECK_OBSCURED);
-        let is_obscured = self.is_obscured(id);
+        // By tiles alone: most of the list is visible, and to be sure of the rest costs more than it saves.
+        let is_obscured = self.is_obscured(id, false);
         self.line(line::CHECK_OBSCURED);
         if is_obscured {
             self.line(line::UNLIST);
@@ -418,13 +416,9 @@ fn question<S: Faces>(
         footprint(view, projection, &node.bounds)
     } {
         // The sphere is that about the wholes already.
-        Footprint::Seen(image) if is_sphere || node.whole == node.bounds => {
-            Asked::Open(image, image.nearest)
-        }
+        Footprint::Seen(image) if is_sphere || node.whole == node.bounds => Asked::Open(image, image.nearest),
         // A shared primitive is drawn as a whole, and the part outside the cube may come nearer.
-        Footprint::Seen(image) => {
-            Asked::Open(image, nearest_depth(projection, &node.whole, view.eye.near))
-        }
+        Footprint::Seen(image) => Asked::Open(image, nearest_depth(projection, &node.whole, view.eye.near)),
         // Beside the view, but not by enough for the frustum's test.
         Footprint::Outside => Asked::Decided(Ground::BesideImage),
         Footprint::CrossesNear => Asked::Decided(Ground::CrossesNear),

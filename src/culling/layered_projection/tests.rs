@@ -282,8 +282,7 @@ fn figure_6_written_out() {
     (view.eye.near, view.eye.fov) = (0.01, 3.0);
     let (mut list, mut recorder, mut front) =
         (DrawList::default(), Recorder::new(usize::MAX), Front::default());
-    let frame =
-        Frame { index: &built, scene: &scene, view: &view, params: &params, limit: None };
+    let frame = Frame { index: &built, scene: &scene, view: &view, params: &params, limit: None };
     front.begin(&frame);
     LayeredProjection::cull(&frame, &mut (), &mut front, &mut list, &mut recorder);
     let handed =

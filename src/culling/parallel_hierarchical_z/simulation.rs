@@ -566,20 +566,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn rasterize(&mut self, prims: &[PrimId], region: u32) {
         let options = Options { window: Some(self.screen.window(region)), ..self.options() };
         for &prim in prims {
-            // Section 5: a renderer compares at every pixel at once, so nothing is tested before, and there
-            // are no operands to record.
+            // Section 5: a renderer compares at every pixel at once, so nothing is tested before.
             let rasterized = Rasterized {
                 prim,
-                operands: None,
                 tile: None,
                 is_hidden: false,
-                is_sieved: false,
+                is_tested: false,
                 surfaces: options.surfaces,
                 window: options.window,
             };
             self.watch.note(move || Evidence::Depth(DepthNote::Rasterized(rasterized)));
         }
-        self.buffer.step(Step::Draw { scene: self.scene, prims, options, is_sieved: false });
+        self.buffer.step(Step::Draw { scene: self.scene, prims, options });
         self.farthest[region as usize] = None;
     }
     /// Compares a box with what is drawn in a region: whether any pixel of it is left on.

@@ -199,7 +199,8 @@ fn sifted_is_the_same<S: Drawable>(
         pyramid.assert_well_formed(&target.depth);
         match go % 2 {
             0 => pyramid.refresh_all(&target.depth),
-            _ => _ = pyramid.refresh_under(&target.depth, options.window_of(view), 7),
+            // One tile alone.
+            _ => pyramid.refresh(&target.depth, PyramidCell { level: 1, x: 0, y: 0 }),
         }
         pyramid.assert_well_formed(&target.depth);
     }

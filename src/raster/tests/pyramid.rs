@@ -53,32 +53,6 @@ fn any_size_has_a_pyramid() {
             "{width}×{height}: no level too many"
         );
         pyramid.assert_well_formed(&depth);
-        assert_eq!(pyramid.farthest_of_all(&depth), depth.iter().copied().fold(f32::INFINITY, f32::min));
-    }
-}
-
-/// The farthest depth of an image that was drawn into since, in tiles that were never brought up to date.
-#[test]
-fn the_farthest_depth_is_that_of_the_image_as_it_is() {
-    let mut dice = Dice::new(9);
-    for (width, height) in [(1, 1), (40, 1), (50, 37), (16, 33)] {
-        let mut depth = vec![0.1; width as usize * height as usize];
-        let mut pyramid = Pyramid::default();
-        pyramid.clear(width, height, 0.1);
-        for _ in 0..60 {
-            let (x0, y0) = (dice.below(width), dice.below(height));
-            let (x1, y1) = (x0 + 1 + dice.below(width - x0), y0 + 1 + dice.below(height - y0));
-            let near = dice.between(0.1, 1.0);
-            for at in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (y * width + x) as usize)) {
-                depth[at] = near.max(depth[at]);
-            }
-            pyramid.touch(PixelRect { x0, x1, y0, y1 });
-            if dice.below(3) == 0 {
-                pyramid.refresh_under(&depth, PixelRect { x0, x1, y0, y1 }, 2);
-            }
-            let farthest = depth.iter().copied().fold(f32::INFINITY, f32::min);
-            assert_eq!(pyramid.farthest_of_all(&depth), farthest, "{width}×{height}");
-        }
     }
 }
 

@@ -423,8 +423,12 @@ impl<H: Hears> Work for Fine<'_, H> {
                     bits &= bits - 1;
                     told = self.tell_blocks(l, row, told, strip + 1);
                     let found = open_tiles(l, self.tiles, &self.spans, a, strip, row);
-                    let sure = if self.exact { found & sure_tiles(l, self.tiles, &self.spans, strip, row) } else { found };
-                    self.tell_tiles(l, strip, row, found, sure);
+                    let sure = if self.exact {
+                        found & sure_tiles(l, self.tiles, &self.spans, strip, row)
+                    } else {
+                        found
+                    };
+                    self.tell_tiles(l, strip, row, sure);
                     if sure != 0 {
                         return false;
                     }
@@ -520,7 +524,12 @@ impl<H: Hears> Fine<'_, H> {
         if H::LISTENS && is_below {
             let nearest = self.spans.begins_at(l, [pixel[0] as f32 + 4.0, pixel[1] as f32 + 2.0]);
             // Both in the middle of the tile; it lies behind the plane all over it.
-            self.hears.reads(Read { cell: tile_at(pixel), held: floor[0], nearest, outcome: Outcome::Behind });
+            self.hears.reads(Read {
+                cell: tile_at(pixel),
+                held: floor[0],
+                nearest,
+                outcome: Outcome::Behind,
+            });
         }
         is_below
     }
@@ -550,7 +559,8 @@ impl<H: Hears> Fine<'_, H> {
     /// below it, and nothing where it does not reach. Sides of cells follow from their half extents.
     fn tell<L: Wide>(&mut self, l: L, half: [f32; 2], level: u8, [x, y]: [usize; 2], shows: Option<Outcome>) {
         let cell = cell_at(level, [x, y]);
-        let (column, row) = if level == PyramidCell::BLOCK { (32 * x + 16, 16 * y + 8) } else { (8 * x + 4, 4 * y + 2) };
+        let (column, row) =
+            if level == PyramidCell::BLOCK { (32 * x + 16, 16 * y + 8) } else { (8 * x + 4, 4 * y + 2) };
         let held = if level == PyramidCell::BLOCK {
             self.tiles.block_far[y * self.tiles.stride() + x]
         } else {
@@ -578,9 +588,9 @@ impl<H: Hears> Fine<'_, H> {
         }
         past
     }
-    /// The tiles of a block: `found` do not hide it, and of those `sure` show it, of which one is told.
+    /// The tiles of a block, up to the first of those that are `sure` to show it.
     #[inline(always)]
-    fn tell_tiles<L: Wide>(&mut self, l: L, strip: usize, row: usize, found: u32, sure: u32) {
+    fn tell_tiles<L: Wide>(&mut self, l: L, strip: usize, row: usize, sure: u32) {
         if !H::LISTENS {
             return;
         }
@@ -588,7 +598,6 @@ impl<H: Hears> Fine<'_, H> {
         for tile in (0..16).filter(|k| touched >> k & 1 == 1) {
             let at = [4 * strip + (tile & 3), 4 * row + (tile >> 2)];
             let is_sure = sure >> tile & 1 == 1;
-            debug_assert!(found >> tile & 1 == 1 || !is_sure);
             self.tell(l, TILE, PyramidCell::TILE, at, is_sure.then_some(Outcome::Shows));
             if is_sure {
                 return;

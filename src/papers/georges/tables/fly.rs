@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::geometry::ViewPath;
 use crate::measure::experiment::World;
 use crate::measure::harness::{Checked, Judge, frame, in_turns, part, ready};
-use crate::measure::{ExperimentError, Setup, timed};
+use crate::measure::{ExperimentError, Setup};
 use crate::papers::keys::{FRUSTUM, HIERARCHICAL_Z, Z_BUFFER};
 use crate::raster::Target;
 use crate::scene::{Progress, Scene};
@@ -44,19 +44,12 @@ pub fn fly<S: World>(
     let mut checked = Checked::default();
     let rest = part(progress, 0.15, 1.0);
     let times = in_turns(&mut runs, &path.views, &rest, "flying", |run, turn| {
-        // A frame of obscuration culling ends with the image drawn, so its time is all of the frame; the
-        // others are culled, then drawn.
-        let (list, ms) = if turn.run == CULLED {
-            timed(|| run.cull(turn.view).prims)
-        } else {
-            let (list, [cull, draw]) = frame(scene, run, turn.view, &mut targets[turn.run]);
-            (list, cull + draw)
-        };
+        let (list, [cull, draw]) = frame(scene, run, turn.view, &mut targets[turn.run]);
         drawn[turn.frame][turn.run] = list.len();
         if turn.run == CULLED && turn.is_first_round {
             checked.join(judge.check(turn.frame, turn.view, &list));
         }
-        [ms]
+        [cull + draw]
     })?;
     let times = times.into_iter().map(|ways| std::array::from_fn(|way| ways[way][0])).collect();
     Ok(Flight { times, drawn, checked })
