@@ -1,9 +1,11 @@
-//! Depths drawn so far, and what they hide: the z-buffer with its z-pyramid, the query of a box against it,
-//! and how both are recorded and shown. What methods that query depth share; it knows none of them. What a
-//! query reads goes to a [`Listener`].
+//! Depths drawn so far, and what they hide: tiles ([`Tiled`]), or the z-buffer with its z-pyramid
+//! ([`Buffer`]), what is asked of them, and how all this is recorded and shown. What methods that ask for
+//! depth share; it knows none of them.
 //!
-//! [`Buffer::clear`] for a view, [`Buffer::draw`] primitives, then [`hides`] for boxes. A method whose large
-//! state is the buffer changes it by [`Buffer::step`] alone, and records each change as a [`DepthNote`].
+//! [`Tiled::clear`] for a view, [`Tiled::step`] to draw what a node holds, then [`Tiled::hides`]; what is read
+//! goes to an [`Asking`]. Or [`Buffer::clear`], [`Buffer::draw`] primitives, then [`hides`] for boxes, and a
+//! [`QueryReporter`]. A method whose large state is either changes it by its `step` alone, and records each
+//! change as a [`DepthNote`].
 
 mod buffer;
 mod evidence;

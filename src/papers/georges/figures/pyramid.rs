@@ -96,10 +96,11 @@ pub fn office_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = format!(
-        "The pyramid over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of \
-         the octree has been found hidden. Cells are numbered in the order in which they were read: where a \
-         coarse cell does not decide, the four below it are read, down to the samples. Cross-hatched cells \
-         were drawn into since they were last read.",
+        "The levels over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of \
+         the octree has been found hidden. Cells are numbered in the order in which they were read: blocks of \
+         32 × 16 pixels first; where one does not decide, its tiles of 8 × 4, and where these do not, pixels. \
+         The last picture shows the masks of tiles: where a nearer layer is begun that does not cover its tile \
+         yet. Cross-hatched blocks hold less than their tiles know.",
         film.scene().live().len(),
         film.events().len()
     );
@@ -110,8 +111,8 @@ pub fn office_stack(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let film = office_film(maker)?;
     let step = hidden_query(&*film, 40);
     let content = film.picture(step, STACKED, DepthScale::Logarithmic);
-    let caption = "The same step with the levels above each other, the image at the bottom: a query begins \
-                   at the cells that cover the box, and goes down where it must.";
+    let caption = "The same step with the levels above each other, the pixels at the bottom: a query begins \
+                   at the blocks that the box touches, and goes down where it must.";
     Ok(maker.page(Paper::TwoColumns, "The z-pyramid over the image", cells(), caption, &content))
 }
 
@@ -130,7 +131,7 @@ pub fn flatland_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         &[flat_panel(&*film, step + 1, &Look::default(), format!("step {step} of {}", film.events().len()))],
     );
     let strips = film.picture(step, PYRAMID, DepthScale::Logarithmic);
-    let caption = "Flatland: the image is a line of 64 pixels, its pyramid a strip a level. A cube of the \
+    let caption = "Flatland: the image is a line of 64 pixels, its levels a strip each. A cube of the \
                    quadtree (yellow) is asked for; the lines of sight bound the cell that decided, the \
                    farthest thing drawn there lies before the cube's nearest corner, so the cube is hidden.";
     Ok(maker.page(
