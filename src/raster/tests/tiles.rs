@@ -1,6 +1,8 @@
 //! Tiles: their exact depths are those of the image, what they claim is never nearer, instruction sets leave
 //! no trace, and no box is called hidden that owns a pixel.
 
+use glam::DVec2;
+
 use super::*;
 use crate::geometry::{Aabb, Vector};
 
@@ -230,21 +232,57 @@ fn a_hidden_box_of_flatland_owns_no_pixel_and_answers_do_not_depend_on_the_instr
     }
     assert!(counts.iter().all(|&c| c > 500), "visible, hidden, outside: {counts:?}");
 }
+fn straight_line(width: u32) -> View<Flat> {
+    let fov = std::f32::consts::FRAC_PI_2;
+    let (position, target, up) = (Vec2::ZERO, Vec2::NEG_Y, Vec2::Y);
+    View { eye: Eye { position, target, up, fov, near: 0.1, far: 50.0 }, width, height: 1 }
+}
+
+/// A segment that begins 0.4 grid steps after a pixel's center is snapped to it and covers it, as the only pixel
+/// of its tile. Its plane has passed the depth of its end there, to which the pixel is cut; bounds hold that.
+#[test]
+fn bounds_of_flatland_hold_a_depth_that_is_cut_to_the_end_of_its_segment() {
+    let view = straight_line(32);
+    // Who looks down −y has −x to the right.
+    let at = |x: f64, w: f64| DVec2::new((1.0 - x / 16.0) * w, -w).as_vec2();
+    for [near, far] in [[5.0, 6.0], [6.0, 5.0]] {
+        let points = vec![at(7.5 + 0.4 / 256.0, near), at(20.0, far)];
+        let scene: Scene<Flat> = scene_of(points, vec![[0, 1]]);
+        let truth = image(&scene, &view, BOTH_SIDES);
+        assert_eq!((truth.item[6], truth.item[7]), (Target::NONE, 0));
+        assert_eq!(truth.depth[7], 1.0 / near as f32);
+        drawn(&scene, &view, BOTH_SIDES, Isa::best()).assert_claims(&truth.depth);
+    }
+}
+/// What is drawn in a group is told apart: the back of a segment, one behind another, one beside the view.
+#[test]
+fn a_group_of_flatland_tells_what_became_of_each_segment() {
+    let wall = |y: f32, from: f32, to: f32| [Vec2::new(from, y), Vec2::new(to, y)];
+    // The left of a segment toward +x is +y, where the eye is.
+    let walls = [wall(-5.0, -9.0, 9.0), wall(-6.0, -1.0, 1.0), wall(-3.0, 1.0, -1.0), wall(-4.0, 6.0, 8.0)];
+    let walls = walls.into_iter().chain([wall(-3.0, -1.0, 1.0)]);
+    let points: Vec<Vec2> = walls.flatten().collect();
+    let scene: Scene<Flat> = scene_of(points, (0..5).map(|k| [2 * k, 2 * k + 1]).collect());
+    let clusters = Clusters::new(&scene, ONE_SIDED, scene.live().chunks(1));
+    let mut tiles = Tiles::default();
+    tiles.clear(&straight_line(33), true);
+    let fates: Vec<(PrimId, Fate)> = (0..5)
+        .flat_map(|group| {
+            let (how, mut fates) = (How { one_sided: true, skipped: &[] }, Vec::new());
+            tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates);
+            fates
+        })
+        .collect();
+    let should = [Fate::Shown, Fate::Hidden, Fate::Away, Fate::Hidden, Fate::Shown];
+    assert_eq!(fates, (0..).map(PrimId).zip(should).collect::<Vec<_>>());
+}
 /// A wall across the line hides what is behind it by tiles alone, also in the tile that the edge of the image
 /// cuts, and only from its front.
 #[test]
 fn a_wall_of_flatland_hides_by_tiles_alone() {
     for width in [1, 7, 8, 31, 33, 200, 1024] {
-        let eye = Eye {
-            position: Vec2::ZERO,
-            target: Vec2::NEG_Y,
-            up: Vec2::Y,
-            fov: std::f32::consts::FRAC_PI_2,
-            near: 0.1,
-            far: 50.0,
-        };
-        let view = View { eye, width, height: 1 };
-        // The left of a segment that runs to the right is up, where the eye is.
+        let view = straight_line(width);
+        // The left of a segment toward +x is +y, where the eye is.
         let wall = [Vec2::new(-90.0, -5.0), Vec2::new(90.0, -5.0)];
         let behind = [Vec2::new(-30.0, -9.0), Vec2::new(30.0, -6.0)];
         let before = [Vec2::new(-1.0, -4.0), Vec2::new(1.0, -3.0)];
