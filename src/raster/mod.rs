@@ -24,7 +24,7 @@ mod simd;
 mod srgb;
 mod stand_in;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod through;
 mod tiles;
 mod vertex;

@@ -8,7 +8,9 @@ use rand_pcg::rand_core::Rng;
 
 use super::planes::{Planes, middle};
 use super::*;
+use crate::geometry::dice::Dice;
 use crate::geometry::{Aabb, Eye, Flat, Footprint, PixelRect, Solid, Space, Vector, View};
+use crate::raster::tests::moved_edge::{MovedEdge, any_view};
 use crate::raster::{Options, PyramidCell, Target, render};
 use crate::scene::{Parts, Scene};
 
@@ -200,6 +202,31 @@ fn a_wall_hides_what_lies_behind_it_only() {
             }
         }
     }
+}
+
+/// A triangle is drawn at pixels whose centers lie beside it by up to half a grid step, as deep as its plane
+/// is there, which may come nearer than its box by `DEPTH_SLACK`. Each of these pixels shows its box.
+#[test]
+fn a_box_shows_at_each_pixel_beside_its_triangle() {
+    let (mut dice, mut pixels) = (Dice::new(10), 0);
+    for _ in 0..10_000 {
+        let view = any_view(&mut dice);
+        let Some(moved) = MovedEdge::new(&mut dice, &view) else { continue };
+        let parts = Parts::simple("beside", moved.corners.into(), vec![[0, 1, 2]]);
+        let scene = Scene::<Solid>::new(parts).expect("valid");
+        let mut buffer = Buffer::default();
+        buffer.clear(&view);
+        buffer.draw(&scene, scene.live(), &Options::default());
+        let bounds = moved.bounds();
+        let Footprint::Seen(image) = footprint(&view, &view.projection(), &bounds) else { continue };
+        for &([x, y], depth) in &moved.pixels {
+            pixels += 1;
+            let pixel = PixelRect { x0: x, x1: x + 1, y0: y, y1: y + 1 };
+            let answer = Query::new(&mut buffer, image.nearest, Nobody).planes(&bounds, &bounds, pixel);
+            assert!(!answer.is_hidden, "{bounds:?} at ({x}, {y}), where it holds {depth}: {view:?}");
+        }
+    }
+    assert!(pixels > 5000, "{pixels} pixels");
 }
 
 /// Tiles that are refreshed between draws, a window: every step, replayed one primitive at a time, leads to

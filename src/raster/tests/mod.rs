@@ -2,8 +2,11 @@
 
 mod equal;
 mod limits;
+pub(crate) mod moved_edge;
 mod pyramid;
 mod rules;
+mod tile_answers;
+mod tile_edges;
 mod tiles;
 
 use glam::{DVec3, Vec2, Vec3};
@@ -61,6 +64,37 @@ pub(super) fn straight_view(size: u32, near: f32, far: f32) -> View<Solid> {
 pub(super) fn at_px(size: u32, x: f64, y: f64, w: f64) -> Vec3 {
     let half = f64::from(size) * 0.5;
     DVec3::new((x / half - 1.0) * w, (1.0 - y / half) * w, -w).as_vec3()
+}
+
+/// The lines of sight of a view, in f64.
+pub(super) struct Sight {
+    pub(super) eye: DVec3,
+    /// Change of the ray at view depth 1 a column and a row, and the ray at the image's upper left corner.
+    across: DVec3,
+    down: DVec3,
+    corner: DVec3,
+}
+
+impl Sight {
+    pub(super) fn new(view: &View<Solid>) -> Self {
+        let rows = view.projection().rows.map(Vec3::as_dvec3);
+        // Rows are square to each other.
+        let [x, y] = [0, 1].map(|k| rows[k] / rows[k].length_squared());
+        Self {
+            eye: view.eye.position.as_dvec3(),
+            across: x * 2.0 / f64::from(view.width),
+            down: -y * 2.0 / f64::from(view.height),
+            corner: rows[2] - x + y,
+        }
+    }
+    /// The ray through a point of the image (pixel corners are integers), at view depth 1.
+    pub(super) fn ray(&self, [x, y]: [f64; 2]) -> DVec3 {
+        self.across * x + self.down * y + self.corner
+    }
+    /// The point at view depth `w` on it.
+    pub(super) fn point(&self, at: [f64; 2], w: f64) -> Vec3 {
+        (self.eye + self.ray(at) * w).as_vec3()
+    }
 }
 
 /// Every way to draw that this machine has: instruction sets and threads. Reports once which sets it lacks,

@@ -6,11 +6,11 @@ use glam::DVec2;
 use super::*;
 use crate::geometry::{Aabb, Vector};
 
-const SETS: [Isa; 3] = [Isa::Portable, Isa::Avx2, Isa::Avx512];
+pub(super) const SETS: [Isa; 3] = [Isa::Portable, Isa::Avx2, Isa::Avx512];
 
 /// A scene of everything that tiles treat apart: boxes that pair to quadrangles, bent pairs, slivers,
 /// triangles from less than a pixel to far beyond the image, some of them before and behind the eye.
-fn mixed(dice: &mut Dice, count: usize) -> Scene<Solid> {
+pub(super) fn mixed(dice: &mut Dice, count: usize) -> Scene<Solid> {
     let (mut points, mut prims) = (Vec::new(), Vec::<[u32; 3]>::new());
     for _ in 0..count {
         let first = points.len() as u32;
@@ -99,7 +99,7 @@ fn flat_view(dice: &mut Dice, width: u32, scale: f32) -> View<Flat> {
 fn flat_size(round: u32) -> (u32, f32) {
     ([1, 7, 8, 31, 33, 200, 1024][round as usize % 7], if round % 10 == 9 { 1e-33 } else { 1.0 })
 }
-fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
+pub(super) fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
     let position = dice.point(3.0);
     let eye = Eye {
         position,
@@ -111,10 +111,10 @@ fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
     };
     View { eye, width, height }
 }
-fn sizes(round: u32) -> (u32, u32) {
+pub(super) fn sizes(round: u32) -> (u32, u32) {
     [(64, 64), (97, 53), (33, 130), (1, 1), (320, 200), (700, 40)][round as usize % 6]
 }
-fn drawn<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces, isa: Isa) -> Tiles {
+pub(super) fn drawn<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces, isa: Isa) -> Tiles {
     // Groups of all sizes: clusters of a few primitives, and some that are split.
     let groups: Vec<&[PrimId]> = scene.live().chunks(37).collect();
     let clusters = Clusters::new(scene, surfaces, groups);
@@ -123,7 +123,7 @@ fn drawn<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces, isa:
     tiles.draw(&clusters, surfaces.one_sided, isa);
     tiles
 }
-fn image<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces) -> Target {
+pub(super) fn image<S: Drawable>(scene: &Scene<S>, view: &View<S>, surfaces: Surfaces) -> Target {
     let mut target = Target::new(view);
     S::draw(&mut target, scene, view, scene.live(), &Options { surfaces, ..Options::default() });
     target
@@ -167,7 +167,7 @@ fn exact_depths_are_those_of_the_image<S: Drawable>(scene: &Scene<S>, view: &Vie
     }
     truth.item.iter().filter(|&&i| i != Target::NONE).count()
 }
-const ROUNDS: u32 = 120;
+pub(super) const ROUNDS: u32 = 120;
 
 /// What a tile claims while nothing was looked at closer: no pixel is farther, and what was ever covered is.
 #[test]
@@ -193,7 +193,7 @@ fn a_tile_claims_nothing_nearer_than_its_farthest_pixel() {
 }
 
 /// A random box, many of them small, or thin, or around what is drawn.
-fn random_box(dice: &mut Dice) -> Aabb<Vec3> {
+pub(super) fn random_box(dice: &mut Dice) -> Aabb<Vec3> {
     let size = [0.05, 0.5, 4.0][dice.below(3) as usize];
     let at = Vec3::new(dice.signed(8.0), dice.signed(8.0), dice.between(-25.0, 4.0));
     let half = Vec3::new(dice.unit(), dice.unit(), dice.unit()) * size;
@@ -349,6 +349,104 @@ fn owns_nothing<S: Drawable>(dice: &mut Dice, bounds: &Aabb<S::Vector>, view: &V
                 truth.depth[at]
             );
         });
+    }
+}
+
+/// The same tiles for one frame after another, asked between draws.
+#[test]
+fn tiles_are_used_again() {
+    let (mut dice, mut tiles) = (Dice::new(78), Tiles::default());
+    for round in 0..ROUNDS / 4 {
+        let scene = mixed(&mut dice, 60);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let (first, second) = scene.live().split_at(scene.live().len() / 2);
+        let boxes = Boxes::new((0..50).map(|_| random_box(&mut dice)));
+        tiles.clear(&view, true);
+        for part in 0..2 {
+            tiles.draw(&Clusters::new(&scene, ONE_SIDED, [[first, second][part]]), true, Isa::best());
+            let mut truth = Target::new(&view);
+            let options = Options { surfaces: ONE_SIDED, ..Options::default() };
+            Solid::draw(&mut truth, &scene, &view, [first, scene.live()][part], &options);
+            // What was asked leaves no depth behind that more drawing makes wrong.
+            tiles.hides_all(&boxes, true, Isa::best(), &mut Vec::new());
+            tiles.assert_claims(&truth.depth);
+            assert!(tiles.depths(Isa::best()) == truth.depth, "round {round}, part {part}");
+        }
+    }
+}
+
+/// A square over columns `x0..x1` of an image of 8×8 pixels and its upper four rows, `depth` its `1/w`.
+fn half_tile([x0, x1]: [f64; 2], depth: f64) -> [[Vec3; 3]; 2] {
+    let [a, b, c, d] = [[x0, 0.0], [x1, 0.0], [x1, 4.0], [x0, 4.0]].map(|[x, y]| at_px(8, x, y, 1.0 / depth));
+    [[a, b, c], [a, c, d]]
+}
+
+/// The masked update of Hasselgren, Andersson and Akenine-Möller 2016, Section 3.2, by hand: what the upper
+/// tile is known to hold at the farthest, after each of the squares that come into it.
+#[test]
+fn a_tile_keeps_the_layer_that_says_more() {
+    let view = straight_view(8, 1.0, 10.0);
+    let (left, right, all) = ([0.0, 4.0], [4.0, 8.0], [0.0, 8.0]);
+    for (squares, farthest) in [
+        // Both halves cover it: the farther of them.
+        (vec![(left, 0.5), (right, 0.4)], 0.4),
+        // A whole cover farther than what was begun leaves that: the other half then completes it.
+        (vec![(left, 0.5), (all, 0.25), (right, 0.5)], 0.5),
+        // One that is nearer ends it: a half of the same depth begins anew.
+        (vec![(left, 0.25), (all, 0.5), (right, 0.8)], 0.5),
+        // What was begun so far behind the next that it would pull it back is given up.
+        (vec![(left, 0.2), (right, 0.8), (left, 0.8)], 0.8),
+        // Not so what was begun less far behind it than before what was known.
+        (vec![(left, 0.5), (right, 0.8)], 0.5),
+        // Squares that lie behind change nothing.
+        (vec![(all, 0.5), (left, 0.4), (right, 0.4)], 0.5),
+    ] {
+        let mut tiles = Tiles::default();
+        tiles.clear(&view, true);
+        for &(columns, depth) in &squares {
+            let scene = soup(&half_tile(columns, depth));
+            tiles.draw(&Clusters::new(&scene, BOTH_SIDES, [scene.live()]), false, Isa::best());
+        }
+        // Boxes behind the tile, a little nearer and farther than that.
+        let behind =
+            |w: f64| Aabb::of([at_px(8, 1.0, 1.0, w), at_px(8, 7.0, 3.0, w), at_px(8, 4.0, 2.0, w * 1.01)]);
+        let boxes = Boxes::new([behind(1.01 / farthest), behind(0.99 / farthest)]);
+        let mut answers = Vec::new();
+        tiles.hides_all(&boxes, false, Isa::best(), &mut answers);
+        assert_eq!(answers, [Answer::Hidden, Answer::Visible], "{squares:?}");
+    }
+}
+
+/// Clusters are drawn front to back: of what is behind a wall nothing is kept, in whichever order they are
+/// given. The wall is as many primitives as are set up at a time, so none of it waits.
+#[test]
+fn a_wall_is_drawn_before_what_it_hides() {
+    let view = straight_view(64, 1.0, 100.0);
+    let wall = (0..16).flat_map(|k| {
+        let (x, y) = (f64::from(k % 4) * 16.0, f64::from(k / 4) * 16.0);
+        // Each at a depth of its own: no two of them make a quadrangle.
+        let [a, b, c, d] = [[0.0, 0.0], [16.0, 0.0], [16.0, 16.0], [0.0, 16.0]]
+            .map(|[right, down]| at_px(64, x + right, y + down, 2.0 + f64::from(k) / 64.0));
+        [[a, b, c], [a, c, d]]
+    });
+    let behind = (0..40).map(|k| {
+        let at = f64::from(k) + 10.0;
+        [at_px(64, at, at, 4.0), at_px(64, at + 9.0, at, 5.0), at_px(64, at, at + 9.0, 6.0)]
+    });
+    let scene = soup(&behind.chain(wall).collect::<Vec<_>>());
+    let (behind, wall) = scene.live().split_at(40);
+    let tiles = |groups: &[&[PrimId]]| {
+        let mut tiles = Tiles::default();
+        tiles.clear(&view, true);
+        tiles.draw(&Clusters::new(&scene, BOTH_SIDES, groups.iter().copied()), false, Isa::best());
+        // A question brings blocks up to date, which drawing does for some.
+        tiles.hides_all(&Boxes::new([]), true, Isa::best(), &mut Vec::new());
+        tiles
+    };
+    assert!(tiles(&[behind]) != tiles(&[]), "without the wall it is drawn");
+    for groups in [[behind, wall], [wall, behind]] {
+        assert!(tiles(&groups) == tiles(&[wall]), "something behind the wall left a trace");
     }
 }
 

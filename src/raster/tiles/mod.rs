@@ -270,6 +270,16 @@ impl Tiles {
         }
     }
 
+    /// The pixels that anything covers, row by row.
+    #[cfg(test)]
+    pub(super) fn covered(&self) -> Vec<bool> {
+        let covers = |x: usize, y: usize| {
+            self.lines[(x / 32) * self.rows + y / 4].ever[x % 32 / 8] >> (y % 4 * 8 + x % 8) & 1 == 1
+        };
+        let (width, height) = (self.width as usize, self.height as usize);
+        (0..width * height).map(|at| covers(at % width, at / width)).collect()
+    }
+
     /// Places of `block_far` and `block_near` a row: a vector reads up to 15 past its end.
     #[inline(always)]
     fn stride(&self) -> usize {
