@@ -12,8 +12,6 @@
 //! of rows, each band by one thread from all chunks. Both call the same functions, and a pixel keeps its
 //! winner whatever the order, so the bytes are equal.
 
-use std::ops::Range;
-
 use rayon::prelude::*;
 
 use super::pyramid::Pyramid;
@@ -47,8 +45,6 @@ struct Chunk {
 const CHUNK_PRIMS: usize = 4096;
 /// Triangles set up before they are filled, on one thread: 25 KiB, which the first cache holds.
 const BATCH_PRIMS: usize = 256;
-/// Rows that memory is prefetched ahead.
-const PREFETCH_ROWS: usize = 2;
 /// Rows in a band: at 1024 columns its depth and items take 256 KiB, which a core's cache holds.
 const BAND_ROWS: usize = 32;
 
@@ -316,7 +312,7 @@ fn fill<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band) {
 /// Rows that fit a vector, with 32-bit edge functions.
 #[inline(always)]
 fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0: i32, y1: i32) {
-    let columns = (s.x1 - s.x0) as usize;
+    let columns = l.first((s.x1 - s.x0) as usize);
     // Closures would not be compiled for the instruction set, so the three edges are written out.
     let [a, b, c] = &s.edges;
     // 4a. The edge functions at the first row's centers; each further row adds the edge's step (Pineda 1988).
@@ -327,34 +323,28 @@ fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
     let (step_a, step_b, step_c) = (l.splat_i(a.dy), l.splat_i(b.dy), l.splat_i(c.dy));
     // What depth adds along the row is the same in every row. It is not summed up step by step: a pixel's
     // depth may depend on its place alone.
-    let along = l.mul(l.splat(s.plane.dx), l.ramp_f(center(s.x0) - s.plane.x, 1 << SUBPIXEL_BITS));
-    let (low, high) = (l.splat(s.plane.low), l.splat(s.plane.high));
+    let along = l.mul(l.splat(s.plane.dx), l.to_f(l.ramp(center(s.x0) - s.plane.x, 1 << SUBPIXEL_BITS)));
+    let (low, high, ids) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat_i(s.id as i32));
     for y in y0..y1 {
         let at = (y - band.first_row) as usize * band.width + s.x0 as usize;
-        let inside = l.none_negative(edge_a, edge_b, edge_c);
+        let inside = l.none_negative(edge_a, edge_b, edge_c, columns);
         // No nearer than the nearest vertex, whatever the rounding: the test against the pyramid counts on
         // it.
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
-        merge::<ITEMS, L>(l, band, at..at + columns, inside, z, s.id);
+        merge::<ITEMS, L>(l, band, at, inside, z, ids);
         (edge_a, edge_b, edge_c) =
             (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
     }
 }
 
-/// Neighboring pixels, at most a vector of them.
+/// Neighboring pixels of a band from one on, a vector of them or as many as there are.
 #[inline(always)]
-fn merge<const ITEMS: bool, L: Lanes>(
-    l: L,
-    band: &mut Band,
-    at: Range<usize>,
-    inside: L::M,
-    z: L::F,
-    id: u32,
-) {
+fn merge<const ITEMS: bool, L: Lanes>(l: L, band: &mut Band, at: usize, inside: L::M, z: L::F, ids: L::I) {
+    // To the end of the band, all of which is ours: so that nearly all vectors are whole ones.
     if ITEMS {
-        l.merge(&mut band.depth[at.clone()], &mut band.item[at], inside, z, id);
+        l.merge(&mut band.depth[at..], &mut band.item[at..], inside, z, ids);
     } else {
-        l.merge_depth(&mut band.depth[at], inside, z);
+        l.merge_depth(&mut band.depth[at..], inside, z);
     }
 }
 
@@ -367,7 +357,7 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
     // 4b. Three divisions a triangle; spans then take multiplications only.
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
-    let ahead = band.width * PREFETCH_ROWS;
+    let (ids, next) = (l.splat_i(s.id as i32), l.splat_i((L::N as i32) << SUBPIXEL_BITS));
     let mut y = y0;
     while y < y1 {
         // Each edge cuts off its part of the spans of the next rows.
@@ -376,22 +366,33 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, band: &mut Band, y0:
             narrow(edge, inverse, y - s.y0, &mut begin, &mut end);
         }
         for (k, y) in (y..y1.min(y + SPAN_ROWS as i32)).enumerate() {
-            let row = (y - band.first_row) as usize * band.width;
+            if begin[k] >= end[k] {
+                continue;
+            }
+            let x = s.x0 + begin[k];
+            let first = (y - band.first_row) as usize * band.width + x as usize;
+            let past = first + (end[k] - begin[k]) as usize;
             let base = l.splat(s.plane.at_row(y));
-            // Every pixel between the ends is covered, so the mask is full.
-            let (mut x, end) = (s.x0 + begin[k], s.x0 + end[k]);
-            while x < end {
-                let at = row + x as usize;
-                let past = row + end.min(x + L::N as i32) as usize;
-                // Rows are a page or more apart in wide images, which hardware prefetchers do not follow.
-                l.prefetch(band.depth.get(at + ahead));
-                if ITEMS {
-                    l.prefetch(band.item.get(at + ahead));
+            let mut way = l.ramp(center(x) - s.plane.x, 1 << SUBPIXEL_BITS);
+            // Every pixel between the ends is covered, so no vector but the last needs a mask.
+            let depths = band.depth[first..past].chunks_exact_mut(L::N);
+            let left = depths.len() * L::N;
+            if ITEMS {
+                for (depth, item) in depths.zip(band.item[first..past].chunks_exact_mut(L::N)) {
+                    let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
+                    l.merge(depth, item, l.first(L::N), z, ids);
+                    way = l.add_i(way, next);
                 }
-                let along = l.mul(slope, l.ramp_f(center(x) - s.plane.x, 1 << SUBPIXEL_BITS));
-                let z = l.clamp(l.add(base, along), low, high);
-                merge::<ITEMS, L>(l, band, at..past, l.all(), z, s.id);
-                x += L::N as i32;
+            } else {
+                for depth in depths {
+                    let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
+                    l.merge_depth(depth, l.first(L::N), z);
+                    way = l.add_i(way, next);
+                }
+            }
+            if first + left < past {
+                let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
+                merge::<ITEMS, L>(l, band, first + left, l.first(past - first - left), z, ids);
             }
         }
         y += SPAN_ROWS as i32;
@@ -408,20 +409,21 @@ fn narrow<const ROWS: usize>(
     begin: &mut [i32; ROWS],
     end: &mut [i32; ROWS],
 ) {
-    let (at, dy) = (edge.at + i64::from(edge.dy) * i64::from(skipped), i64::from(edge.dy));
+    // Edge functions are whole numbers below 2⁴⁸, so doubles hold them and their sums exactly.
+    let (at, dy) = (edge.at as f64 + f64::from(edge.dy) * f64::from(skipped), f64::from(edge.dy));
     // The columns with `e + dx · x ≥ 0`. Rising: from ⌈−e / dx⌉ = −⌊e / dx⌋ on.
     if edge.dx > 0 {
         for (k, begin) in begin.iter_mut().enumerate() {
-            *begin = (*begin).max(-quotient(at + dy * k as i64, inverse));
+            *begin = (*begin).max(-quotient(at + dy * k as f64, inverse));
         }
     // Falling: up to ⌊e / −dx⌋.
     } else if edge.dx < 0 {
         for (k, end) in end.iter_mut().enumerate() {
-            *end = (*end).min(quotient(at + dy * k as i64, inverse) + 1);
+            *end = (*end).min(quotient(at + dy * k as f64, inverse) + 1);
         }
     } else {
         for (k, end) in end.iter_mut().enumerate() {
-            *end = if at + dy * (k as i64) < 0 { 0 } else { *end };
+            *end = if at + dy * (k as f64) < 0.0 { 0 } else { *end };
         }
     }
 }
@@ -430,10 +432,10 @@ fn narrow<const ROWS: usize>(
 /// shorter than 2²³, so a quotient that is no integer is 2⁻²³ or more below the next one, and the
 /// product errs by less than 2⁻³⁴; adding 2⁻²⁶ keeps both on their side.
 #[inline(always)]
-fn quotient(e: i64, inverse: f64) -> i32 {
+fn quotient(e: f64, inverse: f64) -> i32 {
     const LIMIT: f64 = 65536.0;
     const NUDGE: f64 = 1.0 / (1 << 26) as f64;
-    let q = (e as f64 * inverse + NUDGE).clamp(-LIMIT, LIMIT);
+    let q = (e * inverse + NUDGE).clamp(-LIMIT, LIMIT);
     // Truncation rounds down once the value is not negative.
     // SAFETY: the clamped value plus `LIMIT` lies in 0..=2¹⁷ and is not NaN: `e` is finite, and `inverse` is
     // that of an edge that is not horizontal.

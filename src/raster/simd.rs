@@ -85,22 +85,20 @@ pub(super) trait Lanes: Copy {
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
     /// The greater of `low` and the lesser of `v` and `high`; none is NaN.
     fn clamp(self, v: Self::F, low: Self::F, high: Self::F) -> Self::F;
-    /// `start + lane · step` as floats of exact integers (below 2²⁴).
-    fn ramp_f(self, start: i32, step: i32) -> Self::F;
+    /// As floats, exact below 2²⁴.
+    fn to_f(self, v: Self::I) -> Self::F;
     /// `start + lane · step`, wrapping.
     fn ramp(self, start: i32, step: i32) -> Self::I;
     fn splat_i(self, v: i32) -> Self::I;
     fn add_i(self, a: Self::I, b: Self::I) -> Self::I;
-    /// The lanes where none of the three is negative.
-    fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M;
-    fn all(self) -> Self::M;
-    /// Begins to load this element into the cache; changes nothing else.
-    fn prefetch<T>(self, at: Option<&T>);
-    /// Puts `z` and `id` where `inside` and nearer than what is there, or as near with a lower id.
-    /// Touches the slices' lanes only: both have the same length, at most `N`.
-    fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32);
-    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`]. At most
-    /// `N` are given.
+    /// The lanes of `among` where none of the three is negative.
+    fn none_negative(self, a: Self::I, b: Self::I, c: Self::I, among: Self::M) -> Self::M;
+    /// The first lanes, at most `N`.
+    fn first(self, lanes: usize) -> Self::M;
+    /// Puts `z` and `ids` where `inside` and nearer than what is there, or as near with a lower id. Of slices
+    /// that are longer than `N` the first `N` elements are read, and those outside written as they were.
+    fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, ids: Self::I);
+    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`].
     fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F);
 }
 
@@ -141,8 +139,8 @@ mod portable {
             })
         }
         #[inline(always)]
-        fn ramp_f(self, start: i32, step: i32) -> Self::F {
-            std::array::from_fn(|i| (start + i as i32 * step) as f32)
+        fn to_f(self, v: Self::I) -> Self::F {
+            v.map(|v| v as f32)
         }
         #[inline(always)]
         fn ramp(self, start: i32, step: i32) -> Self::I {
@@ -157,19 +155,18 @@ mod portable {
             std::array::from_fn(|i| a[i].wrapping_add(b[i]))
         }
         #[inline(always)]
-        fn none_negative(self, a: Self::I, b: Self::I, c: Self::I) -> Self::M {
+        fn none_negative(self, a: Self::I, b: Self::I, c: Self::I, among: Self::M) -> Self::M {
             // The sign bit of the three together is clear where all are clear.
-            std::array::from_fn(|i| a[i] | b[i] | c[i] >= 0)
+            std::array::from_fn(|i| (a[i] | b[i] | c[i] >= 0) & among[i])
         }
         #[inline(always)]
-        fn all(self) -> Self::M {
-            [true; N]
+        fn first(self, lanes: usize) -> Self::M {
+            std::array::from_fn(|i| i < lanes)
         }
         #[inline(always)]
-        fn prefetch<T>(self, _: Option<&T>) {}
-        #[inline(always)]
-        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, id: u32) {
-            for (((depth, item), inside), z) in depth.iter_mut().zip(item).zip(inside).zip(z) {
+        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, ids: Self::I) {
+            for ((((depth, item), inside), z), id) in depth.iter_mut().zip(item).zip(inside).zip(z).zip(ids) {
+                let id = id as u32;
                 // `&` and `|` instead of `&&` and `||`: without branches the loop becomes SIMD.
                 let wins = inside & ((z > *depth) | ((z == *depth) & (id < *item)));
                 *depth = if wins { z } else { *depth };
@@ -215,9 +212,9 @@ mod x86 {
     // 1. A token proves its instruction set. Its field is private to this module, and only `run_avx2` and
     //    `run_avx512` make one, whose callers promise the set. Intrinsics that take and give values, as most
     //    here do, need nothing else.
-    // 2. `merge` and `merge_depth` alone touch memory, through masks: a lane is read or written only where
-    //    its number is below the length of each slice. The unaligned forms are used throughout.
-    // 3. `prefetch` gets an address that a reference vouches for, and reads nothing.
+    // 2. `merge` and `merge_depth` alone touch memory: a whole vector where each slice has at least as many
+    //    elements, which it borrows alone and so may write back as they were; else through masks, a lane only
+    //    where its number is below the length of each slice. The unaligned forms are used throughout.
     impl Lanes for Avx2 {
         const N: usize = 8;
         type F = __m256;
@@ -240,8 +237,8 @@ mod x86 {
             unsafe { _mm256_min_ps(_mm256_max_ps(v, low), high) }
         }
         #[inline(always)]
-        fn ramp_f(self, start: i32, step: i32) -> __m256 {
-            unsafe { _mm256_cvtepi32_ps(self.ramp(start, step)) }
+        fn to_f(self, v: __m256i) -> __m256 {
+            unsafe { _mm256_cvtepi32_ps(v) }
         }
         #[inline(always)]
         fn ramp(self, start: i32, step: i32) -> __m256i {
@@ -259,32 +256,28 @@ mod x86 {
             unsafe { _mm256_add_epi32(a, b) }
         }
         #[inline(always)]
-        fn none_negative(self, a: __m256i, b: __m256i, c: __m256i) -> __m256i {
-            // As in the portable code; "not negative" is "greater than −1".
-            unsafe { _mm256_cmpgt_epi32(_mm256_or_si256(_mm256_or_si256(a, b), c), _mm256_set1_epi32(-1)) }
-        }
-        #[inline(always)]
-        fn all(self) -> __m256i {
-            unsafe { _mm256_set1_epi32(-1) }
-        }
-        #[inline(always)]
-        fn prefetch<T>(self, at: Option<&T>) {
-            if let Some(at) = at {
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
+        fn none_negative(self, a: __m256i, b: __m256i, c: __m256i, among: __m256i) -> __m256i {
+            // As in the portable code: a set sign bit takes the lane out.
+            unsafe {
+                _mm256_andnot_si256(_mm256_srai_epi32::<31>(_mm256_or_si256(_mm256_or_si256(a, b), c)), among)
             }
         }
         #[inline(always)]
-        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __m256i, z: __m256, id: u32) {
-            // 1. Lanes past the slices are masked out, and so never touched.
-            let lanes = depth.len().min(item.len()).min(8);
+        fn first(self, lanes: usize) -> __m256i {
             unsafe {
-                let held = _mm256_cmpgt_epi32(
-                    _mm256_set1_epi32(lanes as i32),
-                    _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                );
-                let inside = _mm256_and_si256(inside, held);
+                let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+                _mm256_cmpgt_epi32(_mm256_set1_epi32(lanes as i32), lane)
+            }
+        }
+        #[inline(always)]
+        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __m256i, z: __m256, ids: __m256i) {
+            let lanes = depth.len().min(item.len());
+            let (whole, depth, item) = (lanes >= 8, depth.as_mut_ptr(), item.as_mut_ptr().cast::<i32>());
+            unsafe {
+                // 1. The lanes of short slices that are masked out are never touched.
+                let inside = if whole { inside } else { _mm256_and_si256(inside, self.first(lanes)) };
                 // 2. The depth test. Where a lane is out, `old` is 0, and the mask keeps it out.
-                let old = _mm256_maskload_ps(depth.as_ptr(), inside);
+                let old = if whole { _mm256_loadu_ps(depth) } else { _mm256_maskload_ps(depth, inside) };
                 let nearer = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old));
                 let equal = _mm256_castps_si256(_mm256_cmp_ps::<_CMP_EQ_OQ>(z, old));
                 let mut wins = _mm256_and_si256(nearer, inside);
@@ -293,32 +286,43 @@ mod x86 {
                 if _mm256_testz_si256(tied, tied) == 0 {
                     // Unsigned comparison by a flip of the sign bits.
                     let flip = _mm256_set1_epi32(i32::MIN);
-                    let old_id = _mm256_xor_si256(_mm256_maskload_epi32(item.as_ptr().cast(), tied), flip);
+                    let old_ids = if whole {
+                        _mm256_loadu_si256(item.cast())
+                    } else {
+                        _mm256_maskload_epi32(item, tied)
+                    };
                     let lower =
-                        _mm256_cmpgt_epi32(old_id, _mm256_xor_si256(_mm256_set1_epi32(id as i32), flip));
+                        _mm256_cmpgt_epi32(_mm256_xor_si256(old_ids, flip), _mm256_xor_si256(ids, flip));
                     wins = _mm256_or_si256(wins, _mm256_and_si256(tied, lower));
                 }
-                // 4. Most vectors of hidden surfaces end without a store.
-                if _mm256_testz_si256(wins, wins) == 0 {
-                    _mm256_maskstore_ps(depth.as_mut_ptr(), wins, z);
-                    _mm256_maskstore_epi32(item.as_mut_ptr().cast(), wins, _mm256_set1_epi32(id as i32));
+                // 4. Most vectors of hidden surfaces end without a store. Masked stores are microcode on many
+                // machines, so a whole vector is put together first.
+                if _mm256_testz_si256(wins, wins) != 0 {
+                    return;
+                }
+                if whole {
+                    _mm256_storeu_ps(depth, _mm256_blendv_ps(old, z, _mm256_castsi256_ps(wins)));
+                    let old_ids = _mm256_loadu_si256(item.cast());
+                    _mm256_storeu_si256(item.cast(), _mm256_blendv_epi8(old_ids, ids, wins));
+                } else {
+                    _mm256_maskstore_ps(depth, wins, z);
+                    _mm256_maskstore_epi32(item, wins, ids);
                 }
             }
         }
         #[inline(always)]
         fn merge_depth(self, depth: &mut [f32], inside: __m256i, z: __m256) {
             // As `merge`, where a tie changes nothing.
-            let lanes = depth.len().min(8);
+            let (lanes, depth) = (depth.len(), depth.as_mut_ptr());
+            let whole = lanes >= 8;
             unsafe {
-                let held = _mm256_cmpgt_epi32(
-                    _mm256_set1_epi32(lanes as i32),
-                    _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
-                );
-                let inside = _mm256_and_si256(inside, held);
-                let old = _mm256_maskload_ps(depth.as_ptr(), inside);
+                let inside = if whole { inside } else { _mm256_and_si256(inside, self.first(lanes)) };
+                let old = if whole { _mm256_loadu_ps(depth) } else { _mm256_maskload_ps(depth, inside) };
                 let wins = _mm256_and_si256(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old)), inside);
-                if _mm256_testz_si256(wins, wins) == 0 {
-                    _mm256_maskstore_ps(depth.as_mut_ptr(), wins, z);
+                if whole {
+                    _mm256_storeu_ps(depth, _mm256_blendv_ps(old, z, _mm256_castsi256_ps(wins)));
+                } else if _mm256_testz_si256(wins, wins) == 0 {
+                    _mm256_maskstore_ps(depth, wins, z);
                 }
             }
         }
@@ -346,8 +350,8 @@ mod x86 {
             unsafe { _mm512_min_ps(_mm512_max_ps(v, low), high) }
         }
         #[inline(always)]
-        fn ramp_f(self, start: i32, step: i32) -> __m512 {
-            unsafe { _mm512_cvtepi32_ps(self.ramp(start, step)) }
+        fn to_f(self, v: __m512i) -> __m512 {
+            unsafe { _mm512_cvtepi32_ps(v) }
         }
         #[inline(always)]
         fn ramp(self, start: i32, step: i32) -> __m512i {
@@ -365,30 +369,23 @@ mod x86 {
             unsafe { _mm512_add_epi32(a, b) }
         }
         #[inline(always)]
-        fn none_negative(self, a: __m512i, b: __m512i, c: __m512i) -> __mmask16 {
+        fn none_negative(self, a: __m512i, b: __m512i, c: __m512i, among: __mmask16) -> __mmask16 {
             // A mask of the sign bits, turned around.
-            unsafe { !_mm512_movepi32_mask(_mm512_or_si512(_mm512_or_si512(a, b), c)) }
+            unsafe { !_mm512_movepi32_mask(_mm512_or_si512(_mm512_or_si512(a, b), c)) & among }
         }
         #[inline(always)]
-        fn all(self) -> __mmask16 {
-            !0
+        fn first(self, lanes: usize) -> __mmask16 {
+            // A shift of 32 bits, since all 16 lanes may be in.
+            ((1u32 << lanes) - 1) as u16
         }
         #[inline(always)]
-        fn prefetch<T>(self, at: Option<&T>) {
-            if let Some(at) = at {
-                unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(at).cast()) }
-            }
-        }
-        #[inline(always)]
-        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __mmask16, z: __m512, id: u32) {
-            // 1 to 4 as for AVX2. The shift is one of 32 bits, since all 16 lanes may be in.
-            let lanes = depth.len().min(item.len()).min(16);
-            let inside = inside & ((1u32 << lanes) - 1) as u16;
+        fn merge(self, depth: &mut [f32], item: &mut [u32], inside: __mmask16, z: __m512, ids: __m512i) {
+            // 1 to 4 as for AVX2, whose masks are cheap in this set.
+            let inside = inside & self.first(depth.len().min(item.len()).min(16));
             unsafe {
                 let old = _mm512_maskz_loadu_ps(inside, depth.as_ptr());
                 let mut wins = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(inside, z, old);
                 let tied = _mm512_mask_cmp_ps_mask::<_CMP_EQ_OQ>(inside, z, old);
-                let ids = _mm512_set1_epi32(id as i32);
                 if tied != 0 {
                     let old_id = _mm512_maskz_loadu_epi32(tied, item.as_ptr().cast());
                     wins |= _mm512_mask_cmplt_epu32_mask(tied, ids, old_id);
@@ -402,8 +399,7 @@ mod x86 {
         #[inline(always)]
         fn merge_depth(self, depth: &mut [f32], inside: __mmask16, z: __m512) {
             // As `merge`, where a tie changes nothing.
-            let lanes = depth.len().min(16);
-            let inside = inside & ((1u32 << lanes) - 1) as u16;
+            let inside = inside & self.first(depth.len().min(16));
             unsafe {
                 let old = _mm512_maskz_loadu_ps(inside, depth.as_ptr());
                 let wins = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(inside, z, old);
