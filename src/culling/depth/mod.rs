@@ -2,10 +2,10 @@
 //! ([`Buffer`]), what is asked of them, and how all this is recorded and shown. What methods that ask for
 //! depth share; it knows none of them.
 //!
-//! [`Tiled::clear`] for a view, [`Tiled::step`] to draw what a node holds, then [`Tiled::hides`]; what is read
-//! goes to an [`Asking`]. Or [`Buffer::clear`], [`Buffer::draw`] primitives, then [`hides`] for boxes, and a
-//! [`QueryReporter`]. A method whose large state is either changes it by its `step` alone, and records each
-//! change as a [`DepthNote`].
+//! [`Tiled::clear`] for a view, [`Tiled::step`] to draw what a node holds, then [`Tiled::hides`]; what is
+//! read goes to an [`Asking`]. Or [`Buffer::clear`], [`Buffer::draw`] primitives, then [`hides`] for boxes,
+//! and a [`QueryReporter`]. A method whose large state is either changes it by its `step` alone, and records
+//! each change as a [`DepthNote`].
 
 mod buffer;
 mod evidence;

@@ -208,8 +208,8 @@ pub(super) const DEPARTURES: &[Departure] = &[
     Departure {
         section: "3.2",
         what: "the z-buffer and its pyramid are tiles: what is drawn sets bits in the masks of tiles of 8×4 \
-               pixels, and bounds on their depths (Hasselgren, Andersson and Akenine-Möller 2016); of the levels \
-               there are three: pixels, tiles, and blocks of 32×16",
+               pixels, and bounds on their depths (Hasselgren, Andersson and Akenine-Möller 2016); of the \
+               levels there are three: pixels, tiles, and blocks of 32×16",
         why: "many pixels are drawn and asked about at a time, in a sixteenth of the memory",
         when: When::Always,
     },
@@ -223,13 +223,14 @@ pub(super) const DEPARTURES: &[Departure] = &[
     Departure {
         section: "3.2",
         what: "the descent begins at the blocks under the box, not at the finest single cell that covers it",
-        why: "what lies across a border of large cells would begin far up, and a row of blocks is compared at a \
-              time",
+        why: "what lies across a border of large cells would begin far up, and a row of blocks is compared \
+              at a time",
         when: When::Always,
     },
     Departure {
         section: "3.2",
-        what: "a block or a tile that the box covers, beginning before all that is drawn in it, ends the descent",
+        what: "a block or a tile that the box covers, beginning before all that is drawn in it, ends the \
+               descent",
         why: "some pixel of it shows the box",
         when: When::Always,
     },

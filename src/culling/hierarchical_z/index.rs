@@ -1,5 +1,5 @@
-//! What is built once: the octree (Georges 1995, Section 3.1), and what its cubes hold, ready to be drawn into
-//! tiles.
+//! What is built once: the octree (Georges 1995, Section 3.1), and what its cubes hold, ready to be drawn
+//! into tiles.
 
 use std::ops::Range;
 use std::sync::Arc;

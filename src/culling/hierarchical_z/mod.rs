@@ -11,8 +11,8 @@
 //! 3. what the list holds and the finished image does not show leaves it (Section 3.3).
 //!
 //! The z-buffer and its pyramid are tiles ([`crate::raster::Tiles`]): pixels, tiles and blocks are the levels
-//! that are asked. Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes) queries and the
-//! drawing of what they hold; memory O(cubes) from frame to frame.
+//! that are asked. Where this differs from the papers, and why: [`DEPARTURES`]. Cost: O(visible cubes)
+//! queries and the drawing of what they hold; memory O(cubes) from frame to frame.
 
 mod code;
 mod evidence;

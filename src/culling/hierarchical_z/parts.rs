@@ -62,7 +62,8 @@ impl<S: Faces> Obscurer<S> {
     pub fn forget(&mut self) {
         self.memory = Memory::default();
     }
-    /// Whether boxes are hidden by what was drawn last, by their planes, in order; `None` if one is out of view.
+    /// Whether boxes are hidden by what was drawn last, by their planes, in order; `None` if one is out of
+    /// view.
     pub fn hides_all(&mut self, boxes: &Boxes) -> Vec<Option<bool>> {
         self.state.hides_all(boxes)
     }

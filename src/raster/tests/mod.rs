@@ -7,6 +7,7 @@ mod pyramid;
 mod rules;
 mod tile_answers;
 mod tile_edges;
+mod tile_questions;
 mod tiles;
 
 use glam::{DVec3, Vec2, Vec3};

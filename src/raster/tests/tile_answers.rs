@@ -14,8 +14,8 @@ struct Depths {
 }
 
 impl Depths {
-    /// Of a square of half a side about a pixel's center. The box is met from the farthest of its front planes
-    /// on to the nearest of its back planes; the eye is between two planes that are both back planes.
+    /// Of a square of half a side about a pixel's center. The box is met from the farthest of its front
+    /// planes on to the nearest of its back planes; the eye is between two planes that are both back planes.
     fn new(sight: &Sight, bounds: &Aabb<Vec3>, pixel: [u32; 2], half: f64) -> Self {
         let [x, y] = pixel.map(|p| f64::from(p) + 0.5);
         let corners =

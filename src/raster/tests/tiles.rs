@@ -52,7 +52,7 @@ pub(super) fn mixed(dice: &mut Dice, count: usize) -> Scene<Solid> {
 }
 /// The same in flatland: walls of houses, and segments from far below a pixel to far beyond the image, some
 /// edge-on, some before and behind the eye. `scale`: all lengths times that.
-fn flat_mixed(dice: &mut Dice, count: usize, scale: f32) -> Scene<Flat> {
+pub(super) fn flat_mixed(dice: &mut Dice, count: usize, scale: f32) -> Scene<Flat> {
     let (mut points, mut prims) = (Vec::new(), Vec::new());
     for _ in 0..count {
         let first = points.len() as u32;
@@ -82,7 +82,7 @@ fn flat_mixed(dice: &mut Dice, count: usize, scale: f32) -> Scene<Flat> {
     points.iter_mut().for_each(|p| *p *= scale);
     with_materials(scene_of(points, prims), |at| at % 17 == 3, |at| at % 5 < 2)
 }
-fn flat_view(dice: &mut Dice, width: u32, scale: f32) -> View<Flat> {
+pub(super) fn flat_view(dice: &mut Dice, width: u32, scale: f32) -> View<Flat> {
     let position = dice.vector::<Vec2>(3.0) * scale;
     let eye = Eye {
         position,
@@ -96,7 +96,7 @@ fn flat_view(dice: &mut Dice, width: u32, scale: f32) -> View<Flat> {
 }
 /// Width of the line, and the scale of all lengths: in some rounds depths are so great that nothing is said
 /// of slopes.
-fn flat_size(round: u32) -> (u32, f32) {
+pub(super) fn flat_size(round: u32) -> (u32, f32) {
     ([1, 7, 8, 31, 33, 200, 1024][round as usize % 7], if round % 10 == 9 { 1e-33 } else { 1.0 })
 }
 pub(super) fn random_view(dice: &mut Dice, width: u32, height: u32) -> View<Solid> {
@@ -201,7 +201,7 @@ pub(super) fn random_box(dice: &mut Dice) -> Aabb<Vec3> {
 }
 
 /// The same in flatland.
-fn flat_box(dice: &mut Dice, scale: f32) -> Aabb<Vec2> {
+pub(super) fn flat_box(dice: &mut Dice, scale: f32) -> Aabb<Vec2> {
     let size = [0.05, 0.5, 4.0][dice.below(3) as usize];
     let at = Vec2::new(dice.signed(8.0), dice.between(-25.0, 4.0));
     let half = Vec2::new(dice.unit(), dice.unit()) * size;
@@ -238,8 +238,9 @@ fn straight_line(width: u32) -> View<Flat> {
     View { eye: Eye { position, target, up, fov, near: 0.1, far: 50.0 }, width, height: 1 }
 }
 
-/// A segment that begins 0.4 grid steps after a pixel's center is snapped to it and covers it, as the only pixel
-/// of its tile. Its plane has passed the depth of its end there, to which the pixel is cut; bounds hold that.
+/// A segment that begins 0.4 grid steps after a pixel's center is snapped to it and covers it, as the only
+/// pixel of its tile. Its plane has passed the depth of its end there, to which the pixel is cut; bounds hold
+/// that.
 #[test]
 fn bounds_of_flatland_hold_a_depth_that_is_cut_to_the_end_of_its_segment() {
     let view = straight_line(32);
@@ -325,7 +326,7 @@ fn hidden_boxes_own_nothing<S: Drawable>(
     }
 }
 /// Primitives of a box, on its corners, edges and faces and within, win no pixel.
-fn owns_nothing<S: Drawable>(dice: &mut Dice, bounds: &Aabb<S::Vector>, view: &View<S>, truth: &Target) {
+pub(super) fn owns_nothing<S: Drawable>(dice: &mut Dice, bounds: &Aabb<S::Vector>, view: &View<S>, truth: &Target) {
     let mut point = || {
         S::Vector::from_fn(|a| {
             let (low, high) = (bounds.min.get(a), bounds.max.get(a));
@@ -441,7 +442,7 @@ fn a_wall_is_drawn_before_what_it_hides() {
         tiles.clear(&view, true);
         tiles.draw(&Clusters::new(&scene, BOTH_SIDES, groups.iter().copied()), false, Isa::best());
         // A question brings blocks up to date, which drawing does for some.
-        tiles.hides_all(&Boxes::new([]), true, Isa::best(), &mut Vec::new());
+        tiles.hides_all(&Boxes::new::<Vec3>([]), true, Isa::best(), &mut Vec::new());
         tiles
     };
     assert!(tiles(&[behind]) != tiles(&[]), "without the wall it is drawn");

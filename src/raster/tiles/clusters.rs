@@ -212,8 +212,8 @@ impl Clusters {
         all.boxes = Boxes::new(boxes);
         all
     }
-    /// The primitives of a group, by its number, that are in no cluster: what lets light through, and those with
-    /// two corners at one place, which cover nothing.
+    /// The primitives of a group, by its number, that are in no cluster: what lets light through, and those
+    /// with two corners at one place, which cover nothing.
     pub fn apart(&self, group: usize) -> &[PrimId] {
         &self.apart[self.groups[group].apart.clone()]
     }

@@ -18,8 +18,8 @@
 //! pixel was left out, and what a tile claims is never nearer than the truth. So answers depend neither on
 //! the order of drawing nor on the instruction set, whose width leaves no trace in the state either.
 //!
-//! Flatland goes the same way: its image is a line of pixels, one row of tiles, and only what a segment covers
-//! and how deep it lies there is its own (`segments`).
+//! Flatland goes the same way: its image is a line of pixels, one row of tiles, and only what a segment
+//! covers and how deep it lies there is its own (`segments`).
 //!
 //! Memory: half a byte a pixel, and some 80 bytes for each primitive that may show.
 
@@ -182,8 +182,8 @@ impl Tiles {
     pub fn draw(&mut self, clusters: &Clusters, one_sided: bool, isa: Isa) {
         query::draw(self, clusters, one_sided, isa);
     }
-    /// Draws a group of occluders and tells what became of each primitive, in the order of the group's clusters:
-    /// all that face the eye are drawn, but for those that are drawn already.
+    /// Draws a group of occluders and tells what became of each primitive, in the order of the group's
+    /// clusters: all that face the eye are drawn, but for those that are drawn already.
     pub fn draw_group(
         &mut self,
         clusters: &Clusters,
@@ -227,7 +227,8 @@ impl Tiles {
             _ => self.lines[x / 4 * self.rows + y].far[x % 4],
         }
     }
-    /// The pixels of a tile whose nearer layer is begun, bit `8 y + x`, and what none of them is farther than.
+    /// The pixels of a tile whose nearer layer is begun, bit `8 y + x`, and what none of them is farther
+    /// than.
     pub fn begun(&self, cell: PyramidCell) -> (u32, f32) {
         let (line, k) = (&self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)], cell.x % 4);
         (line.mask[usize::from(k)], line.near[usize::from(k)])

@@ -1,8 +1,8 @@
 //! Segments into the tiles of flatland, whose image is a line of pixels.
 //!
-//! Which pixels a segment covers and how deep it lies there are the rules of `raster::line`; the masked update
-//! and all that follows is that of triangles. The image is the first row of its one row of tiles: a segment
-//! counts in all four rows of a tile alike, so that one that it covers is covered whole.
+//! Which pixels a segment covers and how deep it lies there are the rules of `raster::line`; the masked
+//! update and all that follows is that of triangles. The image is the first row of its one row of tiles: a
+//! segment counts in all four rows of a tile alike, so that one that it covers is covered whole.
 //!
 //! **Bounds.** The exact depth at a center is `z + dx·d`, `d` grid steps from an end and a whole number below
 //! 2²³, cut to the depths of the ends. Bounds come from the same `z` and `dx` in doubles, so that what they

@@ -97,10 +97,10 @@ pub fn office_query(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let content = film.picture(step, PYRAMID, DepthScale::Logarithmic);
     let caption = format!(
         "The levels over an office of {} triangles, 256 × 192 pixels, at step {step} of {}, when a cube of \
-         the octree has been found hidden. Cells are numbered in the order in which they were read: blocks of \
-         32 × 16 pixels first; where one does not decide, its tiles of 8 × 4, and where these do not, pixels. \
-         The last picture shows the masks of tiles: where a nearer layer is begun that does not cover its tile \
-         yet. Cross-hatched blocks hold less than their tiles know.",
+         the octree has been found hidden. Cells are numbered in the order in which they were read: blocks \
+         of 32 × 16 pixels first; where one does not decide, its tiles of 8 × 4, and where these do not, \
+         pixels. The last picture shows the masks of tiles: where a nearer layer is begun that does not \
+         cover its tile yet. Cross-hatched blocks hold less than their tiles know.",
         film.scene().live().len(),
         film.events().len()
     );

@@ -1,0 +1,180 @@
+//! Questions one by one: what is heard of them, and groups that are drawn one after the other.
+
+use super::tiles::{ROUNDS, drawn, flat_box, flat_mixed, flat_view, image, mixed, owns_nothing, random_box};
+use super::tiles::{flat_size, random_view, sizes};
+use super::*;
+use crate::geometry::{Aabb, Footprint, Vector, project_box};
+
+/// Keeps what it hears.
+#[derive(Default)]
+struct Heard {
+    reads: Vec<Read>,
+    refreshed: Vec<PyramidCell>,
+}
+
+impl Hears for Heard {
+    const LISTENS: bool = true;
+    fn reads(&mut self, read: Read) {
+        self.reads.push(read);
+    }
+    fn refreshes(&mut self, cell: PyramidCell) {
+        self.refreshed.push(cell);
+    }
+}
+
+struct Deaf;
+
+impl Hears for Deaf {
+    const LISTENS: bool = false;
+    fn reads(&mut self, _: Read) {
+        unreachable!("nobody listens");
+    }
+    fn refreshes(&mut self, _: PyramidCell) {}
+}
+
+fn ends<V: Vector>(bounds: &Aabb<V>) -> [[f32; 3]; 2] {
+    let widen = |v: V| [0, 1, 2].map(|a| if a < V::AXES { v.get(a) } else { 0.0 });
+    [widen(bounds.min), widen(bounds.max)]
+}
+
+/// How many questions were answered, and how: visible, hidden, and with tiles that were looked at closer.
+#[derive(Debug, Default)]
+struct Counted {
+    visible: usize,
+    hidden: usize,
+    closer: usize,
+    blocks: usize,
+}
+
+/// Whoever listens changes nothing; what changes is what is heard; the last read is the answer; and what is
+/// hidden owns no pixel.
+fn ask<S: Drawable>(
+    dice: &mut Dice,
+    [own, more]: [Aabb<S::Vector>; 2],
+    view: &View<S>,
+    tiles: &mut Tiles,
+    truth: &Target,
+    counted: &mut Counted,
+) {
+    let whole = if dice.below(3) == 0 { own.union(more) } else { own };
+    let projection = view.projection();
+    let place = |b: &Aabb<S::Vector>| {
+        project_box(&projection, b, view.eye.near, view.eye.far, view.width, view.height)
+    };
+    let (Footprint::Seen(image), Footprint::Seen(all)) = (place(&own), place(&whole)) else { return };
+    let exact = dice.below(3) > 0;
+    let boxes = (dice.below(4) > 0).then(|| [ends(&own), ends(&whole)]);
+    let question = Question { pixels: image.pixels, nearest: all.nearest, boxes, exact };
+    let (mut before, mut other, mut heard) = (tiles.clone(), tiles.clone(), Heard::default());
+    let is_hidden = tiles.hides(question, Isa::best(), &mut heard);
+    assert_eq!(other.hides(question, Isa::Portable, &mut Deaf), is_hidden, "who listens decides nothing");
+    assert!(other == *tiles, "nor changes anything");
+    heard.refreshed.iter().for_each(|&cell| before.refresh(cell, Isa::best()));
+    assert!(before == *tiles, "what changes is heard: {:?}", heard.refreshed);
+    for read in &heard.reads {
+        assert_eq!(read.outcome == Outcome::Behind, read.nearest < read.held, "{read:?}");
+        assert!(!read.cell.pixels(view.width, view.height).intersection(image.pixels).is_empty(), "{read:?}");
+    }
+    let shown = heard.reads.iter().position(|r| r.outcome == Outcome::Shows);
+    assert_eq!(shown, (!is_hidden).then(|| heard.reads.len().wrapping_sub(1)), "{:?}", heard.reads);
+    let is_tile = |c: &&PyramidCell| c.level == PyramidCell::TILE;
+    counted.closer += heard.refreshed.iter().filter(is_tile).count();
+    counted.blocks += heard.refreshed.iter().filter(|c| !is_tile(c)).count();
+    if is_hidden {
+        counted.hidden += 1;
+        // Of the whole what is drawn where the box itself is.
+        if whole == own {
+            owns_nothing(dice, &own, view, truth);
+        }
+    } else {
+        counted.visible += 1;
+    }
+}
+
+/// The groups of a scene one after the other, with questions between them, which see what is drawn so far.
+fn by_groups<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    dice: &mut Dice,
+    mut boxes: impl FnMut(&mut Dice) -> [Aabb<S::Vector>; 2],
+    counted: &mut Counted,
+) {
+    let groups: Vec<&[PrimId]> = scene.live().chunks(60).collect();
+    let clusters = Clusters::new(scene, ONE_SIDED, groups.iter().copied());
+    let mut tiles = Tiles::default();
+    tiles.clear(view, true);
+    let how = How { one_sided: true, skipped: &[] };
+    let (mut target, mut fates) = (Target::new(view), Vec::new());
+    let options = Options { surfaces: ONE_SIDED, ..Options::default() };
+    for (number, group) in groups.iter().enumerate() {
+        tiles.draw_group(&clusters, number, how, Isa::best(), &mut fates);
+        S::draw(&mut target, scene, view, group, &options);
+        for _ in 0..12 {
+            let boxes = boxes(dice);
+            ask(dice, boxes, view, &mut tiles, &target, counted);
+        }
+    }
+    assert_eq!(tiles.depths(Isa::best()), target.depth, "as the image");
+    // What shows in the end may have shown when it was drawn, and what faces away was never drawn.
+    let shows = visible(&target);
+    for (prim, fate) in fates {
+        let shows = shows.binary_search(&prim).is_ok();
+        assert!(!shows || fate == Fate::Shown, "{prim:?} shows, and was {fate:?}");
+        let is_away = !scene.is_two_sided(prim) && scene.faces_away(prim, view.eye.position);
+        assert_eq!(is_away, fate == Fate::Away, "{prim:?}");
+    }
+}
+
+#[test]
+fn questions_are_heard_whole() {
+    let (mut dice, mut counted) = (Dice::new(81), Counted::default());
+    for round in 0..ROUNDS / 2 {
+        let scene = mixed(&mut dice, 120);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let boxes = |dice: &mut Dice| [random_box(dice), random_box(dice)];
+        by_groups(&scene, &view, &mut dice, boxes, &mut counted);
+    }
+    let Counted { visible, hidden, closer, blocks } = counted;
+    assert!(visible > 500 && hidden > 500 && closer > 100 && blocks > 20, "{counted:?}");
+}
+
+#[test]
+fn questions_of_flatland_are_heard_whole() {
+    let (mut dice, mut counted) = (Dice::new(82), Counted::default());
+    for round in 0..ROUNDS {
+        let (width, _) = flat_size(round);
+        let scene = flat_mixed(&mut dice, 100, 1.0);
+        let view = flat_view(&mut dice, width, 1.0);
+        let boxes = |dice: &mut Dice| [flat_box(dice, 1.0), flat_box(dice, 1.0)];
+        by_groups(&scene, &view, &mut dice, boxes, &mut counted);
+    }
+    let Counted { visible, hidden, closer, .. } = counted;
+    assert!(visible > 500 && hidden > 500 && closer > 100, "{counted:?}");
+}
+
+/// A group of what is drawn already: nothing is drawn again, and nothing more is said of it.
+#[test]
+fn what_is_drawn_already_is_left_out() {
+    let mut dice = Dice::new(83);
+    for round in 0..10 {
+        let scene = mixed(&mut dice, 100);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        let mut tiles = drawn(&scene, &view, ONE_SIDED, Isa::best());
+        let before = tiles.clone();
+        let clusters = Clusters::new(&scene, ONE_SIDED, [scene.live()]);
+        let mut skipped = vec![true; scene.prim_count()];
+        let (how, mut fates) = (How { one_sided: true, skipped: &skipped }, Vec::new());
+        tiles.draw_group(&clusters, 0, how, Isa::best(), &mut fates);
+        assert!(fates.is_empty() && tiles == before, "round {round}");
+        // One alone that is not: it may bring its other half along, of which nothing is said.
+        let opaque = scene.live().iter().find(|&&p| !clusters.apart(0).contains(&p));
+        let Some(&one) = opaque else { continue };
+        skipped[one.at()] = false;
+        let how = How { one_sided: true, skipped: &skipped };
+        tiles.draw_group(&clusters, 0, how, Isa::best(), &mut fates);
+        assert_eq!(fates.iter().map(|f| f.0).collect::<Vec<_>>(), [one], "round {round}");
+        assert_eq!(tiles.depths(Isa::best()), image(&scene, &view, ONE_SIDED).depth, "round {round}");
+    }
+}
