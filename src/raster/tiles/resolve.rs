@@ -2,9 +2,10 @@
 //! the tile's bin keeps.
 
 use super::bins::Batch;
-use super::segments::shade_segment;
 use super::wide::{self, Wide, Work, each};
+use super::window::raise;
 use super::{Resolved, Tiles};
+use crate::raster::line::{columns, depth_at};
 use crate::raster::setup::{Plane, area, center};
 use crate::raster::simd::Isa;
 
@@ -133,6 +134,22 @@ fn floor<L: Wide>(l: L, depths: &[f32; 32]) -> [f32; 3] {
     // What rounding takes from three sums of this size.
     let rounding = (at.abs() + 3.5 * a.abs() + 1.5 * b.abs()) * (1.0 / (1 << 20) as f32);
     [at + l.least(least) - rounding, a, b]
+}
+
+/// One segment on the columns of the tile at a column, in all rows alike.
+#[inline(always)]
+fn shade_segment(batch: &Batch, k: usize, x: i32, to: &mut [f32; 32]) {
+    let [a, b] = [batch.corner(0, k), batch.corner(1, k)];
+    let (first, past) = columns(&a, &b, x as u32, x as u32 + 8);
+    // One that covers nothing may have no plane.
+    if first >= past {
+        return;
+    }
+    let plane = Plane::of_segment(a, b);
+    for at in first..past {
+        let z = depth_at(&plane, at as u32);
+        to.chunks_exact_mut(8).for_each(|row| raise(&mut row[(at - x) as usize], z));
+    }
 }
 
 /// One triangle on the 32 pixels of a tile.

@@ -24,7 +24,7 @@ use super::ready::Ready;
 use super::setup::{Draw, Front};
 use super::wide::{Wide, Work};
 use super::window::{Place, lesser, merge, positive, raise};
-use crate::raster::line::{columns, cut, depth_at};
+use crate::raster::line::{columns, cut};
 use crate::raster::setup::{Plane, center};
 use crate::raster::vertex::{NEEDS_CLIP, REJECTS, Vertex};
 
@@ -33,11 +33,11 @@ const OUTSIDE: f64 = 0.51;
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 const STEEP: f64 = 1e30;
 
-/// Segments of a cluster that are seen from the front, whose points are projected; in a function of its own.
-pub(super) struct Segments<'a, 'b, L> {
-    pub draw: &'b mut Draw<'a, L>,
-    pub cluster: &'b Cluster,
-    pub front: &'b Front,
+/// Segments of a cluster whose points are projected, in a function of its own.
+struct Segments<'a, 'b, L> {
+    draw: &'b mut Draw<'a, L>,
+    cluster: &'b Cluster,
+    front: &'b Front,
 }
 
 impl<M: Wide> Work for Segments<'_, '_, M> {
@@ -59,6 +59,11 @@ impl<M: Wide> Work for Segments<'_, '_, M> {
 }
 
 impl<L: Wide> Draw<'_, L> {
+    /// Draws the segments of a cluster that are seen from the front.
+    #[inline(always)]
+    pub(super) fn segments(&mut self, cluster: &Cluster, front: &Front) {
+        self.l.apart(Segments { draw: self, cluster, front });
+    }
     /// The ends of a segment on the grid, clipped if need be; `None` if it is out of view.
     #[inline(always)]
     fn ends(&self, c: &Cluster, word: u64) -> Option<[Vertex; 2]> {
@@ -155,20 +160,4 @@ fn keep(tiles: &mut Tiles, t: &Ready, ends: [Vertex; 2], left: i32) {
     // From tile to tile, eight columns.
     (batch.floor[0][lane], batch.floor[1][lane]) = (t.floor[0], t.along[0] * 0.125);
     batch.column[lane] = left;
-}
-
-/// One segment on the columns of the tile at a column, in all rows alike.
-#[inline(always)]
-pub(super) fn shade_segment(batch: &Batch, k: usize, x: i32, to: &mut [f32; 32]) {
-    let [a, b] = [batch.corner(0, k), batch.corner(1, k)];
-    let (first, past) = columns(&a, &b, x as u32, x as u32 + 8);
-    // One that covers nothing may have no plane.
-    if first >= past {
-        return;
-    }
-    let plane = Plane::of_segment(a, b);
-    for at in first..past {
-        let z = depth_at(&plane, at as u32);
-        to.chunks_exact_mut(8).for_each(|row| raise(&mut row[(at - x) as usize], z));
-    }
 }

@@ -12,7 +12,6 @@ use super::Tiles;
 use super::bins::Batch;
 use super::clusters::{Cluster, Clusters, TWO_SIDED, corner, half, is_quadrangle, reversed};
 use super::ready::{Corners, LARGE, MIDDLING, Pixels, Ready, SMALL, greatest4, least4};
-use super::segments::Segments;
 use super::wide::{Wide, Work, each};
 use super::window::{Several, single};
 use crate::geometry::{orient2d, orient3d};
@@ -125,7 +124,7 @@ impl<L: Wide> Draw<'_, L> {
             }
             self.project(c);
             if self.tiles.is_flat {
-                self.l.apart(Segments { draw: self, cluster: c, front: &front });
+                self.segments(c, &front);
             } else {
                 // Whole vectors: the last word again, and its lanes left out.
                 let count = front.words.len();
