@@ -148,8 +148,12 @@ pub enum Stage {
     CoversTile,
     /// The tile does not decide.
     Keep,
-    /// The next of the tiles that did not.
+    /// The next of the tiles that did not, for its pixels that nothing covers.
     Kept,
+    /// Whether it shows at one of these.
+    Bare,
+    /// The next of the same tiles, for the depths of its pixels.
+    KeptStill,
     /// Whether it lies behind a plane that is known of the tile.
     Plane,
     /// The depths of the tile's pixels are worked out.
@@ -167,7 +171,8 @@ pub struct Asking<'a, S, N, O> {
     lines: fn(Stage) -> Option<u8>,
     /// Whose box it is; of what is no node nothing is said but what changes.
     node: Option<NodeId>,
-    is_close: bool,
+    /// Where a closer look at a tile stands, if there is one.
+    close: Option<Stage>,
     reads: u32,
     decisive: Option<Decisive>,
     kinds: PhantomData<(S, N)>,
@@ -176,7 +181,7 @@ pub struct Asking<'a, S, N, O> {
 impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Asking<'a, S, N, O> {
     /// What is reported goes to `watch`.
     pub fn new(watch: &'a mut O, lines: fn(Stage) -> Option<u8>, node: Option<NodeId>) -> Self {
-        Self { watch, lines, node, is_close: false, reads: 0, decisive: None, kinds: PhantomData }
+        Self { watch, lines, node, close: None, reads: 0, decisive: None, kinds: PhantomData }
     }
     /// The answer with what was read for it.
     pub fn answer(mut self, is_hidden: bool, nearest: f32) -> Answer {
@@ -200,11 +205,12 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N,
         let Some(node) = self.node else { return };
         let [next, ask, shows] = match read.cell.level {
             PyramidCell::BLOCK => [Some(Stage::Block), Some(Stage::BehindBlock), Some(Stage::CoversBlock)],
-            PyramidCell::TILE if !self.is_close => {
+            PyramidCell::TILE if self.close.is_none() => {
                 [Some(Stage::Tile), Some(Stage::BehindTile), Some(Stage::CoversTile)]
             }
-            PyramidCell::TILE => [None, Some(Stage::Plane), None],
-            _ => [None, Some(Stage::Pixel), None],
+            0 if self.close == Some(Stage::Plane) => [None, Some(Stage::Pixel), None],
+            // The line is reached already.
+            _ => [None; 3],
         };
         next.into_iter().chain(ask).for_each(|stage| self.reaches(stage));
         self.watch.note(move || DepthNote::Read(node, read).into());
@@ -223,9 +229,12 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N,
             Outcome::Behind | Outcome::Descends => {}
         }
     }
-    fn looks_closer(&mut self) {
-        self.is_close = true;
-        self.reaches(Stage::Kept);
+    fn looks_closer(&mut self, at_depths: bool) {
+        let [next, ask] =
+            if at_depths { [Stage::KeptStill, Stage::Plane] } else { [Stage::Kept, Stage::Bare] };
+        self.reaches(next);
+        self.reaches(ask);
+        self.close = Some(ask);
     }
     fn refreshes(&mut self, cell: PyramidCell) {
         if cell.level == PyramidCell::TILE {
@@ -327,8 +336,7 @@ impl<S: Faces> Note<S> for DepthNote<S> {
     fn claim(&self, _: &Context<'_, S>) -> Option<Claim<S::Vector>> {
         match self {
             Self::Answered(n) if n.answer.is_hidden => Some(Claim::Hidden),
-            // What covers no pixel is not behind anything.
-            Self::Rasterized(n) if n.is_hidden && n.tile.is_some() => Some(Claim::Hidden),
+            Self::Rasterized(n) if n.is_hidden => Some(Claim::Hidden),
             // A cell hides a part of a box at most.
             _ => None,
         }

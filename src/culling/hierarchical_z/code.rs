@@ -94,10 +94,16 @@ pub(super) const CODE: &[CodeLine] = &[
     CodeLine::departing("Obscured:13", "      if B covers r and shows in it: return false", "no such end"),
     CodeLine::departing("Obscured:14", "      keep r", "descend to r"),
     CodeLine::departing("Obscured:15", "  for each tile r that was kept", "down to the samples"),
-    CodeLine::departing("Obscured:16", "    if B lies behind a plane that covers r: next r", "no such test"),
-    CodeLine::departing("Obscured:17", "    work out the depths of r's pixels", "the z-buffer has them"),
-    CodeLine::new("Obscured:18", "    if B is not behind a pixel of r: return false"),
-    CodeLine::new("Obscured:19", "  return true"),
+    CodeLine::new("Obscured:16", "    if B shows at a pixel of r that nothing covers: return false"),
+    CodeLine::departing("Obscured:17", "  for each tile r that was kept", "down to the samples"),
+    CodeLine::departing("Obscured:18", "    if B lies behind a plane that covers r: next r", "no such test"),
+    CodeLine::departing(
+        "Obscured:19",
+        "    work out the depths of r's pixels, unless they are known",
+        "the z-buffer has them",
+    ),
+    CodeLine::new("Obscured:20", "    if B is not behind a pixel of r: return false"),
+    CodeLine::new("Obscured:21", "  return true"),
 ];
 
 /// Lines of [`CODE`] that the run reaches.
@@ -151,10 +157,12 @@ pub(super) mod line {
     pub const COVERS_TILE: u8 = line(CODE, "Obscured:13");
     pub const KEEP_TILE: u8 = line(CODE, "Obscured:14");
     pub const KEPT: u8 = line(CODE, "Obscured:15");
-    pub const PLANE: u8 = line(CODE, "Obscured:16");
-    pub const RESOLVE: u8 = line(CODE, "Obscured:17");
-    pub const PIXEL: u8 = line(CODE, "Obscured:18");
-    pub const ALL_HIDDEN: u8 = line(CODE, "Obscured:19");
+    pub const BARE: u8 = line(CODE, "Obscured:16");
+    pub const KEPT_STILL: u8 = line(CODE, "Obscured:17");
+    pub const PLANE: u8 = line(CODE, "Obscured:18");
+    pub const RESOLVE: u8 = line(CODE, "Obscured:19");
+    pub const PIXEL: u8 = line(CODE, "Obscured:20");
+    pub const ALL_HIDDEN: u8 = line(CODE, "Obscured:21");
 }
 
 /// At which lines each kind of event stands.
@@ -163,10 +171,18 @@ pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("CubeListed", &["Frame:3", "Visit:4"]),
     (
         "ObscurationTested",
-        &["Obscured:3", "Obscured:4", "Obscured:10", "Obscured:13", "Obscured:18", "Obscured:19"],
+        &[
+            "Obscured:3",
+            "Obscured:4",
+            "Obscured:10",
+            "Obscured:13",
+            "Obscured:16",
+            "Obscured:20",
+            "Obscured:21",
+        ],
     ),
-    ("CellRead", &["Obscured:9", "Obscured:12", "Obscured:16", "Obscured:18"]),
-    ("TileRefreshed", &["Obscured:12", "Obscured:17"]),
+    ("CellRead", &["Obscured:9", "Obscured:12", "Obscured:16", "Obscured:18", "Obscured:20"]),
+    ("TileRefreshed", &["Obscured:12", "Obscured:19", "Draw:5"]),
     ("CubeDrawn", &["Draw:2"]),
     ("OrientationTested", &["Draw:4"]),
     ("PrimitiveBehind", &["Draw:5"]),
@@ -291,7 +307,8 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::FACES_AWAY => params.surfaces.one_sided,
         line::TEST | line::SKIP => tested,
         // Of one cube nothing is drawn before it is asked for, so nothing hides it.
-        line::BEHIND_BLOCK | line::ALL_HIDDEN => !is_one_cube,
+        line::KEEP_TILE | line::KEPT | line::BARE | line::KEPT_STILL => !is_one_cube,
+        line::PLANE | line::RESOLVE | line::PIXEL | line::ALL_HIDDEN => !is_one_cube,
         line::BOX => params.query == Volume::Planes,
         line::RECTANGLE => params.query == Volume::Rectangles,
         line::SPHERE => params.query == Volume::Sphere,

@@ -259,21 +259,24 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Reports what became of a primitive of a cube that was drawn, and lists it if it may show.
     fn tell(&mut self, prim: PrimId, fate: Fate) {
         let (scene, view, surfaces) = (self.scene, self.view, self.params.surfaces);
-        let is_away = match fate {
-            Fate::Apart => surfaces.one_sided && scene.faces_away(prim, view.eye.position),
-            _ => fate == Fate::Away,
-        };
-        if is_away {
+        // One seen edge-on faces neither way; it covers nothing, and is hidden.
+        let may_be_away = fate == Fate::Away || fate == Fate::Apart && surfaces.one_sided;
+        if may_be_away && scene.faces_away(prim, view.eye.position) {
             self.line(line::FACES_AWAY);
             self.watch.note(move || Evidence::Facing(Facing::of(prim)));
             return self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
         }
         let is_tested = self.params.primitive_test;
-        // What hides nothing is in no tile, so it is asked for by its box.
-        let is_hidden = is_tested && (fate == Fate::Hidden || fate == Fate::Apart && self.hides_apart(prim));
         if is_tested {
             self.line(line::TEST);
         }
+        let is_hidden = is_tested
+            && match fate {
+                Fate::Shown => false,
+                Fate::Hidden | Fate::Away => true,
+                // What hides nothing is in no tile, so it is asked for by its box.
+                Fate::Apart => self.hides_apart(prim),
+            };
         if !is_hidden {
             self.line(line::LIST);
         }
@@ -436,6 +439,8 @@ fn line_of(stage: Stage) -> Option<u8> {
         Stage::CoversTile => line::COVERS_TILE,
         Stage::Keep => line::KEEP_TILE,
         Stage::Kept => line::KEPT,
+        Stage::Bare => line::BARE,
+        Stage::KeptStill => line::KEPT_STILL,
         Stage::Plane => line::PLANE,
         Stage::Resolve => line::RESOLVE,
         Stage::Pixel => line::PIXEL,

@@ -326,7 +326,12 @@ fn hidden_boxes_own_nothing<S: Drawable>(
     }
 }
 /// Primitives of a box, on its corners, edges and faces and within, win no pixel.
-pub(super) fn owns_nothing<S: Drawable>(dice: &mut Dice, bounds: &Aabb<S::Vector>, view: &View<S>, truth: &Target) {
+pub(super) fn owns_nothing<S: Drawable>(
+    dice: &mut Dice,
+    bounds: &Aabb<S::Vector>,
+    view: &View<S>,
+    truth: &Target,
+) {
     let mut point = || {
         S::Vector::from_fn(|a| {
             let (low, high) = (bounds.min.get(a), bounds.max.get(a));

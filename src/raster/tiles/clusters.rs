@@ -13,7 +13,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use super::Fate;
-use super::setup::Told;
+use super::ready::Told;
 
 use crate::geometry::{Aabb, PrimId, Space, Vector};
 use crate::scene::{Scene, Surfaces};

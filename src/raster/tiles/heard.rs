@@ -33,9 +33,10 @@ pub trait Hears {
     const LISTENS: bool;
     /// A cell was compared with what was asked for.
     fn reads(&mut self, read: Read);
-    /// A tile that did not decide is looked at closer.
+    /// A tile that did not decide is looked at closer: at its pixels that nothing covers, or at the depths of
+    /// all of them.
     #[inline(always)]
-    fn looks_closer(&mut self) {}
+    fn looks_closer(&mut self, _at_depths: bool) {}
     /// What a cell holds was brought up to date: a block from its tiles, a tile by exact depths.
     fn refreshes(&mut self, cell: PyramidCell);
 }

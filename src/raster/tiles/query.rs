@@ -471,7 +471,7 @@ impl<H: Hears> Fine<'_, H> {
         while found != 0 {
             let tile = found.trailing_zeros() as usize;
             found &= found - 1;
-            self.hears.looks_closer();
+            self.hears.looks_closer(false);
             let at = first_pixel(self.tiles, block, tile);
             let line = &self.tiles.lines[self.tiles.first_line(strip, row) + (tile >> 2)];
             let bare = !line.ever[tile & 3] & self.asked.pixels(at);
@@ -491,7 +491,7 @@ impl<H: Hears> Fine<'_, H> {
         while found != 0 {
             let tile = found.trailing_zeros() as usize;
             found &= found - 1;
-            self.hears.looks_closer();
+            self.hears.looks_closer(true);
             let pixel = first_pixel(self.tiles, block, tile);
             let known = self.tiles.resolved.at[block][tile];
             let at = if known == Resolved::NOT { cover(self.tiles, block, tile) } else { known as usize };

@@ -1,4 +1,4 @@
-//! Primitives on their way to windows: vectors of corners, and sixteen that are set up.
+//! Primitives on their way to windows: vectors of corners, sixteen that are set up, and what became of them.
 
 use super::wide::{Wide, each};
 
@@ -86,6 +86,24 @@ pub(super) struct Ready {
     /// Of its corners.
     pub farthest: [f32; 16],
     pub nearest: [f32; 16],
+}
+
+/// What became of what was drawn, by tags, where someone asks.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Told {
+    pub is_asked: bool,
+    /// What faced the eye.
+    pub faced: Vec<i32>,
+    /// What may show.
+    pub shown: Vec<i32>,
+}
+
+impl Told {
+    pub fn begin(&mut self) {
+        self.is_asked = true;
+        self.faced.clear();
+        self.shown.clear();
+    }
 }
 
 #[inline(always)]

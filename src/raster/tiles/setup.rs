@@ -11,7 +11,7 @@
 use super::Tiles;
 use super::bins::Batch;
 use super::clusters::{Cluster, Clusters, TWO_SIDED, corner, half, is_quadrangle, reversed};
-use super::ready::{Corners, LARGE, MIDDLING, Pixels, Ready, SMALL, greatest4, least4};
+use super::ready::{Corners, LARGE, MIDDLING, Pixels, Ready, SMALL, Told, greatest4, least4};
 use super::wide::{Wide, Work, each};
 use super::window::{Several, single};
 use crate::geometry::{orient2d, orient3d};
@@ -54,24 +54,6 @@ impl Front {
 }
 /// Both triangles of a primitive.
 const BOTH: i32 = 3;
-
-/// What became of what was drawn, by tags, where someone asks.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Told {
-    pub is_asked: bool,
-    /// What faced the eye.
-    pub faced: Vec<i32>,
-    /// What may show.
-    pub shown: Vec<i32>,
-}
-
-impl Told {
-    pub fn begin(&mut self) {
-        self.is_asked = true;
-        self.faced.clear();
-        self.shown.clear();
-    }
-}
 
 impl Scratch {
     pub fn clear(&mut self, strips: usize) {
