@@ -84,8 +84,7 @@ fn frames(
         || {
             for view in views {
                 let list = frustum.cull(view);
-                target.clear(view);
-                Solid::draw(&mut target, scene, view, &list.prims, &Options::default());
+                Solid::redraw(&mut target, scene, view, &list.prims, &Options::default());
                 all = list.prims.len();
                 black_box(&target);
             }
@@ -93,8 +92,7 @@ fn frames(
         || {
             for view in views {
                 let list = occluders.render(view);
-                other.clear(view);
-                Solid::draw(&mut other, scene, view, &list.prims, &Options::default());
+                Solid::redraw(&mut other, scene, view, &list.prims, &Options::default());
                 kept = list.prims.len();
                 black_box(&other);
             }

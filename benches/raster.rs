@@ -73,10 +73,7 @@ fn hash(target: &Target) -> u64 {
 }
 
 fn draw_ms(target: &mut Target, scene: &Scene<Solid>, view: &View<Solid>, options: &Options) -> f64 {
-    timed_ms(|| {
-        target.clear(view);
-        Solid::draw(target, scene, view, scene.live(), options);
-    })
+    timed_ms(|| Solid::redraw(target, scene, view, scene.live(), options))
 }
 
 /// Clearing and drawing every triangle: the best and the median round of each view, each as the median

@@ -358,9 +358,9 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                 let mut truth = Truth::new(scene, surfaces, 1, [1.0; 3]);
                 for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
                     let list = run.cull(&view);
-                    let mut target = Target::new(&view);
+                    let mut target = Target::default();
                     let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-                    list.draw(&mut target, scene, &view, &options);
+                    list.redraw(&mut target, scene, &view, &options);
                     let judged = truth.judge(scene, &view, &list.prims, &target);
                     if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());

@@ -59,11 +59,7 @@ fn look<S: Methods + Drawable>(
     let mut sum = Sum { views: views.len(), ..Sum::default() };
     for view in views {
         let (list, cull_ms) = timed(|| run.cull(view));
-        let draw = || {
-            target.clear(view);
-            list.draw(&mut target, scene, view, &Options::default());
-        };
-        let draw_ms = timed(draw).1;
+        let draw_ms = timed(|| list.redraw(&mut target, scene, view, &Options::default())).1;
         let (judged, all_ms) = timed(|| truth.judge(scene, view, &list.prims, &target));
         assert_eq!(judged.wrong_items == 0, *truth.image() == target, "{}: items and depths", scene.name());
         // The colored images as bytes, from now and then, since coloring is slower than drawing.

@@ -255,8 +255,8 @@ fn wrongly_hidden(
     answers: &[Option<bool>],
 ) -> usize {
     let fine = View { width: view.width * FINER, height: view.height * FINER, ..*view };
-    let mut image = Target::new(&fine);
-    Solid::draw(
+    let mut image = Target::default();
+    Solid::redraw(
         &mut image,
         mesh,
         &fine,

@@ -163,10 +163,7 @@ fn frames<S: World>(
             return Err(CliError::Interrupted);
         }
         let ((list, stages_ms), cull_ms) = timed(|| run.stages_ms(view));
-        let ((), draw_ms) = timed(|| {
-            target.clear(view);
-            list.draw(&mut target, scene, view, &options);
-        });
+        let ((), draw_ms) = timed(|| list.redraw(&mut target, scene, view, &options));
         if let Some(path) = &args.image {
             let rgba = shade(&target, scene, view, background);
             let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };

@@ -34,10 +34,10 @@ impl<S: Space> DrawList<S> {
 }
 
 impl<S: Drawable> DrawList<S> {
-    /// Draws the primitives into an image of a view. Stand-ins own no pixel of an item buffer: whoever shades
-    /// the image paints them over it.
-    pub fn draw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
-        S::draw(target, scene, view, &self.prims, options);
+    /// Makes a target the image of the primitives from a view, whatever it held. Stand-ins own no pixel of an
+    /// item buffer: whoever shades the image paints them over it.
+    pub fn redraw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
+        S::redraw(target, scene, view, &self.prims, options);
     }
 }
 

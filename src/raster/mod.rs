@@ -14,6 +14,9 @@
 //!
 //! Cost: O(points + primitives + covered pixels).
 
+mod blocks;
+mod fill;
+mod frame;
 mod image;
 mod line;
 mod pyramid;
@@ -187,6 +190,20 @@ pub trait Drawable: Space {
     /// # Panics
     /// If the target has not the view's size, or a side exceeds [`Target::MAX_SIDE_PX`].
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
+    /// Makes the image anew, with its items: the same as [`Target::clear`] and [`Drawable::draw`], faster.
+    ///
+    /// # Panics
+    /// If a side of the view exceeds [`Target::MAX_SIDE_PX`].
+    fn redraw(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
+        target.clear(view);
+        Self::draw(target, scene, view, prims, options);
+    }
     /// The same but for primitives that the sieve's pyramid proves to be hidden.
     ///
     /// # Panics
@@ -277,6 +294,15 @@ impl Drawable for Solid {
     ) {
         image::draw(target, None, scene, view, prims, options);
     }
+    fn redraw(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        options: &Options,
+    ) {
+        image::redraw(target, scene, view, prims, options);
+    }
     fn sift(
         target: &mut Target,
         sieve: Sieve,
@@ -288,7 +314,7 @@ impl Drawable for Solid {
         image::draw(target, Some(sieve), scene, view, prims, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
-        image::extent(scene, view, prim, options)
+        frame::extent(scene, view, prim, options)
     }
     fn fragments(
         scene: &Scene<Self>,
@@ -297,7 +323,7 @@ impl Drawable for Solid {
         options: &Options,
         visit: &mut dyn FnMut(usize, f32),
     ) {
-        image::fragments(scene, view, prim, options, visit);
+        frame::fragments(scene, view, prim, options, visit);
     }
     fn draw_reference(
         target: &mut Target,
@@ -312,8 +338,8 @@ impl Drawable for Solid {
 
 /// Draws `prims` into a new image of the view's size, on the calling thread.
 pub fn render<S: Drawable>(scene: &Scene<S>, view: &View<S>, prims: &[PrimId]) -> Target {
-    let mut target = Target::new(view);
-    S::draw(&mut target, scene, view, prims, &Options::default());
+    let mut target = Target::default();
+    S::redraw(&mut target, scene, view, prims, &Options::default());
     target
 }
 

@@ -4,7 +4,7 @@
 //! clipping and the depth plane's coefficients with the fast code, since they define the image.
 //! Cost: O(primitives × pixels in their boxes).
 
-use super::image::clip;
+use super::frame::clip;
 use super::line::segment;
 use super::setup::{Plane, area, center};
 use super::vertex::{Camera, Vertex};

@@ -197,6 +197,15 @@ pub(super) fn pixels(low: i32, high: i32, from: u32, to: u32) -> (i32, i32) {
     )
 }
 
+/// Least and greatest coordinate along each axis.
+#[inline(always)]
+fn span(v: [&Vertex; 3]) -> [(i32, i32); 2] {
+    [
+        (v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x)),
+        (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y)),
+    ]
+}
+
 /// Twice the signed area; positive if clockwise on the screen (y down).
 #[inline(always)]
 pub(super) fn area(v: [&Vertex; 3]) -> i64 {
@@ -264,27 +273,47 @@ impl Setup {
     pub fn rect(&self) -> PixelRect {
         PixelRect { x0: self.x0 as u32, x1: self.x1 as u32, y0: self.y0 as u32, y1: self.y1 as u32 }
     }
-    /// Makes a triangle ready for the pixels of a window; `None` if it covers no center there.
+    /// The pixels of a window in a triangle's box; `None` if it covers no center there.
     #[inline(always)]
-    pub fn new(v: [&Vertex; 3], id: u32, whole: bool, window: &PixelRect) -> Option<Self> {
-        let (low_x, high_x) = (v[0].x.min(v[1].x).min(v[2].x), v[0].x.max(v[1].x).max(v[2].x));
-        let (low_y, high_y) = (v[0].y.min(v[1].y).min(v[2].y), v[0].y.max(v[1].y).max(v[2].y));
+    pub fn bounds(v: [&Vertex; 3], window: &PixelRect) -> Option<PixelRect> {
+        let [(low_x, high_x), (low_y, high_y)] = span(v);
         let (x0, x1) = pixels(low_x, high_x, window.x0, window.x1);
         let (y0, y1) = pixels(low_y, high_y, window.y0, window.y1);
         // Most small triangles of a dense model fall between centers and end here.
-        if x0 >= x1 || y0 >= y1 {
+        if x0 >= x1 || y0 >= y1 || area(v) == 0 {
             return None;
         }
-        let area = area(v);
-        if area == 0 {
-            return None;
+        Some(PixelRect { x0: x0 as u32, x1: x1 as u32, y0: y0 as u32, y1: y1 as u32 })
+    }
+    /// The part of a triangle in a block of pixels, with which it shares some of its box; `None` if an edge
+    /// leaves all of them out.
+    #[inline(always)]
+    pub fn within(&self, block: &PixelRect) -> Option<Self> {
+        let mut part = *self;
+        (part.x0, part.x1) = (self.x0.max(block.x0 as i32), self.x1.min(block.x1 as i32));
+        (part.y0, part.y1) = (self.y0.max(block.y0 as i32), self.y1.min(block.y1 as i32));
+        let (right, down) = (i64::from(part.x0 - self.x0), i64::from(part.y0 - self.y0));
+        let (wide, high) = (i64::from(part.x1 - part.x0 - 1), i64::from(part.y1 - part.y0 - 1));
+        let mut signs = 0;
+        for edge in &mut part.edges {
+            let (dx, dy) = (i64::from(edge.dx), i64::from(edge.dy));
+            edge.at += dx * right + dy * down;
+            // Its value at the corner where it is greatest.
+            signs |= edge.at + (dx * wide).max(0) + (dy * high).max(0);
         }
+        (signs >= 0).then_some(part)
+    }
+    /// Makes a triangle ready for the pixels of a window; `None` if it covers no center there.
+    #[inline(always)]
+    pub fn new(v: [&Vertex; 3], id: u32, whole: bool, window: &PixelRect) -> Option<Self> {
+        let PixelRect { x0, x1, y0, y1 } = Self::bounds(v, window)?;
+        let (x0, x1, y0, y1) = (x0 as i32, x1 as i32, y0 as i32, y1 as i32);
         let plane = Plane::of(v);
         // Turned to run clockwise on the screen, so that the inside of every edge is positive.
-        let [a, b, c] = if area > 0 { v } else { [v[0], v[2], v[1]] };
+        let [a, b, c] = if area(v) > 0 { v } else { [v[0], v[2], v[1]] };
         let (x, y) = (center(x0), center(y0));
         let edges = [Edge::new(a, b, x, y), Edge::new(b, c, x, y), Edge::new(c, a, x, y)];
-        let narrow = high_x - low_x <= NARROW && high_y - low_y <= NARROW;
+        let narrow = span(v).iter().all(|(low, high)| high - low <= NARROW);
         Some(Self { x0, x1, y0, y1, edges, narrow, whole, plane, id })
     }
 }

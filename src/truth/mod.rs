@@ -99,7 +99,6 @@ impl Truth {
 
     /// Draws the whole scene; what is visible, ascending.
     pub fn look<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>) -> Vec<PrimId> {
-        self.all.clear(view);
         let prims = if self.surfaces.one_sided {
             let (eye, there) = (view.eye.position, self.prims.iter().copied());
             self.facing.clear();
@@ -108,7 +107,7 @@ impl Truth {
         } else {
             &self.prims
         };
-        S::draw(&mut self.all, scene, view, prims, &self.options);
+        S::redraw(&mut self.all, scene, view, prims, &self.options);
         all_visible(&self.all, scene, view, &self.options)
     }
     /// The image that [`Truth::look`] drew last.

@@ -152,7 +152,6 @@ pub fn draw<S: World>(
     prims: &[PrimId],
     surfaces: Surfaces,
 ) {
-    target.clear(view);
     let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-    S::draw(target, scene, view, prims, &options);
+    S::redraw(target, scene, view, prims, &options);
 }

@@ -100,6 +100,51 @@ fn single_triangles_equal_the_reference() {
 }
 
 #[test]
+fn images_of_awkward_sizes_equal_the_reference() {
+    let dice = &mut Dice::new(4);
+    let mut covered = 0;
+    // Narrower than a vector, and sides about multiples of a block's 128 columns and 32 rows.
+    for [width, height] in [[1, 1], [7, 5], [33, 17], [128, 32], [129, 33], [257, 129], [300, 64]] {
+        for round in 0..6 {
+            // In one round a list that is long enough to be dealt to several threads' chunks.
+            let scene = mixed(soup(&triangles(dice, if round == 2 { 4500 } else { 90 })), round);
+            let eye = if round % 2 == 0 { straight_view(1, 0.1, 30.0).eye } else { random_view(dice).eye };
+            let view = View { eye, width, height };
+            let what = format!("{width}×{height}, round {round}");
+            let image = assert_equal(&scene, &view, scene.live(), sides(round == 1), &what);
+            covered += image.item.iter().filter(|&&i| i != Target::NONE).count();
+        }
+    }
+    assert!(covered > 200_000, "the scenes show too little to test anything: {covered} pixels");
+}
+
+#[test]
+fn an_image_made_anew_is_empty_outside_its_window() {
+    let dice = &mut Dice::new(5);
+    let mut covered = 0;
+    for round in 0..40 {
+        let scene = mixed(soup(&triangles(dice, 60)), round);
+        let view = View { width: 300, height: 100, ..random_view(dice) };
+        let whole = render(&scene, &view, scene.live());
+        let (x0, y0) = (dice.below(200), dice.below(80));
+        let window = PixelRect { x0, x1: x0 + 1 + dice.below(100), y0, y1: y0 + 1 + dice.below(20) };
+        let mut expected = Target::new(&view);
+        for (y, x) in (window.y0..window.y1).flat_map(|y| (window.x0..window.x1).map(move |x| (y, x))) {
+            let at = (y * view.width + x) as usize;
+            (expected.depth[at], expected.item[at]) = (whole.depth[at], whole.item[at]);
+        }
+        covered += expected.item.iter().filter(|&&i| i != Target::NONE).count();
+        for options in all_options(BOTH_SIDES) {
+            let mut target = whole.clone();
+            let options = Options { window: Some(window), ..options };
+            Solid::redraw(&mut target, &scene, &view, scene.live(), &options);
+            assert_eq!(target.wrong_pixels(&expected), 0, "round {round}, {options:?}");
+        }
+    }
+    assert!(covered > 5_000, "the windows show too little to test anything: {covered} pixels");
+}
+
+#[test]
 fn segments_equal_the_reference() {
     let dice = &mut Dice::new(3);
     for round in 0..500 {

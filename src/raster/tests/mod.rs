@@ -127,6 +127,16 @@ pub(super) fn assert_equal<S: Drawable>(
     for options in all_options(surfaces) {
         let mut target = Target::new(view);
         S::draw(&mut target, scene, view, prims, &options);
+        // Onto what another image left.
+        let mut anew = Target::new(&View { width: view.width + 5, ..*view });
+        anew.depth.fill(f32::INFINITY);
+        S::redraw(&mut anew, scene, view, prims, &options);
+        assert!(anew == expected, "{what}, {options:?}: made anew, {} pixels", anew.wrong_pixels(&expected));
+        assert_eq!(
+            shown_through(scene, view, &anew, &options),
+            shown_through(scene, view, &expected, &options),
+            "{what}, {options:?}: made anew, see-through primitives"
+        );
         // The sieve is the same code on every instruction set.
         if options.isa == Isa::best() {
             sifted_is_the_same(scene, view, prims, &options, &target, what);

@@ -15,7 +15,7 @@ use super::ready::{Corners, LARGE, MIDDLING, Pixels, Ready, SMALL, Told, greates
 use super::wide::{Wide, Work, each};
 use super::window::{Several, single};
 use crate::geometry::{orient2d, orient3d};
-use crate::raster::image::clip;
+use crate::raster::frame::clip;
 use crate::raster::setup::area;
 use crate::raster::vertex::{GUARD, NEEDS_CLIP, REJECTS, SUBPIXEL_BITS, Vertex};
 
