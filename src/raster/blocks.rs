@@ -1,13 +1,14 @@
 //! An image by blocks of pixels, each filled while the first cache holds it.
 //!
-//! 1. Triangles are looked at for where they go: their pixel boxes, and what is nearest of them ([`Bins::find`]).
+//! 1. Triangles are looked at for where they go: their pixel boxes, and what is nearest of them
+//!    ([`Bins::find`]).
 //! 2. Each block gets a list of those whose boxes meet it ([`Bins::deal`]).
 //! 3. A block is emptied, or loaded, in memory of its own, where rows lie side by side and not a page apart;
 //!    its triangles are filled, nearest first, and it goes out to the image ([`fill_band`]).
 //!
 //! Nearest first, a triangle all of which lies behind the farthest pixel of the block ends the block: those
-//! after it are farther still. Most triangles of a scene that hides much are so never set up, for those of one
-//! block are set up when they are filled.
+//! after it are farther still. Most triangles of a scene that hides much are so never set up, for those of
+//! one block are set up when they are filled.
 
 use super::Target;
 use super::fill::{Canvas, fill};

@@ -1,9 +1,11 @@
 //! Triangles into pixels.
 //!
 //! (a) Rows of a small triangle are one vector: three edge functions, one mask. (b) Rows of a wide one are
-//! spans, whose ends follow from the edge functions by an exact division; then no edge is evaluated per pixel.
+//! spans, whose ends follow from the edge functions by an exact division; then no edge is evaluated per
+//! pixel.
 //!
-//! A pixel keeps its winner whatever the order, so who fills which part of the image, and when, leaves no trace.
+//! A pixel keeps its winner whatever the order, so who fills which part of the image, and when, leaves no
+//! trace.
 
 use super::setup::{Edge, Setup, center};
 use super::simd::Lanes;

@@ -1,15 +1,15 @@
 //! Triangles into an image.
 //!
 //! 1. Points are projected to the pixel grid: all of them, or three for each primitive of a small subset.
-//! 2. Primitives are dropped or clipped ([`super::frame`]), and triangles that a pyramid proves hidden are left
-//!    out.
+//! 2. Primitives are dropped or clipped ([`super::frame`]), and triangles that a pyramid proves hidden are
+//!    left out.
 //! 3. The rest are set up: pixel box, edge functions, depth plane ([`super::setup`]).
 //! 4. They are filled ([`super::fill`]).
 //!
 //! Onto an image that holds something one thread runs steps 2 to 4 batch by batch. An image that is made anew
-//! comes block by block ([`super::blocks`]), and so does any that several threads draw: they run step 2 on chunks
-//! of primitives, then 3 and 4 on bands of blocks, each band by one thread from all chunks. A pixel keeps its
-//! winner whatever the order, so the bytes are equal.
+//! comes block by block ([`super::blocks`]), and so does any that several threads draw: they run step 2 on
+//! chunks of primitives, then 3 and 4 on bands of blocks, each band by one thread from all chunks. A pixel
+//! keeps its winner whatever the order, so the bytes are equal.
 
 use rayon::prelude::*;
 
@@ -81,7 +81,7 @@ fn draw_onto(
     options: &Options,
     anew: Option<f32>,
 ) {
-    let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
+    let threads = options.thread_count();
     let mut scratch = std::mem::take(&mut target.scratch);
     let camera = Camera::new(view);
     // 1. Projecting every point costs at most two projections a primitive here, and its own corners three.
@@ -111,7 +111,7 @@ fn draw_onto(
     };
     // 2 to 4.
     let by_blocks = (threads > 1 || anew.is_some())
-        && draw_blocks(target, &mut sieve, &frame, prims, options, &mut scratch.bins, (threads, anew));
+        && draw_blocks(target, &mut sieve, &frame, prims, options, &mut scratch.bins, anew);
     if !by_blocks {
         if let Some(depth) = anew {
             target.depth.fill(depth);
@@ -141,8 +141,8 @@ fn for_all<J: Send, S>(
     }
 }
 
-/// Chunks of primitives into bins, then bands of blocks from these. Returns whether it did: not where the lists
-/// would be too long.
+/// Chunks of primitives into bins, then bands of blocks from these. Returns whether it did: not where the
+/// lists would be too long.
 fn draw_blocks(
     target: &mut Target,
     sieve: &mut Option<Sieve>,
@@ -150,11 +150,12 @@ fn draw_blocks(
     prims: &[PrimId],
     options: &Options,
     bins: &mut Vec<Bins>,
-    (threads, anew): (usize, Option<f32>),
+    anew: Option<f32>,
 ) -> bool {
-    let (width, height) = (target.width as usize, target.height as usize);
+    let (width, height, threads) = (target.width as usize, target.height as usize, options.thread_count());
     // The pyramid is read as it was before the draw: what one chunk draws must not decide what another leaves
-    // out, or the list of hidden primitives would depend on timing. So fewer may be hidden than on one thread.
+    // out, or the list of hidden primitives would depend on timing. So fewer may be hidden than on one
+    // thread.
     let held = sieve.as_ref().map(|s| (&*s.pyramid, &target.depth[..]));
     let size = if threads <= 1 { prims.len().max(1) } else { CHUNK_PRIMS };
     bins.resize_with(prims.len().div_ceil(size), Bins::default);

@@ -153,6 +153,9 @@ pub struct Options {
 }
 
 impl Options {
+    fn thread_count(&self) -> usize {
+        if self.threads == 0 { rayon::current_num_threads() } else { self.threads }
+    }
     fn window_of<S: Space>(&self, view: &View<S>) -> PixelRect {
         self.window.unwrap_or(PixelRect { x0: 0, x1: view.width, y0: 0, y1: view.height })
     }
