@@ -128,7 +128,8 @@ impl Resolved {
     const NOT: u32 = u32::MAX;
 }
 
-/// What a frame has drawn, and nothing of how, nor of what was asked since.
+/// What a frame has drawn, as far as it is known: a question may find a tile nearer than was claimed, and
+/// brings blocks up to date. Nothing of how it was drawn.
 impl PartialEq for Tiles {
     fn eq(&self, other: &Self) -> bool {
         (self.camera, self.is_flat, self.keeps) == (other.camera, other.is_flat, other.keeps)
