@@ -120,7 +120,7 @@ pub fn deciding<S: Faces>(tiles: &Tiles, scene: &Scene<S>, view: &View<S>, prim:
     let reads = nearest.into_iter().map(|((y, x), nearest)| {
         let cell = PyramidCell { level: PyramidCell::TILE, x, y };
         let held = tiles.held(cell);
-        Read { cell, held, nearest, outcome: if nearest > held { Outcome::Shows } else { Outcome::Behind } }
+        Read { cell, held, nearest, outcome: if nearest >= held { Outcome::Shows } else { Outcome::Behind } }
     });
     reads.reduce(|a, b| if b.held - b.nearest < a.held - a.nearest { b } else { a })
 }

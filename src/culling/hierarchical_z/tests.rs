@@ -102,10 +102,18 @@ fn soup<S: Space>(rng: &mut Pcg32, n: u32, make: fn([u32; 3]) -> S::Corners) -> 
     )
 }
 
+/// A scene with each primitive twice: of two at one place the one with the lower id shows, whichever is drawn
+/// first.
+fn twice<S: Space>(scene: &Scene<S>) -> Arc<Scene<S>> {
+    let prims: Vec<S::Corners> = scene.live().iter().filter_map(|&p| scene.corners(p)).collect();
+    let prims = [prims.clone(), prims].concat();
+    Arc::new(Scene::new(Parts::simple("soup, twice", scene.points().to_vec(), prims)).expect("valid"))
+}
+
 /// Frames along a flight with jumps: each image is the plain one, and with coherence the list settles.
 fn flights<S: Faces>(make: fn([u32; 3]) -> S::Corners) {
     let mut rng = Pcg32::new(5, 9);
-    let scene = soup::<S>(&mut rng, 300, make);
+    let scene = twice(&soup::<S>(&mut rng, 150, make));
     for (form, interval) in
         [Form::Incremental, Form::TwoPass].into_iter().flat_map(|form| [(form, 1), (form, 30)])
     {

@@ -1,7 +1,7 @@
 //! Questions one by one: what is heard of them, and groups that are drawn one after the other.
 
 use super::tiles::{ROUNDS, drawn, flat_box, flat_mixed, flat_view, image, mixed, owns_nothing, random_box};
-use super::tiles::{flat_size, random_view, sizes};
+use super::tiles::{flat_size, random_view, sizes, straight_line};
 use super::*;
 use crate::geometry::{Aabb, Footprint, Vector, project_box};
 
@@ -177,4 +177,34 @@ fn what_is_drawn_already_is_left_out() {
         assert_eq!(fates.iter().map(|f| f.0).collect::<Vec<_>>(), [one], "round {round}");
         assert_eq!(tiles.depths(Isa::best()), image(&scene, &view, ONE_SIDED).depth, "round {round}");
     }
+}
+
+/// Of two faces at one place, square to the line of sight, the one with the lower id shows, though it is drawn
+/// last: whoever lists what shows is to list both.
+#[test]
+fn what_is_as_deep_as_what_is_drawn_may_show() {
+    let view = straight_view(64, 0.05, 50.0);
+    for half in [0.3, 2.0, 30.0] {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let points = [corners, corners].concat().iter().map(|[x, y]| Vec3::new(x * half, y * half, -4.0)).collect();
+        let prims = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
+        let scene: Scene<Solid> = scene_of(points, prims);
+        let groups: [&[PrimId]; 2] = [&[PrimId(2), PrimId(3)], &[PrimId(0), PrimId(1)]];
+        let clusters = Clusters::new(&scene, ONE_SIDED, groups);
+        let (mut tiles, mut fates) = (Tiles::default(), Vec::new());
+        tiles.clear(&view, false);
+        let how = How { one_sided: true, skipped: &[] };
+        (0..2).for_each(|group| tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates));
+        assert!(fates.iter().all(|f| f.1 == Fate::Shown), "{half}: {fates:?}");
+        assert_eq!(visible(&render(&scene, &view, scene.live())), [PrimId(0), PrimId(1)], "{half}");
+    }
+    // In flatland likewise.
+    let wall = [Vec2::new(-9.0, -5.0), Vec2::new(9.0, -5.0)];
+    let scene: Scene<Flat> = scene_of([wall, wall].concat(), vec![[0, 1], [2, 3]]);
+    let clusters = Clusters::new(&scene, ONE_SIDED, [&[PrimId(1)][..], &[PrimId(0)]]);
+    let (mut tiles, mut fates) = (Tiles::default(), Vec::new());
+    tiles.clear(&straight_line(33), false);
+    let how = How { one_sided: true, skipped: &[] };
+    (0..2).for_each(|group| tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates));
+    assert_eq!(fates, [(PrimId(1), Fate::Shown), (PrimId(0), Fate::Shown)]);
 }

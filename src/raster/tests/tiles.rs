@@ -232,7 +232,7 @@ fn a_hidden_box_of_flatland_owns_no_pixel_and_answers_do_not_depend_on_the_instr
     }
     assert!(counts.iter().all(|&c| c > 500), "visible, hidden, outside: {counts:?}");
 }
-fn straight_line(width: u32) -> View<Flat> {
+pub(super) fn straight_line(width: u32) -> View<Flat> {
     let fov = std::f32::consts::FRAC_PI_2;
     let (position, target, up) = (Vec2::ZERO, Vec2::NEG_Y, Vec2::Y);
     View { eye: Eye { position, target, up, fov, near: 0.1, far: 50.0 }, width, height: 1 }

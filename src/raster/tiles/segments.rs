@@ -96,7 +96,7 @@ fn put<L: Wide>(l: L, tiles: &mut Tiles, t: &mut Ready, ends: [Vertex; 2]) -> bo
     let mut shows = false;
     for strip in first..past {
         let right = (4 * (strip - first)) as f32;
-        if lesser(right * t.along[0] + most, t.nearest[0]) <= tiles.block_far[strip] {
+        if lesser(right * t.along[0] + most, t.nearest[0]) < tiles.block_far[strip] {
             continue;
         }
         let left = 32 * strip as i32;

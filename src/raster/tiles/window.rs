@@ -106,9 +106,10 @@ pub(super) fn merge<L: Wide, const WHOLE: bool>(
         l.mul(l.add(column, l.splat(place.right)), l.splat(t.along[lane])),
         l.mul(l.add(row, l.splat(below)), l.splat(t.down[lane])),
     );
-    // Its nearest depth in each tile: where that is behind all, nothing shows.
+    // Its nearest depth in each tile: where that is behind all, nothing shows. Where it is as deep, ids decide
+    // what the image shows.
     let high = l.min(l.add(moved, l.splat(t.near[lane])), l.splat(t.nearest[lane]));
-    let mut hit = l.gt(high, far);
+    let mut hit = l.ge(high, far);
     if !WHOLE {
         hit = l.without(hit, l.eq_i(covered, l.splat_i(0)));
     }
@@ -190,7 +191,7 @@ impl<const SIZE: u8> Work for Several<'_, SIZE> {
                 let high = l.min(moved, l.splat(t.nearest[lane]));
                 let at = row * tiles.stride() + first + begin as usize;
                 let shows =
-                    l.both(l.first((to - begin) as usize), l.gt(high, l.load(&tiles.block_far[at..])));
+                    l.both(l.first((to - begin) as usize), l.ge(high, l.load(&tiles.block_far[at..])));
                 let mut bits = l.bits(shows);
                 while bits != 0 {
                     let s = begin + bits.trailing_zeros() as i32;
