@@ -119,6 +119,18 @@ fn images_of_awkward_sizes_equal_the_reference() {
 }
 
 #[test]
+fn what_is_as_far_as_the_farthest_pixel_may_show() {
+    // Facing walls over the whole image, at one depth, in the order of falling ids: when the last comes, all
+    // that a block holds is as near as it is.
+    let wall = [Vec3::new(-90.0, -90.0, -4.0), Vec3::new(90.0, -90.0, -4.0), Vec3::new(0.0, 90.0, -4.0)];
+    let scene = soup(&[wall; 6]);
+    let view = View { width: 300, ..straight_view(100, 0.1, 30.0) };
+    let prims: Vec<PrimId> = (0..6).rev().map(PrimId).collect();
+    let image = assert_equal(&scene, &view, &prims, BOTH_SIDES, "walls");
+    assert!(image.item.iter().all(|&item| item == 0), "the least id of equally near ones");
+}
+
+#[test]
 fn an_image_made_anew_is_empty_outside_its_window() {
     let dice = &mut Dice::new(5);
     let mut covered = 0;
