@@ -136,13 +136,13 @@ fn questions_are_heard_whole() {
         by_groups(&scene, &view, &mut dice, boxes, &mut counted);
     }
     let Counted { visible, hidden, closer, blocks } = counted;
-    assert!(visible > 500 && hidden > 500 && closer > 100 && blocks > 20, "{counted:?}");
+    assert!(visible > 500 && hidden > 500 && closer > 100 && blocks > 10, "{counted:?}");
 }
 
 #[test]
 fn questions_of_flatland_are_heard_whole() {
     let (mut dice, mut counted) = (Dice::new(82), Counted::default());
-    for round in 0..ROUNDS {
+    for round in 0..2 * ROUNDS {
         let (width, _) = flat_size(round);
         let scene = flat_mixed(&mut dice, 100, 1.0);
         let view = flat_view(&mut dice, width, 1.0);
@@ -179,14 +179,15 @@ fn what_is_drawn_already_is_left_out() {
     }
 }
 
-/// Of two faces at one place, square to the line of sight, the one with the lower id shows, though it is drawn
-/// last: whoever lists what shows is to list both.
+/// Of two faces at one place, square to the line of sight, the one with the lower id shows, though it is
+/// drawn last: whoever lists what shows is to list both.
 #[test]
 fn what_is_as_deep_as_what_is_drawn_may_show() {
     let view = straight_view(64, 0.05, 50.0);
     for half in [0.3, 2.0, 30.0] {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-        let points = [corners, corners].concat().iter().map(|[x, y]| Vec3::new(x * half, y * half, -4.0)).collect();
+        let points =
+            [corners, corners].concat().iter().map(|[x, y]| Vec3::new(x * half, y * half, -4.0)).collect();
         let prims = vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]];
         let scene: Scene<Solid> = scene_of(points, prims);
         let groups: [&[PrimId]; 2] = [&[PrimId(2), PrimId(3)], &[PrimId(0), PrimId(1)]];

@@ -106,8 +106,8 @@ pub(super) fn merge<L: Wide, const WHOLE: bool>(
         l.mul(l.add(column, l.splat(place.right)), l.splat(t.along[lane])),
         l.mul(l.add(row, l.splat(below)), l.splat(t.down[lane])),
     );
-    // Its nearest depth in each tile: where that is behind all, nothing shows. Where it is as deep, ids decide
-    // what the image shows.
+    // Its nearest depth in each tile: where that is behind all, nothing shows. Where it is as deep, ids
+    // decide what the image shows.
     let high = l.min(l.add(moved, l.splat(t.near[lane])), l.splat(t.nearest[lane]));
     let mut hit = l.ge(high, far);
     if !WHOLE {
