@@ -209,6 +209,8 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N,
                 [Some(Stage::Tile), Some(Stage::BehindTile), Some(Stage::CoversTile)]
             }
             0 if self.close == Some(Stage::Plane) => [None, Some(Stage::Pixel), None],
+            // Depths that were just worked out.
+            _ if self.close == Some(Stage::Resolve) => [None, Some(Stage::Pixel), None],
             // The line is reached already.
             _ => [None; 3],
         };
@@ -239,6 +241,7 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N,
     fn refreshes(&mut self, cell: PyramidCell) {
         if cell.level == PyramidCell::TILE {
             self.reaches(Stage::Resolve);
+            self.close = Some(Stage::Resolve);
         }
         // Whoever is asked for: a film brings up to date what the run did.
         self.watch.note(|| DepthNote::Refreshed(cell).into());
