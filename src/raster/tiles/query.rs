@@ -350,15 +350,21 @@ impl<H: Hears> Work for Ask<'_, H> {
     #[inline(always)]
     fn run<L: Wide>(self, l: L) -> bool {
         let Self { tiles, question: Question { pixels: p, nearest, boxes, exact }, hears } = self;
-        let [x0, x1, y0, y1] = [p.x0, p.x1, p.y0, p.y1].map(|v| v as i32);
+        let (x0, x1, y0, y1) = (p.x0 as i32, p.x1 as i32, p.y0 as i32, p.y1 as i32);
         let asked = &Asked { id: 0, x0, x1, y0, y1, nearest, crosses_near: false };
         // What covers no pixel's center cannot show.
         if asked.is_empty() {
             return true;
         }
-        let span = |bounds| Span::new(&tiles.look, &tiles.camera.eye, bounds, nearest);
+        let (look, eye) = (&tiles.look, &tiles.camera.eye);
         let spans = match boxes {
-            Some([own, whole]) => Spans { own: span(own), whole: (whole != own).then(|| span(whole)) },
+            Some([own, whole]) if whole == own => {
+                Spans { own: Span::new(look, eye, own, nearest), whole: None }
+            }
+            Some([own, whole]) => {
+                let whole = Some(Span::new(look, eye, whole, nearest));
+                Spans { own: Span::new(look, eye, own, nearest), whole }
+            }
             None => Spans { own: Span::everywhere(nearest), whole: None },
         };
         let (open, exact) = (&mut Vec::new(), exact && tiles.keeps);
@@ -441,9 +447,19 @@ impl<H: Hears> Work for Fine<'_, H> {
                 self.tell_blocks(l, row, told, right.min(begin + L::N));
             }
         }
-        // 4. First the pixels that nothing covers, then exact depths.
-        (0..self.open.len()).all(|k| !self.shows_bare(l, self.open[k]))
-            && (0..self.open.len()).all(|k| !self.shows(l, self.open[k]))
+        // 4. First the pixels that nothing covers, then exact depths. (Closures would not be compiled for the
+        // instruction set.)
+        for k in 0..self.open.len() {
+            if self.shows_bare(l, self.open[k]) {
+                return false;
+            }
+        }
+        for k in 0..self.open.len() {
+            if self.shows(l, self.open[k]) {
+                return false;
+            }
+        }
+        true
     }
 }
 
