@@ -148,6 +148,26 @@ fn every_image_of_a_flight_with_jumps_is_the_plain_one() {
     flights::<Solid>(|c| c);
 }
 
+/// What begins behind every tile that it covers is neither drawn nor listed, and the image is the same.
+#[test]
+fn what_tiles_hide_is_not_listed() {
+    let scene = soup::<Solid>(&mut Pcg32::new(6, 9), 600, |c| c);
+    let cubes = Cubes { leaf_primitives: 40, ..Cubes::default() };
+    let mut listed = [0; 2];
+    for (primitive_test, listed) in [true, false].into_iter().zip(&mut listed) {
+        let params = Params { primitive_test, cubes, ..Params::default() };
+        let index = built::<Solid>(&scene, &params);
+        let mut tried = Tried::new(&index, &scene, &params);
+        for view in crate::scene::random_views(&scene, 6, 3) {
+            let view = View { width: 80, height: 60, ..view };
+            let list = tried.cull(&view, &mut Unobserved);
+            assert_eq!(render(&scene, &view, &list.prims), render(&scene, &view, scene.live()));
+            *listed += list.prims.len();
+        }
+    }
+    assert!(listed[0] * 10 < listed[1] * 8, "listed with the test and without: {listed:?}");
+}
+
 /// The answer for a box over some pixels of Figure 1 whose nearest point is at a depth, with the notes before
 /// it.
 fn answered(pixels: PixelRect, depth: f32) -> (Vec<Evidence<Solid>>, String) {
