@@ -11,6 +11,7 @@ pub(crate) mod depth;
 pub(crate) mod hierarchical_z;
 pub(crate) mod large_occluders;
 pub(crate) mod layered_projection;
+pub(crate) mod occlusion_maps;
 pub(crate) mod parallel_hierarchical_z;
 
 pub use hierarchical_z::parts as hierarchical_z_parts;
@@ -37,6 +38,7 @@ methods! {
     hierarchical_z::HierarchicalZ,
     parallel_hierarchical_z::ParallelHierarchicalZ,
     layered_projection::LayeredProjection,
+    occlusion_maps::OcclusionMaps,
 }
 
 /// Key of the method that a new session begins with: the simplest one that leaves something out.

@@ -30,6 +30,6 @@ pub use overlap::{
     triangle_meets_tetrahedron,
 };
 pub use predicate::{insphere, orient2d, orient3d};
-pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, nearest_depth, project_box};
+pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, farthest_depth, nearest_depth, project_box};
 pub use space::{Flat, Solid, Space, Vector, faces_away};
 pub use walk::WALKING_STEP_M;

@@ -141,6 +141,15 @@ pub fn nearest_depth<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, ne
     depth_of(nearest - reach(projection, bounds) * DEPTH_SLACK, near)
 }
 
+/// The depth (`1/w`) that nothing in a box is farther than, as far as it lies beyond the near plane.
+#[inline]
+pub fn farthest_depth<V: Vector>(projection: &Projection<V>, bounds: &Aabb<V>, near: f32) -> f32 {
+    let clips = corner_clips(projection, bounds);
+    let [_, farthest] = extremes(&clips[V::AXES - 1]);
+    // A fragment's depth lies between those of its vertices, so the same slack bounds it on this side.
+    depth_of(farthest + reach(projection, bounds) * DEPTH_SLACK, near)
+}
+
 /// `1/w` rounded to f32 as the rasterizer rounds it: rounding keeps the order, and what lies nearer than
 /// `near` is cut off.
 #[inline]

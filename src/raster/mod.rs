@@ -19,6 +19,7 @@ mod fill;
 mod frame;
 mod image;
 mod line;
+mod opacity;
 mod pyramid;
 pub mod reference;
 mod setup;
@@ -32,6 +33,7 @@ mod through;
 mod tiles;
 mod vertex;
 
+pub use opacity::Opacity;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use setup::DEPTH_SLACK;
 pub use shade::{DepthScale, shade, shade_depth, shade_with};

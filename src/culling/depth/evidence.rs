@@ -286,12 +286,12 @@ impl<S: Faces> DepthNote<S> {
             Self::Rasterized(n) => {
                 outline(scene, n.prim, to);
                 if let Some(r) = &n.tile {
-                    behind(view, r.cell.pixels(view.width, view.height), r.nearest, r.held, to);
+                    sight_lines(view, r.cell.pixels(view.width, view.height), r.nearest, r.held, to);
                 }
             }
             Self::Read(_, n) => {
                 let size = (view.width, view.height);
-                behind(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
+                sight_lines(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
             }
             // A tile has no place in the world; the pictures of the pyramid show it.
             Self::Refreshed(_) | Self::Drawn(..) => {}
@@ -412,22 +412,31 @@ impl<S: Faces> Note<S> for DepthNote<S> {
     }
 }
 
-/// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
-/// queried begins.
-fn behind<S: Faces>(view: &View<S>, pixels: PixelRect, nearest: f32, held: f32, to: &mut Drawing<S::Vector>) {
+/// The point of the world at a corner of a pixel, so far along the line of sight; `w`: view depth, world
+/// units.
+pub fn place_in_view<S: Faces>(view: &View<S>, [x, y]: [u32; 2], w: f32) -> S::Vector {
     let projection = view.projection();
     let image_axes = S::Vector::AXES - 1;
-    let at = |x: u32, y: u32, w: f32| {
-        // The rows are orthogonal; dividing by the squared length undoes their scale.
-        let image = [x as f32 / view.width as f32 * 2.0 - 1.0, 1.0 - y as f32 / view.height as f32 * 2.0];
-        let forward = projection.rows[image_axes];
-        let ray = (0..image_axes).fold(forward, |r, a| {
-            let row = projection.rows[a];
-            r + row * (image[a] / row.dot(row))
-        });
-        projection.eye + ray * w
-    };
-    let corners: &[(u32, u32)] = if image_axes == 1 {
+    // The rows are orthogonal; dividing by the squared length undoes their scale.
+    let image = [x as f32 / view.width as f32 * 2.0 - 1.0, 1.0 - y as f32 / view.height as f32 * 2.0];
+    let ray = (0..image_axes).fold(projection.rows[image_axes], |r, a| {
+        let row = projection.rows[a];
+        r + row * (image[a] / row.dot(row))
+    });
+    projection.eye + ray * w
+}
+
+/// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
+/// queried begins.
+pub fn sight_lines<S: Faces>(
+    view: &View<S>,
+    pixels: PixelRect,
+    nearest: f32,
+    held: f32,
+    to: &mut Drawing<S::Vector>,
+) {
+    let at = |x: u32, y: u32, w: f32| place_in_view(view, [x, y], w);
+    let corners: &[(u32, u32)] = if S::CORNERS == 2 {
         &[(pixels.x0, 0), (pixels.x1, 0)]
     } else {
         &[(pixels.x0, pixels.y0), (pixels.x1, pixels.y0), (pixels.x1, pixels.y1), (pixels.x0, pixels.y1)]
@@ -457,7 +466,7 @@ impl<S: Faces> Answered<S> {
             to.outline(Layer::Emphasis, Role::Current, Subject::Node(self.node), face);
         }
         if let Some(d) = self.answer.decisive {
-            behind(view, d.cell.pixels(view.width, view.height), d.nearest, d.held, to);
+            sight_lines(view, d.cell.pixels(view.width, view.height), d.nearest, d.held, to);
         }
     }
     /// `far`: the depth of an empty pixel.

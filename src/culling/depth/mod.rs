@@ -19,7 +19,10 @@ mod tests;
 mod tiled;
 
 pub use buffer::{Buffer, Step};
-pub use evidence::{Answered, Asking, DepthNote, Ground, QueryReporter, Rasterized, Stage};
+pub use evidence::{
+    Answered, Asking, DepthNote, Ground, QueryReporter, Rasterized, Stage, place_in_view, sight_lines,
+};
 pub use faces::{Faces, footprint, project_sphere};
+pub use levels::TileLevels;
 pub use query::{Answer, At, Decisive, Nobody, Query, hides};
 pub use tiled::{TileStep, Tiled, deciding};

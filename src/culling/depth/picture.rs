@@ -5,12 +5,11 @@
 
 use glam::{Vec2, vec2};
 
-use super::evidence::{Answered, DepthNote, comparison, place, units};
+use super::evidence::{Answered, DepthNote, comparison, place};
 use super::faces::Faces;
 pub use super::levels::Levels;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
 use crate::geometry::{NodeId, View};
-use crate::method::evidence::short;
 use crate::raster::{DepthScale, Outcome, PyramidCell, Read, shade_depth};
 
 /// Width of a picture in points.
@@ -21,11 +20,22 @@ const VALUE_ROOM_PT: f32 = 15.0;
 /// Levels with more columns or rows are left out: their cells are far smaller than a point.
 const MOST_COLUMNS: u32 = 1024;
 
+/// A cell that was read, as it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lit {
+    /// Which.
+    pub cell: PyramidCell,
+    /// What followed.
+    pub role: Role,
+    /// Where it is, and what was compared, in words.
+    pub text: String,
+}
+
 /// What a query has read so far.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reads {
     /// In order.
-    pub all: Vec<Read>,
+    pub all: Vec<Lit>,
     /// The cell that the sentence of the step names: the one read last, or of an answer the one that decided.
     pub named: Option<PyramidCell>,
 }
@@ -40,11 +50,12 @@ impl Reads {
 /// The reads of the query that the last of some notes belongs to. `notes`: last first; `None` for what is no
 /// note about depth.
 pub fn last_reads<'a, S: Faces>(notes: impl Iterator<Item = Option<&'a DepthNote<S>>>) -> Reads {
-    let (mut reads, mut whose, mut decisive): (Vec<Read>, _, _) = (Vec::new(), None, None);
+    let (mut reads, mut whose, mut decisive): (Vec<Lit>, _, _) = (Vec::new(), None, None);
     for note in notes {
         match note {
             Some(DepthNote::Read(node, r)) if whose.is_none_or(|n| n == *node) => {
-                reads.push(*r);
+                let text = format!("{}: {}", place(r.cell), comparison(r));
+                reads.push(Lit { cell: r.cell, role: role_of(r), text });
                 whose = Some(*node);
             }
             // Made for the read that follows it, so it is part of the same query.
@@ -71,8 +82,8 @@ struct Frame {
 
 impl Frame {
     /// A level whose image is `size` large; cells at the far edges may be cut.
-    fn new<S: Faces>(level: u8, at: Vec2, size: Vec2, view: &View<S>) -> Self {
-        let cell = size * sides(level) / vec2(view.width as f32, view.height as f32);
+    fn new<S: Faces>(of: &impl Levels, level: u8, at: Vec2, size: Vec2, view: &View<S>) -> Self {
+        let cell = size * sides(of, level) / vec2(view.width as f32, view.height as f32);
         // A line of pixels has one row on every level.
         let cell = if view.height == 1 { vec2(cell.x, size.y) } else { cell };
         Self { level, at, cell, end: at + size }
@@ -89,8 +100,8 @@ impl Frame {
 }
 
 /// Sides of the cells of a level, pixels.
-fn sides(level: u8) -> Vec2 {
-    Vec2::from(PyramidCell::shifts(level).map(|shift| (1u32 << shift) as f32))
+fn sides(of: &impl Levels, level: u8) -> Vec2 {
+    Vec2::from(of.shifts(level).map(|shift| (1u32 << shift) as f32))
 }
 
 /// The levels that are shown, and where; after them the place of the layers that are begun, if there are any.
@@ -100,7 +111,7 @@ fn frames<S: Faces>(of: &impl Levels, view: &View<S>) -> (Vec<Frame>, Option<Fra
     if S::CORNERS == 2 {
         // Strips of one width below each other: a cell stands right below those that it stands for.
         let frame = |k: usize, level: u8| {
-            Frame::new(level, vec2(0.0, top + k as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
+            Frame::new(of, level, vec2(0.0, top + k as f32 * STRIP_PITCH_PT), vec2(WIDTH_PT, STRIP_PT), view)
         };
         let frames: Vec<Frame> = all.iter().enumerate().map(|(k, &level)| frame(k, level)).collect();
         let begun = (more > 0).then(|| frame(all.len(), 0));
@@ -116,9 +127,9 @@ fn frames<S: Faces>(of: &impl Levels, view: &View<S>) -> (Vec<Frame>, Option<Fra
     let width = (WIDTH_PT - gap.x * (in_row - 1) as f32) / in_row as f32;
     let size = vec2(width, width * view.height as f32 / view.width.max(1) as f32);
     let at = |k: usize| vec2(0.0, top) + (size + gap) * vec2((k % in_row) as f32, (k / in_row) as f32);
-    let frame = |(k, &level): (usize, &u8)| Frame::new(level, at(k), size, view);
+    let frame = |(k, &level): (usize, &u8)| Frame::new(of, level, at(k), size, view);
     let frames = shown.iter().enumerate().map(frame).collect();
-    let begun = (more > 0).then(|| Frame::new(0, at(shown.len()), size, view));
+    let begun = (more > 0).then(|| Frame::new(of, 0, at(shown.len()), size, view));
     (frames, begun, count.div_ceil(in_row) as f32 * (size.y + gap.y))
 }
 
@@ -134,14 +145,10 @@ fn image<S: Faces>(
     [x0, x1, y0, y1]: [u32; 4],
     scale: DepthScale,
 ) -> Pixels {
-    let cells = (y0..y1).flat_map(|y| (x0..x1).map(move |x| PyramidCell { level, x: x as u16, y: y as u16 }));
-    let depths: Vec<f32> = cells.map(|c| of.farthest(c)).collect();
-    Pixels {
-        width: x1 - x0,
-        height: y1 - y0,
-        // On the scale of the whole image: one gray is one depth on every level.
-        rgba: shade_depth(&depths, of.depths(), 1.0 / view.eye.far, scale).into(),
-    }
+    let cell = |x: u32, y: u32| PyramidCell { level, x: x as u16, y: y as u16 };
+    let cells: Vec<PyramidCell> = (y0..y1).flat_map(|y| (x0..x1).map(move |x| cell(x, y))).collect();
+    let rgba = of.shades(&cells, 1.0 / view.eye.far, scale).into();
+    Pixels { width: x1 - x0, height: y1 - y0, rgba }
 }
 
 /// The frame with the level's name and its image, and values where there is room.
@@ -157,7 +164,7 @@ fn draw_level<S: Faces>(
     to.text(Layer::Labels, Role::Ink, frame.at - vec2(0.0, 3.0), LABEL_PT, Anchor::Start, title);
     // Whole cells first, then those that the image's edge cuts.
     // The pixels of an image mark are all of one size, which cut cells are not: they have marks of their own.
-    let [across, down] = PyramidCell::shifts(frame.level);
+    let [across, down] = of.shifts(frame.level);
     let split = |cells: u32, pixels: u32, shift: u32| {
         if pixels >> shift == cells { vec![[0, cells]] } else { vec![[0, cells - 1], [cells - 1, cells]] }
     };
@@ -182,7 +189,7 @@ fn draw_level<S: Faces>(
         for x in 0..columns as u16 {
             let cell = PyramidCell { level: frame.level, x, y };
             // No number where it is stale: it would be read as the truth.
-            let text = if of.is_stale(cell) { "stale".into() } else { value(of.farthest(cell), view) };
+            let text = if of.is_stale(cell) { "stale".into() } else { of.value(cell, 1.0 / view.eye.far) };
             let width = metrics::width_pt(&text, Font::Regular, LABEL_PT) + 3.0;
             // All cells of a level are of one size: as a rule all have room for their values or none has.
             if frame.cell.x < width.max(VALUE_ROOM_PT) || frame.cell.y < LABEL_PT + 3.0 {
@@ -199,7 +206,7 @@ fn stale(of: &impl Levels, frame: &Frame, to: &mut Drawing) {
     // Below the level of tiles all cells of a tile are alike.
     let level = of.stale_level(frame.level);
     let [columns, rows] = of.size(level);
-    let tile = Frame { level, cell: frame.cell * sides(level) / sides(frame.level), ..*frame };
+    let tile = Frame { level, cell: frame.cell * sides(of, level) / sides(of, frame.level), ..*frame };
     let tile = if frame.end.y - frame.at.y <= STRIP_PT {
         Frame { cell: vec2(tile.cell.x, frame.cell.y), ..tile }
     } else {
@@ -239,11 +246,6 @@ fn stale(of: &impl Levels, frame: &Frame, to: &mut Drawing) {
     }
 }
 
-/// A depth as it stands in a cell: a view depth, or nothing where nothing was drawn.
-fn value<S: Faces>(depth: f32, view: &View<S>) -> String {
-    if depth <= 1.0 / view.eye.far { "empty".into() } else { short(units(depth)) }
-}
-
 /// Text on a piece of paper, about its middle.
 fn plate(to: &mut Drawing, middle: Vec2, text: &str) {
     // The text must be legible over any gray and any hatch.
@@ -276,7 +278,7 @@ fn light(reads: &Reads, frames: &[Frame], to: &mut Drawing) {
         let Some(frame) = frames.iter().find(|f| f.level == read.cell.level) else { continue };
         let [a, b] = frame.rect(read.cell);
         let corners = [a, vec2(b.x, a.y), b, vec2(a.x, b.y)];
-        to.outline(Layer::Emphasis, role_of(read), Subject::None, corners);
+        to.outline(Layer::Emphasis, read.role, Subject::None, corners);
         if Some(number) == reads.named() {
             to.outline(
                 Layer::Emphasis,
@@ -287,8 +289,8 @@ fn light(reads: &Reads, frames: &[Frame], to: &mut Drawing) {
             );
         }
         // A cell may be read again, for another part of the image; the first time writes all its numbers.
-        let same = |r: &&(usize, &Read)| r.1.cell == read.cell;
-        let all: Vec<(usize, &Read)> = reads.all.iter().enumerate().collect();
+        let same = |r: &&(usize, &Lit)| r.1.cell == read.cell;
+        let all: Vec<(usize, &Lit)> = reads.all.iter().enumerate().collect();
         let numbers: Vec<String> = all.iter().filter(same).map(|(n, _)| (n + 1).to_string()).collect();
         let text = format!("{}.", numbers.join(", "));
         let room =
@@ -311,7 +313,7 @@ fn comparisons(reads: &Reads, top: f32, to: &mut Drawing) -> f32 {
         None => (first..reads.len()).collect(),
     };
     for (line, (number, read)) in shown.into_iter().map(|n| (n, &reads[n])).enumerate() {
-        let text = format!("{}. {}: {}", number + 1, place(read.cell), comparison(read));
+        let text = format!("{}. {}", number + 1, read.text);
         to.text(
             Layer::Labels,
             if Some(number) == named { Role::Ink } else { Role::Faint },
@@ -365,7 +367,8 @@ pub fn levels<S: Faces>(of: &impl Levels, view: &View<S>, reads: &Reads, scale: 
         to.text(Layer::Labels, Role::Faint, vec2(0.0, bottom + 8.0), 8.0, Anchor::Start, text);
         bottom += 12.0;
     }
-    finished(to, bottom, "The levels of the z-pyramid")
+    let title = format!("The levels of the {}", of.name());
+    finished(to, bottom, &title)
 }
 
 /// How the levels are stacked on paper: the image's unit square at each of them.
@@ -392,8 +395,7 @@ impl Stack {
     fn rows(
         &self,
         k: usize,
-        level: u8,
-        height: u32,
+        (down, height): (u32, u32),
         [columns, rows]: [u32; 2],
         all: &Pixels,
         to: &mut Drawing,
@@ -402,7 +404,7 @@ impl Stack {
         // into several where there are few.
         let thin = rows.max((self.depth as u32).min(64));
         for line in 0..thin {
-            let row = ((line * height / thin) >> PyramidCell::shifts(level)[1]).min(rows - 1) as usize;
+            let row = ((line * height / thin) >> down).min(rows - 1) as usize;
             let (y0, y1) = (line as f32 / thin as f32, (line + 1) as f32 / thin as f32);
             let rgba: Vec<u8> =
                 all.rgba[row * columns as usize * 4..(row + 1) * columns as usize * 4].to_vec();
@@ -429,13 +431,13 @@ pub fn stacked<S: Faces>(of: &impl Levels, view: &View<S>, reads: &Reads, scale:
         let pixels = image(of, view, level, [0, columns, 0, rows], scale);
         let corners = stack.quad(k, Vec2::ZERO, Vec2::ONE);
         to.push(Layer::Scene, Role::Paper, Subject::None, Mark::Area(corners.to_vec()));
-        stack.rows(k, level, view.height, [columns, rows], &pixels, &mut to);
+        stack.rows(k, (of.shifts(level)[1], view.height), [columns, rows], &pixels, &mut to);
         to.outline(Layer::Scene, Role::Faint, Subject::None, corners);
-        let side = sides(level) / vec2(view.width as f32, view.height as f32);
+        let side = sides(of, level) / vec2(view.width as f32, view.height as f32);
         for (number, read) in reads.all.iter().enumerate().filter(|(_, r)| r.cell.level == level) {
             let a = side * vec2(read.cell.x.into(), read.cell.y.into());
             let lit = stack.quad(k, a, (a + side).min(Vec2::ONE));
-            to.outline(Layer::Emphasis, role_of(read), Subject::None, lit);
+            to.outline(Layer::Emphasis, read.role, Subject::None, lit);
             if Some(number) == reads.named() {
                 let middle = (lit[0] + lit[2]) * 0.5;
                 let around = lit.map(|c| c + (c - middle).signum() * 1.5);
@@ -447,7 +449,8 @@ pub fn stacked<S: Faces>(of: &impl Levels, view: &View<S>, reads: &Reads, scale:
         to.text(Layer::Labels, Role::Ink, name, LABEL_PT, Anchor::Start, text);
     }
     let bottom = comparisons(reads, top + depth + 2.0, &mut to);
-    finished(to, bottom, "The z-pyramid over the image")
+    let title = format!("The {} over the image", of.name());
+    finished(to, bottom, &title)
 }
 
 /// What the picture of the visible list shows: nodes with what became of them, in order.
@@ -523,5 +526,5 @@ pub fn probe<S: Faces>(of: &impl Levels, view: &View<S>, at: Vec2) -> Option<Str
     let cell = frames(of, view).0.iter().find_map(|f| f.cell_under(at))?;
     let stale =
         if of.is_stale(cell) { " as far as it is known; drawn into since it was last read" } else { "" };
-    Some(format!("{}: farthest {}{stale}", place(cell), value(of.farthest(cell), view)))
+    Some(format!("{}{stale}", of.words(cell, 1.0 / view.eye.far)))
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::buffer::Projected;
 use super::faces::Faces;
-use crate::geometry::{NodeId, PrimId, View};
+use crate::geometry::{NodeId, PixelRect, PrimId, View};
 use crate::raster::{
     Answer, Boxes, Clusters, Fate, Hears, How, Isa, Options, Outcome, PyramidCell, Question, Read, Tiles,
 };
@@ -57,6 +57,11 @@ impl<S: Faces> Tiled<S> {
         self.drawn.clear();
         self.drawn.resize(prims, false);
     }
+    /// Empties them for another view of the same.
+    pub fn empty(&mut self, view: &View<S>) {
+        let (clusters, prims) = (self.clusters.clone(), self.drawn.len());
+        self.clear(view, &clusters, prims);
+    }
     /// The view they are for, with its projection and planes, once there is one.
     pub fn projected(&self) -> Option<&Projected<S>> {
         self.projected.as_ref()
@@ -98,6 +103,15 @@ impl<S: Faces> Tiled<S> {
     /// [`TileStep::Refresh`] of the cells changes that it hears of.
     pub fn hides<H: Hears>(&mut self, question: Question, hears: &mut H) -> bool {
         self.tiles.hides(question, Isa::best(), hears)
+    }
+    /// Whether what lies in these pixels, no nearer than a depth, is behind all that covers any of them. What
+    /// is read and what changes goes to `hears`, as for [`Tiled::hides`].
+    pub fn is_behind<H: Hears>(&mut self, pixels: PixelRect, nearest: f32, hears: &mut H) -> bool {
+        self.tiles.is_behind(pixels, nearest, Isa::best(), hears)
+    }
+    /// The depths of all pixels, row by row. What is known of tiles becomes exact.
+    pub fn depths(&mut self) -> Vec<f32> {
+        self.tiles.depths(Isa::best())
     }
     /// Whether each of many boxes is hidden, by planes and exactly; `None` if it is out of view.
     pub fn hides_all(&mut self, boxes: &Boxes) -> Vec<Option<bool>> {

@@ -3,6 +3,7 @@
 mod equal;
 mod limits;
 pub(crate) mod moved_edge;
+mod opacity;
 mod pyramid;
 mod rules;
 mod tile_answers;

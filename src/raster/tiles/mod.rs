@@ -25,6 +25,7 @@
 
 mod bins;
 mod clusters;
+mod covered;
 mod edges;
 mod heard;
 mod look;
@@ -42,12 +43,13 @@ pub use heard::{Hears, Outcome, Read};
 pub use query::{Answer, How, Question};
 
 use self::bins::Bins;
+use self::covered::Behind;
 use self::look::Look;
 use self::setup::Scratch;
 use super::PyramidCell;
 use super::simd::Isa;
 use super::vertex::Camera;
-use crate::geometry::{PrimId, Space, View};
+use crate::geometry::{PixelRect, PrimId, Space, View};
 
 /// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,6 +208,12 @@ impl Tiles {
     pub fn hides<H: Hears>(&mut self, question: Question, isa: Isa, hears: &mut H) -> bool {
         query::hides(self, question, isa, hears)
     }
+    /// Whether what lies in these pixels, no nearer than a depth, is behind all that covers any of them; of
+    /// those that nothing covers nothing is said. Exact, which needs what [`Tiles::clear`] was told to keep.
+    /// What is read goes to `hears`, as for [`Tiles::hides`].
+    pub fn is_behind<H: Hears>(&mut self, pixels: PixelRect, nearest: f32, isa: Isa, hears: &mut H) -> bool {
+        wide::run(isa, Behind { tiles: self, pixels, nearest, hears })
+    }
     /// Brings a block up to date from its tiles, or a tile by exact depths, which were kept for it.
     pub fn refresh(&mut self, cell: PyramidCell, isa: Isa) {
         query::refresh_cell(self, cell, isa);
@@ -233,6 +241,10 @@ impl Tiles {
     pub fn begun(&self, cell: PyramidCell) -> (u32, f32) {
         let (line, k) = (&self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)], cell.x % 4);
         (line.mask[usize::from(k)], line.near[usize::from(k)])
+    }
+    /// The pixels of a tile that anything covers, bit `8 y + x`.
+    pub fn covered_pixels(&self, cell: PyramidCell) -> u32 {
+        self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)].ever[usize::from(cell.x % 4)]
     }
     /// The farthest depth that any tile in the image holds.
     pub fn farthest(&self) -> f32 {

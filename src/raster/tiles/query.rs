@@ -556,12 +556,12 @@ fn cell_at(level: u8, [x, y]: [usize; 2]) -> PyramidCell {
     PyramidCell { level, x: x as u16, y: y as u16 }
 }
 /// The tile at its first pixel.
-fn tile_at([x, y]: [i32; 2]) -> PyramidCell {
+pub(super) fn tile_at([x, y]: [i32; 2]) -> PyramidCell {
     cell_at(PyramidCell::TILE, [x as usize / 8, y as usize / 4])
 }
 /// Works out the depths of a tile's pixels.
 #[inline(always)]
-fn look_closer<L: Wide>(l: L, tiles: &mut Tiles, block: usize, tile: usize) {
+pub(super) fn look_closer<L: Wide>(l: L, tiles: &mut Tiles, block: usize, tile: usize) {
     if tiles.resolved.at[block][tile] == Resolved::NOT {
         cover(tiles, block, tile);
     }
@@ -655,7 +655,7 @@ impl Spans {
 
 /// The first pixel of a tile of a block.
 #[inline(always)]
-fn first_pixel(tiles: &Tiles, block: usize, tile: usize) -> [i32; 2] {
+pub(super) fn first_pixel(tiles: &Tiles, block: usize, tile: usize) -> [i32; 2] {
     let (row, strip) = (block / tiles.strips, block % tiles.strips);
     [(32 * strip + 8 * (tile & 3)) as i32, (16 * row + 4 * (tile >> 2)) as i32]
 }

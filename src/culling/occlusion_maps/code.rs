@@ -1,0 +1,238 @@
+//! The pseudocode of the method, and where it departs from the paper.
+
+use super::{DepthKind, Params};
+use crate::method::{CodeLine, Departure, When};
+
+/// The pseudocode: Section 3 as procedures, and Figure 8.
+pub(super) const CODE: &[CodeLine] = &[
+    CodeLine::new("Frame:1", "Frame(eye)"),
+    CodeLine::departing(
+        "Frame:2",
+        "  if culling did not pay lately: draw what is in view, try again later",
+        "occlusion culling should be turned off (7)",
+    ),
+    CodeLine::new("Frame:3", "  C := the leaves of the occluder database in the frustum"),
+    CodeLine::new("Frame:4", "  sort C by distance, or as it is chosen"),
+    CodeLine::new("Frame:5", "  for each leaf B of C, in this order"),
+    CodeLine::new("Frame:6", "    if B is beyond the distance limit: next B"),
+    CodeLine::departing(
+        "Frame:7",
+        "    if the polygons of occluders with those of B exceed L: stop",
+        "until their combined polygon count exceeds L (5.3.2)",
+    ),
+    CodeLine::new("Frame:8", "    B is an occluder"),
+    CodeLine::new("Frame:9", "  Z := the nearest depth of the leaf that ended this, or the far plane"),
+    CodeLine::new("Frame:10", "  for each occluder B"),
+    CodeLine::new("Frame:11", "    draw B in white"),
+    CodeLine::new("Frame:12", "    write B's farthest depth to the entries that its rectangle touches"),
+    CodeLine::new("Frame:13", "  average 2×2 pixels, again and again, down to a map of 4×4"),
+    CodeLine::new("Frame:14", "  Cull(root)"),
+    CodeLine::departing(
+        "Frame:15",
+        "  adapt L and the distance limit by what was culled and drawn",
+        "by what was culled and the frame rate (6.2)",
+    ),
+    CodeLine::new("Cull:1", "Cull(node T)"),
+    CodeLine::new("Cull:2", "  if T lies outside the frustum: return"),
+    CodeLine::departing("Cull:3", "  if T holds an occluder: it is in no need of a test", "it is tested"),
+    CodeLine::new("Cull:4", "  R := the rectangle of T's box, z := its nearest depth"),
+    CodeLine::new("Cull:5", "  if T reaches the near plane: it may be seen"),
+    CodeLine::new("Cull:6", "  if R covers no pixel: T is culled, return"),
+    CodeLine::new("Cull:7", "  if z is not beyond the plane Z: T may be seen"),
+    CodeLine::new("Cull:8", "  if some entry that R touches is as far as z: T may be seen"),
+    CodeLine::new("Cull:9", "  if some sample under R that is covered is as far as z: T may be seen"),
+    CodeLine::new("Cull:10", "  if OverlapTest(R): T is culled, return"),
+    CodeLine::new("Cull:11", "  if T is a leaf: Draw(T)"),
+    CodeLine::new("Cull:12", "  else for each child T' of T: Cull(T')"),
+    CodeLine::new("Draw:1", "Draw(leaf T)"),
+    CodeLine::new("Draw:2", "  draw all of T"),
+    CodeLine::new("Draw:3", "  for each polygon p of T"),
+    CodeLine::new("Draw:4", "    if p faces away from the eye: next p"),
+    CodeLine::new("Draw:5", "    draw p"),
+    CodeLine::departing(
+        "Overlap:1",
+        "OverlapTest(R): for each map pixel P under R, where P is about as large",
+        "for each pixel, P, in HOM[HOM.HighestLevel] that intersects BoundingRect",
+    ),
+    CodeLine::new("Overlap:2", "    if not CheckPixel(P): return false"),
+    CodeLine::new("Overlap:3", "  return true"),
+    CodeLine::new("Check:1", "CheckPixel(P): look up the opacity of P"),
+    CodeLine::departing(
+        "Check:2",
+        "  if it is at least the threshold of P's level",
+        "if (Op > HOM[Level].OpacityThreshold)",
+    ),
+    CodeLine::new("Check:3", "    return true"),
+    CodeLine::new("Check:4", "  else if P is on level 0"),
+    CodeLine::new("Check:5", "    return false"),
+    CodeLine::new("Check:6", "  else if it is below the threshold of level 0, and P lies in R"),
+    CodeLine::new("Check:7", "    return false"),
+    CodeLine::new(
+        "Check:8",
+        "  for each pixel S below P that overlaps R: if not CheckPixel(S): return false",
+    ),
+];
+
+/// Lines of [`CODE`] that the run reaches.
+pub(super) mod line {
+    use super::CODE;
+    use crate::method::line;
+    pub const FRAME: u8 = line(CODE, "Frame:1");
+    pub const OFF: u8 = line(CODE, "Frame:2");
+    pub const CANDIDATES: u8 = line(CODE, "Frame:3");
+    pub const SORT: u8 = line(CODE, "Frame:4");
+    pub const EACH: u8 = line(CODE, "Frame:5");
+    pub const BEYOND: u8 = line(CODE, "Frame:6");
+    pub const EXCEEDS: u8 = line(CODE, "Frame:7");
+    pub const CHOOSE: u8 = line(CODE, "Frame:8");
+    pub const PLANE: u8 = line(CODE, "Frame:9");
+    pub const EACH_OCCLUDER: u8 = line(CODE, "Frame:10");
+    pub const COVER: u8 = line(CODE, "Frame:11");
+    pub const WRITE: u8 = line(CODE, "Frame:12");
+    pub const AVERAGE: u8 = line(CODE, "Frame:13");
+    pub const ROOT: u8 = line(CODE, "Frame:14");
+    pub const ADAPT: u8 = line(CODE, "Frame:15");
+    pub const CULL: u8 = line(CODE, "Cull:1");
+    pub const OUTSIDE: u8 = line(CODE, "Cull:2");
+    pub const HOLDS: u8 = line(CODE, "Cull:3");
+    pub const RECTANGLE: u8 = line(CODE, "Cull:4");
+    pub const NEAR: u8 = line(CODE, "Cull:5");
+    pub const NO_PIXEL: u8 = line(CODE, "Cull:6");
+    pub const BEHIND_PLANE: u8 = line(CODE, "Cull:7");
+    pub const BEHIND_ENTRIES: u8 = line(CODE, "Cull:8");
+    pub const BEHIND_SAMPLES: u8 = line(CODE, "Cull:9");
+    pub const OVERLAP: u8 = line(CODE, "Cull:10");
+    pub const LEAF: u8 = line(CODE, "Cull:11");
+    pub const CHILDREN: u8 = line(CODE, "Cull:12");
+    pub const DRAW: u8 = line(CODE, "Draw:1");
+    pub const DRAW_ALL: u8 = line(CODE, "Draw:2");
+    pub const EACH_PRIM: u8 = line(CODE, "Draw:3");
+    pub const FACES_AWAY: u8 = line(CODE, "Draw:4");
+    pub const DRAW_PRIM: u8 = line(CODE, "Draw:5");
+    pub const TEST_EACH: u8 = line(CODE, "Overlap:1");
+    pub const TEST_CHECK: u8 = line(CODE, "Overlap:2");
+    pub const COVERED: u8 = line(CODE, "Overlap:3");
+    pub const CHECK: u8 = line(CODE, "Check:1");
+    pub const COMPARE: u8 = line(CODE, "Check:2");
+    pub const OPAQUE: u8 = line(CODE, "Check:3");
+    pub const FINEST: u8 = line(CODE, "Check:4");
+    pub const TRANSPARENT: u8 = line(CODE, "Check:5");
+    pub const TOO_TRANSPARENT: u8 = line(CODE, "Check:6");
+    pub const ENDS: u8 = line(CODE, "Check:7");
+    pub const DESCEND: u8 = line(CODE, "Check:8");
+}
+
+/// At which lines each kind of event stands.
+pub(super) const STANDS: &[(&str, &[&str])] = &[
+    ("NodeClassified", &["Cull:2"]),
+    ("OccludersGathered", &["Frame:4"]),
+    ("OccluderChosen", &["Frame:8"]),
+    ("OccluderRefused", &["Frame:6", "Frame:7"]),
+    ("PlaneSet", &["Frame:9"]),
+    ("OccluderDrawn", &["Frame:11"]),
+    ("DepthWritten", &["Frame:12"]),
+    ("MapsBuilt", &["Frame:13"]),
+    ("BudgetAdapted", &["Frame:15"]),
+    ("CullingPaused", &["Frame:2"]),
+    ("OccluderHeld", &["Cull:3"]),
+    ("DepthCompared", &["Cull:7", "Cull:8", "Cull:9"]),
+    ("CellRead", &["Cull:9"]),
+    ("TileRefreshed", &["Cull:9"]),
+    ("MapRead", &["Check:2", "Check:4", "Check:6"]),
+    ("OcclusionTested", &["Cull:5", "Cull:6", "Cull:7", "Cull:8", "Cull:9", "Cull:10"]),
+    ("OrientationTested", &["Draw:4"]),
+    ("NodeDecided outside", &["Cull:2"]),
+    ("NodeDecided hidden", &["Cull:6", "Cull:10"]),
+    ("NodeDecided presumed", &["Cull:6", "Cull:10"]),
+    ("NodeDecided partial", &["Cull:12"]),
+    ("NodeDecided visible", &["Cull:11"]),
+    ("PrimDecided faces-away", &["Draw:4"]),
+    ("PrimDecided visible", &["Draw:5"]),
+];
+
+/// Where it differs from the paper.
+pub(super) const DEPARTURES: &[Departure] = &[
+    Departure {
+        section: "4.1",
+        what: "the maps are made of the image's own samples, and a map pixel is a square of them; \
+               samples=1, 4 or 16 gives the maps samples of their own, as in the paper",
+        why: "a map of any resolution is then exact for the image, which a smaller image of the occluders is \
+              not",
+        when: When::With("samples", "image"),
+    },
+    Departure {
+        section: "4.1",
+        what: "counts of black samples are kept, not averages",
+        why: "whole numbers are not rounded; opacity is shown as what they amount to",
+        when: When::Always,
+    },
+    Departure {
+        section: "5.1",
+        what: "the comparisons of Figure 8 are at least and equal, as footnote 1 and the text say, and the \
+               test begins where a map pixel is about as large as the rectangle, as the text says",
+        why: "as printed nothing is opaque where the threshold is 1",
+        when: When::Always,
+    },
+    Departure {
+        section: "5.2.1",
+        what: "occluders are drawn as far as the plane Z only",
+        why: "one that crosses the plane may lie behind what is beyond it",
+        when: When::With("depth", "plane"),
+    },
+    Departure {
+        section: "5.2.2",
+        what: "what is as deep as an entry is not behind it, and an entry that no occluder touches says \
+               nothing",
+        why: "a flat occluder that faces the eye would cull itself; the paper names no first value",
+        when: When::With("depth", "estimation"),
+    },
+    Departure {
+        section: "5.2.2",
+        what: "with depth=samples the occluders' own depths are compared, at the samples that they cover: the \
+               no-background z-buffer of Zhang's dissertation (1998)",
+        why: "they are at hand, and much nearer to the truth than corners of boxes",
+        when: When::With("depth", "samples"),
+    },
+    Departure {
+        section: "5.3.1",
+        what: "small is below 5 ‰ of the scene (occluder-size); redundant, closer than 2 % before one of the \
+               1,000 largest faces and within it; complex, above 8 times the median of primitives for its size",
+        why: "the paper gives no numbers",
+        when: When::Always,
+    },
+    Departure {
+        section: "5.3.2",
+        what: "L is not exceeded, and last frame's occluders stay while they rank within 1.25 L",
+        why: "a limit is a limit, and a set that flickers makes what is culled flicker",
+        when: When::Always,
+    },
+    Departure {
+        section: "6.2",
+        what: "L and the distance limit change by a quarter, by counts of polygons and not by the clock; below \
+               500 polygons (2 in flatland) or above 5 % of the scene (20 %) L does not go",
+        why: "a frame can then be played again; the paper gives no numbers",
+        when: When::With("adapt", "true"),
+    },
+    Departure {
+        section: "7",
+        what: "culling is turned off after three frames that cull fewer polygons than occluders and tests cost, \
+               and tried again after 30, or when a quarter more or less is drawn",
+        why: "the paper says that it should be turned off, not when",
+        when: When::With("adapt", "true"),
+    },
+];
+
+/// Whether a line belongs to these parameters.
+pub(super) fn has_line(params: &Params, at: u8) -> bool {
+    let is_plane = params.depth == DepthKind::Plane;
+    match at {
+        line::OFF | line::ADAPT | line::BEYOND => params.adapts,
+        line::PLANE | line::BEHIND_PLANE => is_plane,
+        line::WRITE | line::BEHIND_ENTRIES => params.depth == DepthKind::Estimation,
+        line::BEHIND_SAMPLES => params.depth == DepthKind::Samples,
+        line::HOLDS => params.depth != DepthKind::Samples,
+        line::DRAW_ALL => !params.surfaces.one_sided,
+        line::EACH_PRIM | line::FACES_AWAY | line::DRAW_PRIM => params.surfaces.one_sided,
+        _ => true,
+    }
+}

@@ -1,0 +1,251 @@
+//! What is built once: a hierarchy of boxes over the model, and the occluder database (Zhang et al. 1997,
+//! Section 5.3.1), which is the same hierarchy without the leaves that make poor occluders.
+//!
+//! 1. The model's hierarchy is a kD-tree whose boxes hold each primitive once (Section 6.2: "an axis-aligned
+//!    bounding box hierarchy").
+//! 2. A leaf is no occluder if it is *small*, *redundant* or *complex*. It stays an occludee.
+//! 3. What the leaves hold is made ready for tiles, in which occluders are drawn.
+//!
+//! Cost: O(n log n) time, and leaves × [`MOST_FACES`] for redundancy.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::Params;
+use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
+use crate::index::{Hierarchy, KdTree};
+use crate::raster::{Clusters, Drawable};
+use crate::scene::{Face, Progress, Scene};
+
+/// Why a leaf is no occluder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drop {
+    /// Its box is small beside the scene.
+    Small,
+    /// It lies on a larger face, as a clock on a wall.
+    Redundant,
+    /// It has many primitives for its size.
+    Complex,
+}
+
+/// How many leaves the database has, and how many it dropped, each by the first reason that held.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Leaves that are occluders, and what they hold.
+    pub kept: u32,
+    pub kept_prims: u32,
+    pub small: u32,
+    pub redundant: u32,
+    pub complex: u32,
+}
+
+/// The model's hierarchy, and its leaves that may be occluders.
+pub struct Databases<S: Space> {
+    tree: KdTree<S::Vector>,
+    clusters: Arc<Clusters>,
+    /// For each node whether it, or some leaf below it, is in the occluder database.
+    occluders: Vec<bool>,
+    counts: Counts,
+}
+
+/// By what share of a face's diagonal something that it makes redundant stands before it at most.
+const BEFORE: f32 = 0.02;
+/// Faces that can make something redundant: so many of the largest.
+pub const MOST_FACES: usize = 1000;
+/// A leaf is complex if it has more than so many times the median of primitives for its size.
+const COMPLEX: f32 = 8.0;
+
+impl<S: Drawable> Databases<S> {
+    /// Builds both; `None` when cancelled.
+    pub fn build(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+        progress.report(0.0, "building the kD-tree");
+        let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
+        let height = height(scene.live().len(), params.leaf_prims::<S>());
+        let tree = KdTree::build(boxes, height, || progress.cancelled())?;
+        progress.report(0.4, "building the occluder database");
+        let (occluders, counts) = database(scene, &tree, params.occluder_size, progress)?;
+        progress.report(0.7, "making clusters");
+        // Tiles are given two groups a node, of which the second is for what nodes share: none does here.
+        let groups = tree.nodes().iter().enumerate().flat_map(|(at, node)| {
+            let own = if node.is_leaf() { tree.prims_below(NodeId(at as u32)) } else { &[] };
+            [own, &[]]
+        });
+        let clusters = Arc::new(Clusters::new(scene, params.surfaces, groups));
+        (!progress.cancelled()).then_some(Self { tree, clusters, occluders, counts })
+    }
+    /// The model's hierarchy.
+    pub fn tree(&self) -> &KdTree<S::Vector> {
+        &self.tree
+    }
+    /// What its leaves hold, two groups a node.
+    pub fn clusters(&self) -> &Arc<Clusters> {
+        &self.clusters
+    }
+    /// Whether a node is a leaf of the occluder database, or has one below it.
+    pub fn has_occluders(&self, node: NodeId) -> bool {
+        self.occluders[node.at()]
+    }
+    /// What the database holds.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+}
+
+/// Levels of a tree whose leaves hold at most so many of `count` primitives.
+fn height(count: usize, leaf: u32) -> u32 {
+    let leaves = count.div_ceil(leaf.max(1) as usize).max(1);
+    (leaves.next_power_of_two().trailing_zeros() + 1).min(24)
+}
+
+/// Which nodes hold occluders, and how many leaves do.
+fn database<S: Drawable>(
+    scene: &Scene<S>,
+    tree: &KdTree<S::Vector>,
+    size_permille: u32,
+    progress: &dyn Progress,
+) -> Option<(Vec<bool>, Counts)> {
+    let least = scene.bounds().diagonal() * size_permille as f32 * 1e-3;
+    let leaves: Vec<NodeId> =
+        (0..tree.nodes().len() as u32).map(NodeId).filter(|n| tree.nodes()[n.at()].is_leaf()).collect();
+    let density = |leaf: NodeId| {
+        tree.prims_below(leaf).len() as f32 / extent(&tree.nodes()[leaf.at()].bounds).max(f32::MIN_POSITIVE)
+    };
+    let mut sorted: Vec<f32> = leaves.iter().map(|&leaf| density(leaf)).collect();
+    sorted.sort_by(f32::total_cmp);
+    let median = sorted[sorted.len() / 2];
+    let faces = large_faces(scene);
+    let (mut occluders, mut counts) = (vec![false; tree.nodes().len()], Counts::default());
+    for leaf in leaves {
+        if progress.cancelled() {
+            return None;
+        }
+        let prims = tree.prims_below(leaf);
+        let bounds = &tree.nodes()[leaf.at()].bounds;
+        // Section 5.3.1, its three criteria in its order. What holds nothing hides nothing either.
+        let drop = if prims.is_empty() || bounds.diagonal() < least {
+            Some(Drop::Small)
+        } else if faces.iter().any(|face| face.covers(scene, bounds, prims)) {
+            Some(Drop::Redundant)
+        } else {
+            (density(leaf) > COMPLEX * median).then_some(Drop::Complex)
+        };
+        match drop {
+            Some(Drop::Small) => counts.small += 1,
+            Some(Drop::Redundant) => counts.redundant += 1,
+            Some(Drop::Complex) => counts.complex += 1,
+            None => {
+                counts.kept += 1;
+                counts.kept_prims += prims.len() as u32;
+                occluders[leaf.at()] = true;
+            }
+        }
+    }
+    // Children follow their parents.
+    for at in (0..occluders.len()).rev() {
+        let below = tree.nodes()[at].children();
+        occluders[at] |= below.is_some_and(|pair| pair.iter().any(|child| occluders[child.at()]));
+    }
+    Some((occluders, counts))
+}
+
+/// How much of the view a box can take up: half its surface, in flatland half its outline.
+fn extent<V: Vector>(bounds: &Aabb<V>) -> f32 {
+    let size = bounds.size();
+    match V::AXES {
+        2 => size.get(0) + size.get(1),
+        _ => size.get(0) * size.get(1) + size.get(1) * size.get(2) + size.get(2) * size.get(0),
+    }
+}
+
+/// A face on which something may be redundant.
+struct Wall<'a, V> {
+    face: &'a Face,
+    normal: V,
+    bounds: Aabb<V>,
+}
+
+/// The largest faces, the largest first.
+fn large_faces<S: Drawable>(scene: &Scene<S>) -> Vec<Wall<'_, S::Vector>> {
+    let bounds = |face: &Face| Aabb::of(face.corners.iter().map(|&c| scene.points()[c as usize]));
+    let mut faces: Vec<(f32, &Face)> = scene.faces().iter().map(|f| (bounds(f).diagonal(), f)).collect();
+    // Equally large ones in the order of the scene, so that every run takes the same.
+    faces.sort_by(|a, b| b.0.total_cmp(&a.0));
+    faces.truncate(MOST_FACES);
+    let mut walls = Vec::new();
+    for (_, face) in faces {
+        let Some(&prim) = face.prims.first() else { continue };
+        let normal = scene.normal(prim);
+        let length = normal.length();
+        if length > 0.0 {
+            walls.push(Wall { face, normal: normal * (1.0 / length), bounds: bounds(face) });
+        }
+    }
+    walls
+}
+
+impl<V: Vector> Wall<'_, V> {
+    /// Whether what a leaf holds lies closely before this larger face, within its outline.
+    fn covers<S: Space<Vector = V>>(&self, scene: &Scene<S>, bounds: &Aabb<V>, prims: &[PrimId]) -> bool {
+        let (diagonal, origin) = (self.bounds.diagonal(), self.bounds.center());
+        let reach = BEFORE * diagonal;
+        let height = |p: V| self.normal.dot(p - scene.points()[self.face.corners[0] as usize]);
+        // Most leaves are nowhere near.
+        let half = bounds.diagonal() * 0.5;
+        if bounds.diagonal() >= diagonal || (bounds.center() - origin).length() > half + diagonal {
+            return false;
+        }
+        let middle = height(bounds.center());
+        if middle < -half || middle > reach + half {
+            return false;
+        }
+        // A piece of the face itself hides what the face hides.
+        if prims.iter().any(|p| self.face.prims.binary_search(p).is_ok()) {
+            return false;
+        }
+        let is_before = |p: V| (0.0..=reach).contains(&height(p)) && self.is_within(scene, p);
+        prims.iter().all(|&p| scene.prim_points(p).all(is_before))
+    }
+    /// Whether a point lies before or behind the face, within its outline, which is convex.
+    fn is_within<S: Space<Vector = V>>(&self, scene: &Scene<S>, point: V) -> bool {
+        let corner = |i: usize| scene.points()[self.face.corners[i % self.face.corners.len()] as usize];
+        let count = self.face.corners.len();
+        let middle = (0..count).fold(V::default(), |sum, i| sum + corner(i)) * (1.0 / count as f32);
+        (0..count).all(|i| {
+            let (a, along) = (corner(i), corner(i + 1) - corner(i));
+            // Inward, square to the edge; the ends of a segment have no edges.
+            let inward = match S::CORNERS {
+                2 => middle - a,
+                _ => {
+                    let inward = middle - a;
+                    inward - along * (inward.dot(along) / along.dot(along).max(f32::MIN_POSITIVE))
+                }
+            };
+            inward.dot(point - a) >= 0.0
+        })
+    }
+}
+
+/// As a tree it is the model's hierarchy.
+impl<S: Space> Hierarchy<S> for Databases<S> {
+    fn node_count(&self) -> usize {
+        Hierarchy::<S>::node_count(&self.tree)
+    }
+    fn bounds(&self, node: NodeId) -> Aabb<S::Vector> {
+        Hierarchy::<S>::bounds(&self.tree, node)
+    }
+    fn parent(&self, node: NodeId) -> Option<NodeId> {
+        Hierarchy::<S>::parent(&self.tree, node)
+    }
+    fn children(&self, node: NodeId) -> Range<u32> {
+        Hierarchy::<S>::children(&self.tree, node)
+    }
+    fn level(&self, node: NodeId) -> u32 {
+        Hierarchy::<S>::level(&self.tree, node)
+    }
+    fn prims(&self, node: NodeId) -> &[PrimId] {
+        Hierarchy::<S>::prims(&self.tree, node)
+    }
+    fn bytes(&self) -> usize {
+        Hierarchy::<S>::bytes(&self.tree) + self.clusters.bytes() + self.occluders.len()
+    }
+}

@@ -1,0 +1,275 @@
+//! What is seen of the method: occluders in the world, and pictures of the maps, of the depth estimation
+//! buffer and of the choice of occluders.
+
+use glam::{Vec2, vec2};
+
+use super::OcclusionMaps;
+use super::evidence::{Choice, Evidence, draw_choice};
+use super::maps::Maps;
+use super::overlap::Outcome;
+use crate::culling::depth::picture::{Levels, Lit, Reads, WIDTH_PT, finished, last_reads, levels, stacked};
+use crate::culling::depth::{DepthNote, Faces, place_in_view};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject};
+use crate::geometry::View;
+use crate::index::Hierarchy;
+use crate::method::Moment;
+use crate::method::evidence::short;
+use crate::raster::{DepthScale, Opacity, PyramidCell, shade_depth};
+
+/// Names of the pictures.
+pub(super) const PICTURES: &[&str] =
+    &["occlusion maps", "occlusion maps, stacked", "depth estimation buffer", "choice of occluders"];
+
+type At<'a, 'b, S> = &'a Moment<'b, S, OcclusionMaps>;
+
+/// Draws the occluders so far, the depth estimation buffer in flatland, and the evidence of the step.
+pub(super) fn explain<S: Faces>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
+    let (index, view) = (moment.frame.index, moment.frame.view);
+    for note in moment.notes {
+        if let Evidence::Covered(node, _) = note {
+            let bounds = Hierarchy::<S>::bounds(index, *node);
+            to.bounds(Layer::Nodes, Role::Occluder, Subject::Node(*node), &bounds);
+        }
+    }
+    if S::CORNERS == 2 {
+        draw_buffer(moment.state, view, to);
+    }
+    match moment.note {
+        Some(Evidence::Chosen(choice)) => {
+            let bounds = Hierarchy::<S>::bounds(index, choice.candidate.node);
+            draw_choice(choice, &bounds, view, to);
+        }
+        Some(note) => note.draw(moment.frame.scene, view, to),
+        None => {}
+    }
+}
+
+/// In flatland: each entry that holds something, as a line across its part of the view at its depth.
+fn draw_buffer<S: Faces>(maps: &Maps<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    let buffer = maps.buffer();
+    for x in 0..buffer.size()[0] {
+        let held = buffer.held([x, 0]);
+        if held.is_finite() {
+            let pixels = buffer.pixels([x, 0], [view.width, view.height]);
+            let ends = [pixels.x0, pixels.x1].map(|at| place_in_view(view, [at, 0], 1.0 / held));
+            to.line(Layer::Evidence, Role::Occluder, Subject::None, ends);
+        }
+    }
+}
+
+/// Draws picture `which`.
+pub(super) fn picture<S: Faces>(moment: At<'_, '_, S>, which: usize, scale: DepthScale) -> Drawing {
+    let (view, maps) = (moment.frame.view, moment.state);
+    let of = MapLevels { opacity: maps.opacity(), pixel: maps.pixel() };
+    // In the order of `PICTURES`.
+    match which {
+        0 => levels(&of, view, &reads(moment), scale),
+        1 => stacked(&of, view, &reads(moment), scale),
+        2 => buffer(moment, scale),
+        _ => choice(moment),
+    }
+}
+
+/// The map pixels of the test that the step belongs to.
+fn reads<S: Faces>(moment: At<'_, '_, S>) -> Reads {
+    let (mut reads, mut whose): (Vec<Lit>, _) = (Vec::new(), None);
+    for note in moment.notes.iter().rev() {
+        match note {
+            Evidence::Read(node, read, _) if whose.is_none_or(|n| n == *node) => {
+                let PyramidCell { level, x, y } = read.cell;
+                let text = format!(
+                    "level {level}, pixel ({x}, {y}): opacity {:.3}, {}",
+                    read.opacity(),
+                    read.outcome_text()
+                );
+                let role = match read.outcome {
+                    // As in the world: what is hidden looks alike here and there.
+                    Outcome::Opaque => Role::Hidden,
+                    Outcome::Descends => Role::Undecided,
+                    Outcome::Transparent | Outcome::TooTransparent => Role::Visible,
+                };
+                reads.push(Lit { cell: read.cell, role, text });
+                whose = Some(*node);
+            }
+            // A test ends with its answer: behind it only if nothing was read since.
+            Evidence::Answered(a) if reads.is_empty() && whose.is_none() => whose = Some(a.node),
+            _ => break,
+        }
+    }
+    reads.reverse();
+    Reads { named: reads.last().map(|r| r.cell), all: reads }
+}
+
+/// The maps as levels.
+struct MapLevels<'a> {
+    opacity: &'a Opacity,
+    /// Image pixels a side of a pixel of level 0, as a power of two.
+    pixel: u32,
+}
+
+impl Levels for MapLevels<'_> {
+    fn levels(&self) -> Vec<u8> {
+        (0..self.opacity.levels()).collect()
+    }
+    fn size(&self, level: u8) -> [u32; 2] {
+        self.opacity.size(level)
+    }
+    fn shifts(&self, level: u8) -> [u32; 2] {
+        [self.pixel + u32::from(level); 2]
+    }
+    fn name(&self) -> &'static str {
+        "hierarchy of occlusion maps"
+    }
+    fn title(&self, level: u8) -> String {
+        let [columns, rows] = self.opacity.size(level);
+        format!("level {level}, {columns} × {rows}")
+    }
+    fn shades(&self, cells: &[PyramidCell], _: f32, _: DepthScale) -> Vec<u8> {
+        // Section 6.1: occluders are white.
+        let gray = |c: &PyramidCell| (self.opacity.opacity(*c) * 255.0).round() as u8;
+        cells.iter().map(gray).flat_map(|v| [v, v, v, 255]).collect()
+    }
+    fn value(&self, cell: PyramidCell, _: f32) -> String {
+        // Three digits tell what is opaque from what is nearly so.
+        match self.opacity.black(cell) {
+            0 => "1".into(),
+            n if n == self.opacity.present(cell) => "0".into(),
+            _ => format!("{:.3}", self.opacity.opacity(cell)).trim_start_matches('0').into(),
+        }
+    }
+    fn words(&self, cell: PyramidCell, _: f32) -> String {
+        format!(
+            "level {}, pixel ({}, {}): opacity {:.3}, {} of {} samples black",
+            cell.level,
+            cell.x,
+            cell.y,
+            self.opacity.opacity(cell),
+            self.opacity.black(cell),
+            self.opacity.present(cell)
+        )
+    }
+}
+
+/// What is under a point of picture 0, in words.
+pub(super) fn probe<S: Faces>(moment: At<'_, '_, S>, at: Vec2) -> Option<String> {
+    let maps = moment.state;
+    let of = MapLevels { opacity: maps.opacity(), pixel: maps.pixel() };
+    crate::culling::depth::picture::probe(&of, moment.frame.view, at)
+}
+
+/// The depth estimation buffer as a relief: the nearer an entry, the lighter.
+fn buffer<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
+    let (maps, view) = (moment.state, moment.frame.view);
+    let mut to = Drawing::default();
+    let say = |to: &mut Drawing, y: f32, text: &str| {
+        to.text(Layer::Labels, Role::Faint, vec2(0.0, y), 8.5, Anchor::Start, text.to_owned());
+    };
+    match moment.frame.params.depth {
+        super::DepthKind::Estimation => {}
+        super::DepthKind::Plane => {
+            let z = moment
+                .notes
+                .iter()
+                .rev()
+                .find_map(|n| if let Evidence::Plane(z) = n { Some(z) } else { None });
+            let text = z.map_or("No plane is set yet.".into(), |z| {
+                format!("A single Z plane, {} units before the eye, stands for all depths.", short(*z))
+            });
+            say(&mut to, 12.0, &text);
+            return finished(to, 20.0, "The Z plane");
+        }
+        super::DepthKind::Samples => {
+            let notes = moment
+                .notes
+                .iter()
+                .rev()
+                .map(|n| if let Evidence::Depth(note) = n { Some(note) } else { None::<&DepthNote<S>> });
+            let of = maps.levels();
+            return levels(&of, view, &last_reads(notes), scale);
+        }
+    }
+    let size = maps.buffer().size();
+    let [columns, rows] = size;
+    let depths: Vec<f32> =
+        (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y])).map(|at| maps.buffer().held(at)).collect();
+    // What no occluder touches is as empty as the sky.
+    let far = 1.0 / view.eye.far;
+    let shown: Vec<f32> = depths.iter().map(|d| if d.is_finite() { *d } else { far }).collect();
+    let height = if rows == 1 { 13.0 } else { WIDTH_PT * rows as f32 / columns as f32 };
+    let corners = [vec2(0.0, 12.0), vec2(WIDTH_PT, 12.0 + height)];
+    let rgba = shade_depth(&shown, &shown, far, scale).into();
+    let title = format!("{columns} × {rows} entries: the farthest depth of the occluders that touch each");
+    to.text(Layer::Labels, Role::Ink, vec2(0.0, 9.0), 7.5, Anchor::Start, title);
+    let pixels = Pixels { width: columns, height: rows, rgba };
+    to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
+    let [a, b] = corners;
+    to.outline(Layer::Scene, Role::Faint, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
+    let cell = vec2(WIDTH_PT / columns as f32, height / rows as f32);
+    light_entry(moment, cell, corners[0], &mut to);
+    let bottom = corners[1].y;
+    let empty = depths.iter().filter(|d| !d.is_finite()).count();
+    say(&mut to, bottom + 11.0, &format!("{empty} of {} entries are touched by no occluder.", depths.len()));
+    finished(to, bottom + 18.0, "The depth estimation buffer")
+}
+
+/// The entries that the step wrote, or the one that decided.
+fn light_entry<S: Faces>(moment: At<'_, '_, S>, cell: Vec2, first: Vec2, to: &mut Drawing) {
+    let (low, past, role) = match moment.note {
+        Some(Evidence::Written(_, r, _)) => ([r.x0, r.y0], [r.x1, r.y1], Role::Occluder),
+        Some(Evidence::Compared(n)) => {
+            let [x, y] = n.test.entry;
+            let role = if n.test.is_behind { Role::Hidden } else { Role::Visible };
+            ([x, y], [x + 1, y + 1], role)
+        }
+        _ => return,
+    };
+    let at = |[x, y]: [u32; 2]| first + cell * vec2(x as f32, y as f32);
+    let (a, b) = (at(low), at(past));
+    to.outline(Layer::Emphasis, role, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
+}
+
+/// The candidates in their order, with the sum of their polygons against L.
+fn choice<S: Faces>(moment: At<'_, '_, S>) -> Drawing {
+    const ROWS: usize = 28;
+    let choices: Vec<&Choice> = moment
+        .notes
+        .iter()
+        .filter_map(|n| if let Evidence::Chosen(choice) = n { Some(choice) } else { None })
+        .collect();
+    let mut to = Drawing::default();
+    let limit = choices.first().map_or(0, |c| c.limit);
+    let title = format!("Leaves in the order in which they are chosen, up to L = {limit} polygons");
+    let mark = Mark::Text {
+        at: vec2(0.0, 10.0),
+        text: title,
+        size_pt: 9.0,
+        anchor: Anchor::Start,
+        font: Font::Bold,
+    };
+    to.push(Layer::Labels, Role::Ink, Subject::None, mark);
+    // The latest rows, which are those that the step has added.
+    let first = choices.len().saturating_sub(ROWS);
+    for (line, (n, choice)) in choices.iter().enumerate().skip(first).enumerate() {
+        let y = 24.0 + 11.0 * line as f32;
+        let c = &choice.candidate;
+        let role = if choice.is_taken { Role::Ink } else { Role::Faint };
+        let fate = match (choice.is_taken, c.is_kept) {
+            (true, true) => "occluder, kept from the last frame",
+            (true, false) => "occluder",
+            (false, _) if c.distance > choice.reach => "beyond the distance limit",
+            (false, _) => "would exceed L",
+        };
+        let cells = [
+            format!("{}. node {}", n + 1, c.node),
+            format!("{} units", short(c.distance)),
+            format!("{} polygons", c.polygons),
+            format!("sum {}", choice.sum),
+            fate.to_owned(),
+        ];
+        for (text, x) in cells.into_iter().zip([0.0, 95.0, 175.0, 255.0, 330.0]) {
+            to.text(Layer::Labels, role, vec2(x, y), 8.0, Anchor::Start, text);
+        }
+    }
+    // As high with few rows as with many: the picture keeps its size from step to step.
+    finished(to, 24.0 + 11.0 * ROWS as f32, "The choice of occluders")
+}

@@ -1,0 +1,493 @@
+//! Worked examples of the paper's rules, and whole frames.
+
+use glam::{Vec2, Vec3, vec2};
+
+use super::budget::Work;
+use super::depth::DepthBuffer;
+use super::overlap::{Hears, MapRead, Outcome, Overlap, Step, overlap_test};
+use super::*;
+use crate::geometry::dice::Dice;
+use crate::geometry::{Eye, Flat, PixelRect, PrimId, Solid, View};
+use crate::method::{Recorder, Verdict};
+use crate::raster::PyramidCell;
+use crate::scene::{Face, LoadOptions, Parts, Quiet, example};
+
+/// Hears nothing.
+struct Deaf;
+
+impl Hears for Deaf {
+    fn reaches(&mut self, _: Step) {}
+    fn reads(&mut self, _: MapRead) {}
+}
+
+/// Keeps what is read.
+#[derive(Default)]
+struct Heard(Vec<(u8, f64, Outcome)>);
+
+impl Hears for Heard {
+    fn reaches(&mut self, _: Step) {}
+    fn reads(&mut self, read: MapRead) {
+        self.0.push((read.cell.level, read.opacity(), read.outcome));
+    }
+}
+
+/// Maps of an image of samples, `false` where nothing covers them, with pixels of `1 << shift` samples a side.
+fn maps(width: u32, height: u32, shift: u32, covered: impl Fn(u32, u32) -> bool) -> Opacity {
+    let depths: Vec<f32> = (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .map(|(x, y)| if covered(x, y) { 1.0 } else { 0.0 })
+        .collect();
+    let mut maps = Opacity::default();
+    maps.clear([width, height], shift, height == 1);
+    maps.build_from_depths(&depths, 0.0);
+    maps
+}
+
+/// The 4×4 map `1 1 1 0 / 1 1 1 1 / 0 0 1 1 / 1 1 1 ½` in the corner of one of 16×16, of 2×2 samples a pixel.
+fn example_map() -> Opacity {
+    maps(32, 32, 1, |x, y| match (x / 2, y / 2) {
+        (3, 0) | (0 | 1, 2) => false,
+        (3, 3) => y % 2 == 0,
+        _ => true,
+    })
+}
+
+fn rect([x0, x1]: [u32; 2], [y0, y1]: [u32; 2]) -> PixelRect {
+    PixelRect { x0, x1, y0, y1 }
+}
+
+fn test(maps: &Opacity, under: PixelRect, ignored: u32, start: u8) -> (bool, Vec<(u8, f64, Outcome)>) {
+    let mut heard = Heard::default();
+    let found = overlap_test(maps, under, ignored, start, &mut heard);
+    assert_eq!(found, overlap_test(maps, under, ignored, start, &mut Deaf));
+    (found.is_covered, heard.0)
+}
+
+#[test]
+fn levels_are_averages() {
+    let maps = example_map();
+    let opacity = |level, x, y| maps.opacity(PyramidCell { level, x, y });
+    assert_eq!([opacity(0, 2, 0), opacity(0, 3, 0), opacity(0, 3, 3)], [1.0, 0.0, 0.5]);
+    assert_eq!([opacity(1, 0, 0), opacity(1, 1, 0)], [1.0, 0.75]);
+    assert_eq!([opacity(1, 0, 1), opacity(1, 1, 1)], [0.5, 0.875]);
+    assert_eq!(opacity(2, 0, 0), 25.0 / 32.0);
+}
+
+#[test]
+fn figure_8_reads_what_decides() {
+    use Outcome::{Descends, Opaque, TooTransparent, Transparent};
+    let maps = example_map();
+    let opaque = vec![(1, 1.0, Opaque)];
+    assert_eq!(test(&maps, rect([0, 2], [0, 2]), 0, 1), (true, opaque));
+    // Wholly in the rectangle, so that its black sample counts.
+    assert_eq!(test(&maps, rect([2, 4], [0, 2]), 0, 1), (false, vec![(1, 0.75, TooTransparent)]));
+    let (down, on) = ((1, 0.75, Descends), (0, 1.0, Opaque));
+    let all = vec![down, on, on, (1, 0.875, Descends), on, on];
+    assert_eq!(test(&maps, rect([2, 4], [1, 3]), 0, 1), (true, all));
+    let ends = vec![(1, 0.5, Descends), (0, 0.0, Transparent)];
+    assert_eq!(test(&maps, rect([1, 3], [2, 4]), 0, 1), (false, ends));
+    assert_eq!(test(&maps, rect([0, 4], [0, 4]), 0, 2), (false, vec![(2, 25.0 / 32.0, TooTransparent)]));
+}
+
+#[test]
+fn as_opaque_as_the_threshold_is_opaque() {
+    use Outcome::{Descends, Opaque, Transparent};
+    // O_0 = 1/2 is 2 of 4 samples, on level 1 O_1 = 7/8, on level 2 31/32.
+    let maps = example_map();
+    assert_eq!(test(&maps, rect([2, 4], [2, 4]), 2, 1), (true, vec![(1, 0.875, Opaque)]));
+    let reads = vec![
+        (2, 25.0 / 32.0, Descends),
+        (1, 1.0, Opaque),
+        (1, 0.75, Descends),
+        (0, 1.0, Opaque),
+        (0, 0.0, Transparent),
+    ];
+    assert_eq!(test(&maps, rect([0, 4], [0, 4]), 2, 2), (false, reads));
+    // A full map needs one look with any threshold; as printed, with "greater", it would never be opaque.
+    let full = super::tests::maps(32, 32, 1, |_, _| true);
+    assert_eq!(test(&full, rect([3, 9], [2, 11]), 0, full.start(rect([3, 9], [2, 11]))).1.len(), 4);
+    assert!(test(&full, rect([0, 2], [0, 2]), 0, 1) == (true, vec![(1, 1.0, Opaque)]));
+}
+
+#[test]
+fn thresholds_of_section_5_4() {
+    let threshold = |t: f32, resolution: u32, side: u32| {
+        let params = Params { opacity_threshold: t, map_resolution: resolution, ..Params::default() };
+        let mut maps = Opacity::default();
+        maps.clear([side, side], (side / resolution).trailing_zeros(), false);
+        let n = params.ignored(&maps);
+        let level = |k: u8| 1.0 - f64::from(n) / f64::from(maps.whole() << (2 * k));
+        (n, [level(0), level(1), level(2)])
+    };
+    // "1 − 25/(16·16) = 0.90", and one level up "1 − 25/(32·32) = 0.98".
+    let (n, levels) = threshold(0.902_343_75, 64, 1024);
+    assert_eq!((n, levels), (25, [0.902_343_75, 0.975_585_937_5, 0.993_896_484_375]));
+    assert_eq!(levels[1], (3.0 + levels[0]) / 4.0, "O_1 = (3 + O_0)/4");
+    // 0.9 of 16 samples: one may be black.
+    assert_eq!(threshold(0.9, 256, 1024).0, 1);
+    // In flatland a pixel has two below it: O_1 = (1 + O_0)/2.
+    let mut flat = Opacity::default();
+    flat.clear([512, 1], 3, true);
+    assert_eq!(Params { opacity_threshold: 0.75, ..Params::default() }.ignored(&flat), 2);
+    assert_eq!((1.0 + 0.75) / 2.0, 1.0 - 2.0 / f64::from(2 * flat.whole()));
+}
+
+/// Whether all pixels of level 0 under a rectangle are opaque.
+fn flat_test(maps: &Opacity, under: PixelRect, ignored: u32) -> bool {
+    let mut cells = (under.y0..under.y1).flat_map(|y| (under.x0..under.x1).map(move |x| (x, y)));
+    cells.all(|(x, y)| maps.black(PyramidCell { level: 0, x: x as u16, y: y as u16 }) <= ignored)
+}
+
+/// `CULLSCOPE_RECTANGLES` says how many; ten million take about a minute.
+#[test]
+fn the_hierarchy_never_changes_an_answer() {
+    let many = std::env::var("CULLSCOPE_RECTANGLES").ok().and_then(|n| n.parse().ok()).unwrap_or(200_000);
+    let (mut dice, mut asked, mut covered) = (Dice::new(95), 0, 0);
+    while asked < many {
+        let is_flat = dice.below(4) == 0;
+        let (width, height) = (1 + dice.below(200), if is_flat { 1 } else { 1 + dice.below(120) });
+        let shift = dice.below(4);
+        // Mostly covered, with holes of all sizes.
+        let holes: Vec<[u32; 4]> = (0..dice.below(12))
+            .map(|_| [dice.below(width), dice.below(height), 1 + dice.below(6), 1 + dice.below(6)])
+            .collect();
+        let in_hole = |x: u32, y: u32| {
+            holes.iter().any(|h| (h[0]..h[0] + h[2]).contains(&x) && (h[1]..h[1] + h[3]).contains(&y))
+        };
+        let maps = super::tests::maps(width, height, shift, |x, y| !in_hole(x, y));
+        for _ in 0..500 {
+            let span = |dice: &mut Dice, end: u32| {
+                let (a, b) = (dice.below(end), dice.below(end));
+                [a.min(b), a.max(b) + 1]
+            };
+            let pixels = rect(span(&mut dice, width), span(&mut dice, height));
+            let under = maps.under(pixels);
+            let ignored = [0, 1, dice.below(1 + maps.whole() / 2)][dice.below(3) as usize];
+            let flat = flat_test(&maps, under, ignored);
+            for start in [maps.start(under), dice.below(maps.levels().into()) as u8] {
+                let found = overlap_test(&maps, under, ignored, start, &mut Deaf);
+                assert_eq!(found.is_covered, flat, "{under:?} from level {start}, {ignored} ignored");
+                assert!(found.ignored == 0 || ignored > 0, "{found:?}");
+            }
+            if flat && ignored == 0 {
+                // Brute force over the samples.
+                let mut all =
+                    (pixels.y0..pixels.y1).flat_map(|y| (pixels.x0..pixels.x1).map(move |x| (x, y)));
+                assert!(all.all(|(x, y)| !in_hole(x, y)), "a hole shows in {pixels:?}");
+            }
+            (asked, covered) = (asked + 1, covered + usize::from(flat));
+        }
+    }
+    assert!(covered > asked / 20 && covered < asked - asked / 20, "{covered} of {asked} are covered");
+}
+
+/// A hole is counted a map pixel at a time (Section 5.4 promises its size): a slit and a hole on a corner are
+/// larger than what is said to be ignored.
+#[test]
+fn what_thresholds_do_not_bound() {
+    let n = 25;
+    let all = |maps: &Opacity| {
+        let [columns, rows] = maps.size(0);
+        overlap_test(
+            maps,
+            rect([0, columns], [0, rows]),
+            n,
+            maps.start(rect([0, columns], [0, rows])),
+            &mut Deaf,
+        )
+    };
+    let slit = maps(1024, 1024, 4, |x, _| x != 500);
+    assert_eq!(all(&slit), Overlap { is_covered: true, ignored: 1024, reads: all(&slit).reads });
+    let hole = |x0: u32, y0: u32, side: u32| {
+        maps(1024, 1024, 4, move |x, y| !((x0..x0 + side).contains(&x) && (y0..y0 + side).contains(&y)))
+    };
+    // Inside one pixel of 16×16 samples, and about a corner of four.
+    assert!(all(&hole(514, 514, 5)).is_covered, "5×5 are 25");
+    assert!(!all(&hole(514, 514, 6)).is_covered, "6×6 are 36");
+    assert!(all(&hole(509, 509, 6)).is_covered, "but 9 in each of four");
+}
+
+#[test]
+fn the_depth_estimation_buffer_keeps_the_farthest() {
+    let mut buffer = DepthBuffer::default();
+    buffer.clear([64, 64], 4);
+    let write = |buffer: &mut DepthBuffer, r: PixelRect, depth: f32| {
+        let touched = buffer.touched(r);
+        buffer.write(touched, 1.0 / depth);
+    };
+    write(&mut buffer, rect([0, 40], [0, 20]), 10.0);
+    write(&mut buffer, rect([30, 64], [10, 64]), 20.0);
+    let row = |y: u32| [0, 1, 2, 3].map(|x| (1.0 / buffer.held([x, y])).round());
+    assert_eq!([row(0), row(1)], [[10.0, 20.0, 20.0, 20.0]; 2]);
+    // Nothing touches the first column below: nothing is nearer than anything there.
+    assert_eq!([row(2), row(3)], [[0.0, 20.0, 20.0, 20.0]; 2]);
+    let behind = |r: PixelRect, depth: f32| buffer.test(buffer.touched(r), 1.0 / depth).is_behind;
+    assert!(behind(rect([0, 16], [0, 16]), 12.0), "behind the entry that it touches");
+    assert!(!behind(rect([0, 20], [0, 16]), 12.0), "it touches one that reaches to 20");
+    assert!(!behind(rect([0, 16], [0, 16]), 10.0), "as deep is not behind");
+    assert!(behind(rect([0, 16], [32, 64]), 0.1), "where no occluder is, overlap decides");
+}
+
+#[test]
+fn the_limit_follows_what_is_culled_and_what_occluders_cost() {
+    let next = |culled: u32, occluders: u32| {
+        let mut budget = Budget::first::<Solid>(1000, 100_000);
+        let work = Work { in_view: 10_000, culled, occluders, tests: 10 };
+        budget.adapt::<Solid>(work, 100_000).limit
+    };
+    // Shares culled and shares of occluders in what is drawn: (0.4, 0.1), (0.9, 0.3), (0.9, 0.2), (0.4, 0.3).
+    assert_eq!(next(4000, 600), [1000, 1250]);
+    assert_eq!(next(9000, 300), [1000, 800]);
+    assert_eq!(next(9000, 200), [1000, 1000]);
+    assert_eq!(next(4000, 1800), [1000, 1000]);
+    // Between 500 and 5 %.
+    let mut budget = Budget::first::<Solid>(0, 100_000);
+    assert_eq!(budget.limit, 1000);
+    let most = Work { in_view: 10_000, culled: 0, occluders: 1, tests: 0 };
+    (0..20).for_each(|_| _ = budget.adapt::<Solid>(most, 100_000));
+    assert_eq!(budget.limit, 5000);
+}
+
+#[test]
+fn culling_is_turned_off_where_it_does_not_pay_and_tried_again() {
+    let mut budget = Budget::first::<Solid>(0, 100_000);
+    let poor = Work { in_view: 10_000, culled: 100, occluders: 1000, tests: 50 };
+    for frame in 1..=3 {
+        assert_eq!(budget.adapt::<Solid>(poor, 100_000).is_on, frame < 3, "frame {frame}");
+    }
+    for frame in 0..30 {
+        assert!(!budget.is_on(), "frame {frame} of the pause");
+        budget.pause(Work { in_view: 10_000, ..Work::default() });
+    }
+    assert!(budget.is_on(), "tried again");
+    assert!(!budget.adapt::<Solid>(poor, 100_000).is_on, "one more loss is enough");
+    // Another view: a third more is drawn.
+    budget.pause(Work { in_view: 14_000, ..Work::default() });
+    assert!(budget.is_on());
+    let rich = Work { in_view: 14_000, culled: 12_000, occluders: 500, tests: 50 };
+    assert!(budget.adapt::<Solid>(rich, 100_000).is_on);
+    assert!(budget.adapt::<Solid>(poor, 100_000).is_on, "what paid counts");
+}
+
+/// The method on a scene, with what it keeps.
+struct Tried<S: Faces> {
+    scene: Arc<Scene<S>>,
+    params: Params,
+    index: Databases<S>,
+    memory: Memory,
+}
+
+impl<S: Faces> Tried<S> {
+    fn new(scene: Arc<Scene<S>>, params: Params) -> Self {
+        let index = <OcclusionMaps as Method<S>>::build(&scene, &params, None, &Quiet);
+        let index = index.expect("nothing saved").expect("not cancelled");
+        Self { scene, params, index, memory: Memory::default() }
+    }
+    /// What is drawn, ascending; what was recorded; and the maps.
+    fn cull(&mut self, view: &View<S>) -> (Vec<PrimId>, Recorder<Evidence<S>>, Maps<S>) {
+        let Self { scene, params, index, memory } = self;
+        let frame = Frame { index, scene: &**scene, view, params, limit: None };
+        let (mut maps, mut list, mut film) = (Maps::default(), DrawList::default(), Recorder::new(1 << 20));
+        State::<S, OcclusionMaps>::begin(&mut maps, &frame);
+        OcclusionMaps::cull(&frame, memory, &mut maps, &mut list, &mut film);
+        (list.ascending(), film, maps)
+    }
+}
+
+/// One segment a leaf, and so many of them as occluders.
+fn flat_params(occluder_budget: u32, depth: DepthKind) -> Params {
+    Params {
+        leaf_primitives: 1,
+        adapts: false,
+        occluder_size: 0,
+        occluder_budget,
+        depth,
+        ..Params::default()
+    }
+}
+
+/// A flatland scene of segments, each an object, seen from the origin along the second axis.
+fn segments(ends: &[[f32; 4]]) -> (Arc<Scene<Flat>>, View<Flat>) {
+    let points: Vec<Vec2> = ends.iter().flat_map(|e| [vec2(e[0], e[1]), vec2(e[2], e[3])]).collect();
+    let prims = (0..ends.len() as u32).map(|k| [2 * k, 2 * k + 1]).collect();
+    let scene = Scene::new(Parts::<Flat>::simple("segments", points, prims)).expect("valid");
+    let fov = std::f32::consts::FRAC_PI_2;
+    let eye = Eye { position: Vec2::ZERO, target: Vec2::Y, up: Vec2::Y, fov, near: 0.01, far: 100.0 };
+    (Arc::new(scene), View { eye, width: 512, height: 1 })
+}
+
+fn ids(ids: &[u32]) -> Vec<PrimId> {
+    ids.iter().copied().map(PrimId).collect()
+}
+
+/// Section 4.3: "occlusion maps represent the fusion of small and possibly disjoint occluders".
+#[test]
+fn two_walls_hide_together_what_neither_hides() {
+    let scene = example("fusion").expect("an example");
+    let mut view = scene.paths()[0].views[0];
+    view.width = 512;
+    for depth in [DepthKind::Estimation, DepthKind::Samples] {
+        let drawn = |walls: u32| Tried::new(scene.clone(), flat_params(walls, depth)).cull(&view).0;
+        let (both, one) = (drawn(2), drawn(1));
+        assert!((2..6).all(|p| !both.contains(&PrimId(p))), "{depth:?}: both hide the box, {both:?}");
+        assert!((2..6).any(|p| one.contains(&PrimId(p))), "{depth:?}: one does not, {one:?}");
+    }
+}
+
+/// Section 5.2.2 as printed would cull what is as deep as itself.
+#[test]
+fn a_flat_occluder_does_not_cull_itself() {
+    let (scene, view) = segments(&[[-1.0, 5.0, 1.0, 5.0], [-20.0, 50.0, 20.0, 50.0]]);
+    for depth in [DepthKind::Estimation, DepthKind::Samples, DepthKind::Plane] {
+        let (drawn, ..) = Tried::new(scene.clone(), flat_params(1, depth)).cull(&view);
+        assert_eq!(drawn, ids(&[0, 1]), "{depth:?}");
+    }
+}
+
+/// Section 5.3.2 makes an occluder of a wall that crosses the Z plane: what of it lies beyond must not hide what
+/// stands before it there.
+#[test]
+fn occluders_end_at_the_z_plane() {
+    // The wall stands at depths 9.8 to 11.1 where the segment at 6.4 is seen, which is beyond Z = 6.
+    let (scene, view) = segments(&[[-2.0, 2.0, 8.0, 12.0], [3.9, 6.4, 4.1, 6.4], [-3.0, 6.0, -3.2, 6.2]]);
+    let mut tried = Tried::new(scene, flat_params(1, DepthKind::Plane));
+    let (drawn, film, maps) = tried.cull(&view);
+    let plane = film.notes.iter().find_map(|n| if let Evidence::Plane(z) = n { Some(*z) } else { None });
+    assert_eq!(plane, Some(6.0), "the first leaf that does not fit sets it");
+    assert!(drawn.contains(&PrimId(1)), "{drawn:?}");
+    // The wall covers columns from slope −1 to 2/6, where it crosses the plane: 512 · (1 + 1/3) / 2 = 341.3.
+    let covered =
+        maps.opacity().samples()[0] - maps.opacity().cells(0).map(|c| maps.opacity().black(c)).sum::<u32>();
+    assert_eq!(covered, 341);
+}
+
+/// One box a wall makes one depth for all of it; pieces are known better.
+#[test]
+fn a_wall_in_pieces_hides_more() {
+    let wall = |pieces: u32| {
+        let at = |k: u32| [-2.0 + 10.0 * k as f32 / pieces as f32, 2.0 + 10.0 * k as f32 / pieces as f32];
+        let piece = |k: u32| [at(k)[0], at(k)[1], at(k + 1)[0], at(k + 1)[1]];
+        let mut ends: Vec<[f32; 4]> = (0..pieces).map(piece).collect();
+        // At slope −0.5, where the wall stands at depth 2.67.
+        ends.push([-3.0, 6.0, -3.0, 6.5]);
+        let (scene, view) = segments(&ends);
+        let (drawn, ..) = Tried::new(scene, flat_params(pieces, DepthKind::Estimation)).cull(&view);
+        drawn.contains(&PrimId(pieces))
+    };
+    assert!(wall(1), "the wall's farthest corner is at 12");
+    assert!(!wall(4), "its piece ends at 4.5");
+}
+
+/// Figure 5: the distance criterion takes C, D and E, and misses A and B, which are far and large.
+#[test]
+fn figure_5_of_the_paper() {
+    // A leaf holds 30 segments that stand behind each other, or 2.
+    let mut ends = Vec::new();
+    for (k, y) in [2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
+        let x = -0.4 + 0.2 * k as f32;
+        ends.extend((0..30).map(|i| [x, y + 0.001 * i as f32, x + 0.05, y + 0.001 * i as f32]));
+    }
+    for x in [-30.0, 5.0] {
+        ends.extend([[x, 50.0, x + 25.0, 50.0], [x, 50.1, x + 25.0, 50.1]]);
+    }
+    let (scene, view) = segments(&ends);
+    let taken = |selection: Selection| {
+        let params = Params { leaf_primitives: 30, selection, ..flat_params(100, DepthKind::Estimation) };
+        let mut tried = Tried::new(scene.clone(), params);
+        let (_, film, _) = tried.cull(&view);
+        let chosen = film.notes.iter().filter_map(|n| match n {
+            Evidence::Chosen(c) if c.is_taken => Some((c.candidate.polygons, c.candidate.distance > 40.0)),
+            _ => None,
+        });
+        chosen.collect::<Vec<_>>()
+    };
+    let near = taken(Selection::Distance);
+    assert!(near.iter().map(|(n, _)| n).sum::<u32>() <= 100, "L is not exceeded: {near:?}");
+    assert!(near.iter().all(|(_, is_far)| !is_far), "A and B are missed, and leave a hole: {near:?}");
+    let large = taken(Selection::Size);
+    assert!(large.iter().any(|(_, is_far)| *is_far), "their size counts for them: {large:?}");
+}
+
+/// What is culled through a hole that is ignored is presumed, and what is not so is proven.
+#[test]
+fn small_holes_are_presumed_not_proven() {
+    // A wall with a gap of 3 of 512 samples, and something behind it that shows through.
+    let (scene, view) = segments(&[
+        [-5.0, 4.0, -0.01, 4.0],
+        [0.01, 4.0, 5.0, 4.0],
+        [-1.0, 8.0, 1.0, 8.0],
+        [2.0, 8.0, 3.0, 8.0],
+    ]);
+    let with = |t: f32| {
+        let params =
+            Params { opacity_threshold: t, map_resolution: 64, ..flat_params(2, DepthKind::Estimation) };
+        let (drawn, film, _) = Tried::new(scene.clone(), params).cull(&view);
+        let verdicts: Vec<Verdict> =
+            film.events.iter().filter_map(Event::verdict).filter(|v| *v != Verdict::Partial).collect();
+        (drawn, verdicts)
+    };
+    let (drawn, verdicts) = with(1.0);
+    assert_eq!(drawn, ids(&[0, 1, 2]), "what shows through the gap is drawn");
+    assert!(!verdicts.contains(&Verdict::Presumed));
+    let (drawn, verdicts) = with(0.5);
+    assert_eq!(drawn, ids(&[0, 1]), "the gap is ignored");
+    assert!(verdicts.contains(&Verdict::Presumed), "{verdicts:?}");
+    assert!(<OcclusionMaps as Method<Flat>>::is_conservative(&Params::default()));
+    let guessed = Params { opacity_threshold: 0.9, ..Params::default() };
+    assert!(!<OcclusionMaps as Method<Flat>>::is_conservative(&guessed));
+}
+
+/// Section 5.3.1: a clock on the wall is no occluder, nor is what is small.
+#[test]
+fn the_database_leaves_out_what_is_small_and_what_is_redundant() {
+    let quad = |at: Vec3, half: f32| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]: [f32; 2]| at + Vec3::new(x * half, y * half, 0.0))
+    };
+    let walls = [
+        quad(Vec3::new(0.0, 0.0, 0.0), 5.0),
+        // A clock before it, and a picture that hangs beside the wall, and one that stands off.
+        quad(Vec3::new(1.0, 1.0, 0.05), 1.0),
+        quad(Vec3::new(7.0, 0.0, 0.05), 1.0),
+        quad(Vec3::new(-2.0, 0.0, 2.0), 1.0),
+        quad(Vec3::new(20.0, 20.0, 0.0), 0.01),
+    ];
+    let points = walls.concat();
+    let prims = (0..5).flat_map(|k| [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]).collect();
+    let mut parts = Parts::<Solid>::simple("wall", points, prims);
+    let face = |k: u32| Face {
+        corners: (4 * k..4 * k + 4).collect(),
+        prims: vec![PrimId(2 * k), PrimId(2 * k + 1)],
+    };
+    parts.faces = (0..5).map(face).collect();
+    let scene = Arc::new(Scene::new(parts).expect("valid"));
+    let params = Params { leaf_primitives: 2, ..Params::default() };
+    let counts = Tried::new(scene, params).index.counts();
+    assert_eq!((counts.kept, counts.small, counts.redundant, counts.complex), (3, 1, 1, 0), "{counts:?}");
+}
+
+/// The exact forms over all of a building's path: nothing that is seen is left out, with any depth or choice.
+#[test]
+fn a_building_is_whole_with_every_depth_and_choice() {
+    let crate::scene::AnyScene::Solid(scene) =
+        crate::scene::load("generate:building?polygons=3000", &LoadOptions::default(), &Quiet).expect("made")
+    else {
+        panic!("a building is in space")
+    };
+    let path = &scene.paths()[0];
+    for depth in [DepthKind::Estimation, DepthKind::Plane, DepthKind::Samples] {
+        for selection in [Selection::Distance, Selection::Size, Selection::Visible] {
+            let params =
+                Params { depth, selection, occluder_budget: 300, adapts: false, ..Params::default() };
+            let (mut tried, mut culled) = (Tried::new(scene.clone(), params), 0);
+            for view in path.views.iter().step_by(40) {
+                let view = View { width: 160, height: 120, ..*view };
+                let (drawn, ..) = tried.cull(&view);
+                let all = crate::raster::render(&scene, &view, scene.live());
+                assert_eq!(crate::raster::render(&scene, &view, &drawn), all, "{depth:?}, {selection:?}");
+                culled += scene.live().len() - drawn.len();
+            }
+            assert!(culled > scene.live().len(), "{depth:?}, {selection:?}: {culled} culled");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Occlusion maps: how much of each block of an image is covered, level above level.
+//!
+//! Zhang, Manocha, Hudson and Hoff, "Visibility Culling using Hierarchical Occlusion Maps", SIGGRAPH 1997,
+//! Section 4, <https://doi.org/10.1145/258734.258781>:
+//!
+//! 1. A pixel of the finest map, level 0, stands for a square of samples (in flatland a piece of their line),
+//!    those of an image of the occluders.
+//! 2. Two by two pixels of a level (two in flatland) are averaged to one of the next, down to a map of at most
+//!    4×4.
+//!
+//! Kept are counts of *black* samples, those that nothing covers: whole numbers, which only add up, so that
+//! no level is rounded. Opacity is `1 − black / present`; samples beyond the image's edge are neither black
+//! nor present.
+//!
+//! Cost: O(tiles + pixels of level 0); 4 bytes a map pixel.
+
+use super::{PyramidCell, Tiles};
+use crate::geometry::PixelRect;
+
+/// Levels of black samples over an image.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Opacity {
+    /// Size of the image of the occluders, samples.
+    size: [u32; 2],
+    /// A pixel of level 0 has `1 << shift` samples a side.
+    shift: u32,
+    is_flat: bool,
+    /// From the finest up.
+    levels: Vec<Map>,
+}
+
+/// One level.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Map {
+    columns: u32,
+    rows: u32,
+    /// Black samples of each pixel, row by row.
+    black: Vec<u32>,
+}
+
+/// Both sides of the coarsest map are at most this (Section 4.1: "typically 4×4").
+const TOP: u32 = 4;
+
+impl Opacity {
+    /// Maps over an image of so many samples, whose finest pixels have `1 << shift` of them a side; nothing
+    /// is covered. In flatland the image is one row.
+    pub fn clear(&mut self, size: [u32; 2], shift: u32, is_flat: bool) {
+        (self.size, self.shift, self.is_flat) = (size, shift, is_flat);
+        let mut at = [size[0].div_ceil(1 << shift), if is_flat { 1 } else { size[1].div_ceil(1 << shift) }];
+        let mut count = 0;
+        loop {
+            if self.levels.len() == count {
+                self.levels.push(Map::default());
+            }
+            let map = &mut self.levels[count];
+            (map.columns, map.rows) = (at[0], at[1]);
+            map.black.clear();
+            count += 1;
+            if at[0].max(at[1]) <= TOP {
+                break;
+            }
+            at = at.map(|n| n.div_ceil(2));
+        }
+        self.levels.truncate(count);
+        for level in 0..count as u8 {
+            let cells: Vec<u32> = self.cells(level).map(|cell| self.present(cell)).collect();
+            self.levels[usize::from(level)].black = cells;
+        }
+    }
+    /// Makes the maps of what is drawn into tiles of the same size.
+    pub fn build(&mut self, tiles: &Tiles) {
+        self.build_from(|x, y| tiles.covered_pixels(PyramidCell { level: PyramidCell::TILE, x, y }));
+    }
+    /// The same from the depths of the samples, row by row: those nearer than `depth_far` are covered.
+    pub fn build_from_depths(&mut self, depths: &[f32], depth_far: f32) {
+        let [width, height] = self.size;
+        self.build_from(|tile_x, tile_y| {
+            let mut mask = 0;
+            for bit in 0..32 {
+                let (x, y) = (u32::from(tile_x) * 8 + bit % 8, u32::from(tile_y) * 4 + bit / 8);
+                let is_covered = x < width && y < height && depths[(y * width + x) as usize] > depth_far;
+                mask |= u32::from(is_covered) << bit;
+            }
+            mask
+        });
+    }
+    /// Counts the black samples of level 0 from masks of tiles of 8×4 samples, bit `8 y + x`, given by column
+    /// and row; then adds up.
+    fn build_from(&mut self, mask: impl Fn(u16, u16) -> u32) {
+        let ([width, height], shift) = (self.size, self.shift);
+        let map = &mut self.levels[0];
+        map.black.fill(0);
+        // A tile holds several pixels, or lies in one.
+        let (wide, high) = (8 >> shift.min(3), if self.is_flat { 1 } else { 4 >> shift.min(2) });
+        let (across, down) = (8 / wide, if self.is_flat { 1 } else { 4 / high });
+        let column = if across == 8 { 0xff } else { (1 << across) - 1 };
+        for y in 0..height.div_ceil(4) {
+            for x in 0..width.div_ceil(8) {
+                let black = !mask(x as u16, y as u16) & present_of_tile([width, height], [x, y]);
+                if black == 0 {
+                    continue;
+                }
+                for cell in 0..wide * high {
+                    let (i, j) = (cell % wide, cell / wide);
+                    let mut bits = 0;
+                    for row in j * down..(j + 1) * down {
+                        bits |= column << (8 * row + i * across);
+                    }
+                    let (to_x, to_y) = ((8 * x + i * across) >> shift, (4 * y + j * down) >> shift);
+                    if to_x < map.columns && to_y < map.rows {
+                        map.black[(to_y * map.columns + to_x) as usize] += (black & bits).count_ones();
+                    }
+                }
+            }
+        }
+        for level in 1..self.levels.len() {
+            let (below, above) = self.levels.split_at_mut(level);
+            add_up(&below[level - 1], &mut above[0]);
+        }
+    }
+
+    /// Number of levels.
+    pub fn levels(&self) -> u8 {
+        self.levels.len() as u8
+    }
+    /// Columns and rows of a level.
+    pub fn size(&self, level: u8) -> [u32; 2] {
+        let map = &self.levels[usize::from(level)];
+        [map.columns, map.rows]
+    }
+    /// Size of the image that the maps are of, samples.
+    pub fn samples(&self) -> [u32; 2] {
+        self.size
+    }
+    /// Samples a side of a pixel of a level, as a power of two.
+    pub fn shift(&self, level: u8) -> u32 {
+        self.shift + u32::from(level)
+    }
+    /// The pixels of a level, row by row.
+    pub fn cells(&self, level: u8) -> impl Iterator<Item = PyramidCell> + use<> {
+        let [columns, rows] = self.size(level);
+        (0..rows)
+            .flat_map(move |y| (0..columns).map(move |x| PyramidCell { level, x: x as u16, y: y as u16 }))
+    }
+    /// Black samples of a pixel.
+    #[inline]
+    pub fn black(&self, cell: PyramidCell) -> u32 {
+        let map = &self.levels[usize::from(cell.level)];
+        map.black[u32::from(cell.y) as usize * map.columns as usize + usize::from(cell.x)]
+    }
+    /// Samples of a pixel that lie in the image.
+    #[inline]
+    pub fn present(&self, cell: PyramidCell) -> u32 {
+        let [width, height] = self.size;
+        let shift = self.shift(cell.level);
+        let side = |at: u16, end: u32| end.min((u32::from(at) + 1) << shift) - (u32::from(at) << shift);
+        side(cell.x, width) * if self.is_flat { 1 } else { side(cell.y, height) }
+    }
+    /// Pixels of level 0 that a pixel stands for.
+    #[inline]
+    pub fn finest_in(&self, cell: PyramidCell) -> u32 {
+        let [columns, rows] = self.size(0);
+        let level = u32::from(cell.level);
+        let side = |at: u16, end: u32| end.min((u32::from(at) + 1) << level) - (u32::from(at) << level);
+        side(cell.x, columns) * side(cell.y, rows)
+    }
+    /// The share of a pixel that is covered, 0 to 1.
+    pub fn opacity(&self, cell: PyramidCell) -> f64 {
+        1.0 - f64::from(self.black(cell)) / f64::from(self.present(cell))
+    }
+    /// Samples of a whole pixel of level 0.
+    pub fn whole(&self) -> u32 {
+        1 << (self.shift * if self.is_flat { 1 } else { 2 })
+    }
+    /// The pixels of level 0 that hold these samples.
+    pub fn under(&self, samples: PixelRect) -> PixelRect {
+        let past = |v: u32| v.saturating_sub(1) >> self.shift;
+        PixelRect {
+            x0: samples.x0 >> self.shift,
+            x1: past(samples.x1) + 1,
+            y0: if self.is_flat { 0 } else { samples.y0 >> self.shift },
+            y1: if self.is_flat { 1 } else { past(samples.y1) + 1 },
+        }
+    }
+    /// The level at which a test of some pixels of level 0 begins: the least on which they lie under at most
+    /// two a side, or the top (Section 5.1: where a map pixel is about as large as the rectangle).
+    pub fn start(&self, under: PixelRect) -> u8 {
+        let top = self.levels() - 1;
+        let spans = |k: u8| {
+            let span = |low: u32, past: u32| ((past - 1) >> k) - (low >> k);
+            span(under.x0, under.x1).max(span(under.y0, under.y1))
+        };
+        (0..top).find(|&k| spans(k) <= 1).unwrap_or(top)
+    }
+}
+
+/// The bits of a tile's samples that lie in the image.
+fn present_of_tile([width, height]: [u32; 2], [x, y]: [u32; 2]) -> u32 {
+    let (columns, rows) = ((width - 8 * x).min(8), (height - 4 * y).min(4));
+    let row = 0xff >> (8 - columns);
+    (0..rows).fold(0, |bits, k| bits | row << (8 * k))
+}
+
+/// A level from the one below: sums of two by two pixels, fewer at the far edges.
+fn add_up(below: &Map, to: &mut Map) {
+    let (from, wide) = (&below.black, below.columns as usize);
+    for y in 0..to.rows as usize {
+        let rows = 2 * y..(2 * y + 2).min(below.rows as usize);
+        for x in 0..to.columns as usize {
+            let columns = 2 * x..(2 * x + 2).min(wide);
+            let sum = rows.clone().map(|r| from[r * wide..][columns.clone()].iter().sum::<u32>()).sum();
+            to.black[y * to.columns as usize + x] = sum;
+        }
+    }
+}
