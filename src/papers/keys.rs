@@ -15,3 +15,5 @@ pub const HIERARCHICAL_Z: &str = "hierarchical-z";
 pub const PARALLEL_HIERARCHICAL_Z: &str = "parallel-hierarchical-z";
 /// Klosowski and Silva.
 pub const LAYERED_PROJECTION: &str = "layered-projection";
+/// Zhang, Manocha, Hudson and Hoff.
+pub const OCCLUSION_MAPS: &str = "occlusion-maps";

@@ -13,6 +13,7 @@ mod klosowski_silva;
 mod paper;
 #[cfg(test)]
 mod tests;
+mod zhang;
 
 pub use paper::{Figure, Paper, Source};
 
@@ -20,7 +21,7 @@ use crate::measure::Experiment;
 
 /// All papers, in the order of lists.
 pub const PAPERS: &[&Paper] =
-    &[&baselines::PAPER, &coorg_teller::PAPER, &georges::PAPER, &klosowski_silva::PAPER];
+    &[&baselines::PAPER, &coorg_teller::PAPER, &georges::PAPER, &klosowski_silva::PAPER, &zhang::PAPER];
 
 /// All figures, in the order of lists.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {

@@ -31,7 +31,7 @@ use std::sync::Arc;
 
 use self::budget::Budget;
 use self::code::{CODE, DEPARTURES, STANDS, has_line};
-use self::evidence::Evidence;
+pub(crate) use self::evidence::{Evidence, Ground};
 use self::index::Databases;
 use self::maps::Maps;
 use self::selection::Selection;

@@ -1,6 +1,6 @@
 //! Worked examples of the paper's rules, and whole frames.
 
-use glam::{Vec2, Vec3, vec2};
+use glam::{Vec2, vec2};
 
 use super::budget::Work;
 use super::depth::DepthBuffer;
@@ -10,7 +10,7 @@ use crate::geometry::dice::Dice;
 use crate::geometry::{Eye, Flat, PixelRect, PrimId, Solid, View};
 use crate::method::{Recorder, Verdict};
 use crate::raster::PyramidCell;
-use crate::scene::{Face, LoadOptions, Parts, Quiet, example};
+use crate::scene::{Face, LoadOptions, Parts, Quiet};
 
 /// Hears nothing.
 struct Deaf;
@@ -105,7 +105,8 @@ fn as_opaque_as_the_threshold_is_opaque() {
     assert_eq!(test(&maps, rect([0, 4], [0, 4]), 2, 2), (false, reads));
     // A full map needs one look with any threshold; as printed, with "greater", it would never be opaque.
     let full = super::tests::maps(32, 32, 1, |_, _| true);
-    assert_eq!(test(&full, rect([3, 9], [2, 11]), 0, full.start(rect([3, 9], [2, 11]))).1.len(), 4);
+    let wide = rect([3, 7], [2, 6]);
+    assert_eq!(test(&full, wide, 0, full.start(wide)).1, vec![(2, 1.0, Opaque); 4]);
     assert!(test(&full, rect([0, 2], [0, 2]), 0, 1) == (true, vec![(1, 1.0, Opaque)]));
 }
 
@@ -323,7 +324,12 @@ fn ids(ids: &[u32]) -> Vec<PrimId> {
 /// Section 4.3: "occlusion maps represent the fusion of small and possibly disjoint occluders".
 #[test]
 fn two_walls_hide_together_what_neither_hides() {
-    let scene = example("fusion").expect("an example");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes2d/fusion.json");
+    let crate::scene::AnyScene::Flat(scene) =
+        crate::scene::load(path, &LoadOptions::default(), &Quiet).expect("a committed scene")
+    else {
+        panic!("it is flat")
+    };
     let mut view = scene.paths()[0].views[0];
     view.width = 512;
     for depth in [DepthKind::Estimation, DepthKind::Samples] {
@@ -378,10 +384,10 @@ fn a_wall_in_pieces_hides_more() {
     assert!(!wall(4), "its piece ends at 4.5");
 }
 
-/// Figure 5: the distance criterion takes C, D and E, and misses A and B, which are far and large.
+/// Figure 5: the distance criterion takes what is near, and misses A and B, which are far and large.
 #[test]
 fn figure_5_of_the_paper() {
-    // A leaf holds 30 segments that stand behind each other, or 2.
+    // C, D, E and F of 30 segments each, and A and B of two.
     let mut ends = Vec::new();
     for (k, y) in [2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
         let x = -0.4 + 0.2 * k as f32;
@@ -392,20 +398,17 @@ fn figure_5_of_the_paper() {
     }
     let (scene, view) = segments(&ends);
     let taken = |selection: Selection| {
-        let params = Params { leaf_primitives: 30, selection, ..flat_params(100, DepthKind::Estimation) };
-        let mut tried = Tried::new(scene.clone(), params);
-        let (_, film, _) = tried.cull(&view);
+        let params = Params { selection, ..flat_params(100, DepthKind::Estimation) };
+        let (_, film, _) = Tried::new(scene.clone(), params).cull(&view);
         let chosen = film.notes.iter().filter_map(|n| match n {
-            Evidence::Chosen(c) if c.is_taken => Some((c.candidate.polygons, c.candidate.distance > 40.0)),
+            Evidence::Chosen(c) if c.is_taken => Some(c.candidate.distance > 40.0),
             _ => None,
         });
         chosen.collect::<Vec<_>>()
     };
-    let near = taken(Selection::Distance);
-    assert!(near.iter().map(|(n, _)| n).sum::<u32>() <= 100, "L is not exceeded: {near:?}");
-    assert!(near.iter().all(|(_, is_far)| !is_far), "A and B are missed, and leave a hole: {near:?}");
+    assert_eq!(taken(Selection::Distance), [false; 100], "A and B are missed, and leave a hole");
     let large = taken(Selection::Size);
-    assert!(large.iter().any(|(_, is_far)| *is_far), "their size counts for them: {large:?}");
+    assert_eq!((large.len(), &large[..5]), (100, &[true, true, true, true, false][..]), "their size counts");
 }
 
 /// What is culled through a hole that is ignored is presumed, and what is not so is proven.
@@ -440,30 +443,30 @@ fn small_holes_are_presumed_not_proven() {
 /// Section 5.3.1: a clock on the wall is no occluder, nor is what is small.
 #[test]
 fn the_database_leaves_out_what_is_small_and_what_is_redundant() {
-    let quad = |at: Vec3, half: f32| {
-        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
-            .map(|[x, y]: [f32; 2]| at + Vec3::new(x * half, y * half, 0.0))
-    };
-    let walls = [
-        quad(Vec3::new(0.0, 0.0, 0.0), 5.0),
-        // A clock before it, and a picture that hangs beside the wall, and one that stands off.
-        quad(Vec3::new(1.0, 1.0, 0.05), 1.0),
-        quad(Vec3::new(7.0, 0.0, 0.05), 1.0),
-        quad(Vec3::new(-2.0, 0.0, 2.0), 1.0),
-        quad(Vec3::new(20.0, 20.0, 0.0), 0.01),
-    ];
-    let points = walls.concat();
-    let prims = (0..5).flat_map(|k| [[4 * k, 4 * k + 1, 4 * k + 2], [4 * k, 4 * k + 2, 4 * k + 3]]).collect();
-    let mut parts = Parts::<Solid>::simple("wall", points, prims);
-    let face = |k: u32| Face {
-        corners: (4 * k..4 * k + 4).collect(),
-        prims: vec![PrimId(2 * k), PrimId(2 * k + 1)],
-    };
-    parts.faces = (0..5).map(face).collect();
+    // A wall, a clock before it, something beside it, before it by more than 2 %, behind it, and small.
+    let (scene, _) = segments(&[
+        [-5.0, 0.0, 5.0, 0.0],
+        [0.0, 0.05, 1.0, 0.05],
+        [6.5, 0.05, 7.5, 0.05],
+        [-2.0, 2.0, -1.0, 2.0],
+        [2.0, -0.05, 3.0, -0.05],
+        [20.0, 20.0, 20.01, 20.0],
+    ]);
+    let mut parts = (*scene).clone().into_parts();
+    parts.faces = (0..6).map(|k| Face { corners: vec![2 * k, 2 * k + 1], prims: vec![PrimId(k)] }).collect();
     let scene = Arc::new(Scene::new(parts).expect("valid"));
-    let params = Params { leaf_primitives: 2, ..Params::default() };
-    let counts = Tried::new(scene, params).index.counts();
-    assert_eq!((counts.kept, counts.small, counts.redundant, counts.complex), (3, 1, 1, 0), "{counts:?}");
+    let params = Params { occluder_size: 5, ..flat_params(10, DepthKind::Estimation) };
+    let tried = Tried::new(scene, params);
+    let counts = tried.index.counts();
+    assert_eq!((counts.kept, counts.small, counts.redundant, counts.complex), (4, 1, 1, 0), "{counts:?}");
+    let dropped = |p: u32| {
+        let tree = tried.index.tree();
+        let leaf = (0..tree.nodes().len() as u32)
+            .map(crate::geometry::NodeId)
+            .find(|&n| tree.nodes()[n.at()].is_leaf() && tree.prims_below(n) == [PrimId(p)]);
+        !tried.index.has_occluders(leaf.expect("a leaf a segment"))
+    };
+    assert_eq!([0, 1, 2, 3, 4, 5].map(dropped), [false, true, false, false, false, true]);
 }
 
 /// The exact forms over all of a building's path: nothing that is seen is left out, with any depth or choice.

@@ -292,7 +292,7 @@ fn open_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, a: &Asked, strip: usi
 /// Those that surely show a box: it covers all of the tile, and something in the tile is not covered, or
 /// nothing in the block is nearer.
 #[inline(always)]
-fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, strip: usize, row: usize) -> u32 {
+fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, a: &Asked, strip: usize, row: usize) -> u32 {
     let before = l.splat(tiles.block_near[row * tiles.stride() + strip]);
     let mut sure = 0;
     for part in 0..16 / L::N {
@@ -303,7 +303,9 @@ fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, strip: usize, row: us
         let may_be_hidden = l.without(l.eq_i(ever, l.splat_i(-1)), l.ge(begins, before));
         sure |= l.bits(l.without(l.ge(begins, ends), may_be_hidden)) << (part * L::N);
     }
-    sure
+    // What is asked for by its rectangle alone lies everywhere, but for what the rectangle leaves out, and
+    // beyond the image nothing is seen.
+    sure & a.tiles_inside(strip, row)
 }
 
 /// A box, and the box of all that is drawn with what it holds, where that is another one: it says how near
@@ -430,7 +432,7 @@ impl<H: Hears> Work for Fine<'_, H> {
                     told = self.tell_blocks(l, row, told, strip + 1);
                     let found = open_tiles(l, self.tiles, &self.spans, a, strip, row);
                     let sure = if self.exact {
-                        found & sure_tiles(l, self.tiles, &self.spans, strip, row)
+                        found & sure_tiles(l, self.tiles, &self.spans, a, strip, row)
                     } else {
                         found
                     };

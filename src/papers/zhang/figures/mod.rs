@@ -1,0 +1,218 @@
+//! Figures of Zhang et al., "Visibility Culling using Hierarchical Occlusion Maps", SIGGRAPH 1997, made anew.
+
+mod notes;
+
+use std::sync::Arc;
+
+use self::notes::{culled_node, maps_built, occluder_prims};
+use crate::drawing::{Drawing, Role};
+use crate::figure::page::{below, legend};
+use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
+use crate::figure::{Entry, Look, Paper, Swatch, panels};
+use crate::geometry::{Flat, Solid, View};
+use crate::method::{Film, Verdict};
+use crate::papers::keys::OCCLUSION_MAPS;
+use crate::papers::paper::Figure;
+use crate::raster::DepthScale;
+use crate::scene::{AnyScene, LoadOptions, Quiet, Scene, SceneError, example, load};
+use crate::trace::Stamps;
+
+/// The figures.
+pub const FIGURES: &[Figure] = &[
+    Figure {
+        name: "zhang-figure-1",
+        former: None,
+        summary: "A game level from above: occluders, what is kept and what is culled",
+        make: level,
+    },
+    Figure {
+        name: "zhang-figure-3",
+        former: None,
+        summary: "The hierarchy of occlusion maps over an office",
+        make: hierarchy,
+    },
+    Figure {
+        name: "zhang-figure-7",
+        former: None,
+        summary: "Trees as occluders, without and with approximate culling",
+        make: thresholds,
+    },
+    Figure {
+        name: "zhang-figure-8",
+        former: None,
+        summary: "The overlap test reads map pixels, level by level",
+        make: overlap,
+    },
+];
+
+/// Pictures of the method, by number.
+const MAPS: usize = 0;
+const STACKED: usize = 1;
+
+fn counts<S: crate::culling::Methods>(film: &dyn Film<S>) -> [usize; 4] {
+    let counts = Stamps::new(film).counts(film.events().len());
+    let of = |verdict| counts.of(verdict);
+    [of(Verdict::Visible), of(Verdict::Hidden), of(Verdict::Presumed), of(Verdict::Outside)]
+}
+
+/// One frame of a flatland scene with a budget that does not adapt.
+fn flat_film(
+    maker: &Maker<'_>,
+    scene: &Arc<Scene<Flat>>,
+    budget: &str,
+    width: u32,
+    more: &[(&str, &str)],
+) -> Arc<dyn Film<Flat>> {
+    let view = View { width, ..eye(scene, 0) };
+    let pairs = [&[("adapt", "false"), ("occluder-budget", budget)], more].concat();
+    maker.film(scene, &view, OCCLUSION_MAPS, &pairs)
+}
+
+pub fn level(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("freedoom_e1m1")?;
+    let film = flat_film(maker, &scene, "60", 1024, &[]);
+    let [drawn, hidden, _, outside] = counts(&*film);
+    let label = format!("{drawn} drawn, {hidden} hidden, {outside} outside");
+    let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
+    let in_view = drawn + hidden;
+    let caption = format!(
+        "A game level from above. Of its {} segments {} are occluders, those nearest to the eye. They and the \
+         rest of what is kept are {drawn} of {in_view} in view: {:.1} % of these are culled. The broken line \
+         is the depth estimation buffer: what lies beyond it, within what the occluders cover, is hidden. In \
+         the paper's Figure 1 82.7 % of a machine room are culled, outside the frustum or hidden; here that \
+         is {:.1} %.",
+        scene.live().len(),
+        occluder_prims(&*film),
+        100.0 * hidden as f64 / in_view as f64,
+        100.0 * (hidden + outside) as f64 / scene.live().len() as f64
+    );
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Zhang et al. 1997, Figure 1, in flatland: occluders, kept, culled",
+        legend(&content),
+        caption,
+        &content,
+    ))
+}
+
+fn office_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Solid>>, SceneError> {
+    let options = LoadOptions::default();
+    let AnyScene::Solid(scene) = load("generate:building?polygons=6000&seed=7", &options, &Quiet)? else {
+        unreachable!("a building is in space")
+    };
+    let view = View { width: 256, height: 192, ..scene.paths()[0].views[0] };
+    let pairs = [("adapt", "false"), ("occluder-budget", "1500"), ("map-resolution", "64")];
+    Ok(maker.film(&scene, &view, OCCLUSION_MAPS, &pairs))
+}
+
+/// The legend of lit map pixels.
+fn pixels() -> Vec<Entry> {
+    let entry = |role, label: &str| entry(role, Swatch::Line, label);
+    vec![
+        entry(Role::Hidden, "opaque enough"),
+        entry(Role::Undecided, "not so: the pixels below are read"),
+        entry(Role::Visible, "not opaque: the test ends"),
+        entry(Role::Current, "read last"),
+    ]
+}
+
+pub fn hierarchy(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = office_film(maker)?;
+    let built = film.picture(maps_built(&*film), STACKED, DepthScale::Linear);
+    let read = film.picture(culled_node(&*film, 12), MAPS, DepthScale::Linear);
+    let caption = "The occluders of an office in white, at the bottom, and above them the levels that come of \
+                   averaging 2 × 2 pixels, down to 4 × 4: a pixel's gray is the share of it that is covered. \
+                   Below the levels beside each other, at the step at which a node of the model has been \
+                   found within what is covered, with the pixels that were read.";
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Zhang et al. 1997, Figure 3: a hierarchy of occlusion maps",
+        pixels(),
+        caption,
+        &below(vec![built, read]),
+    ))
+}
+
+pub fn thresholds(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("forest")?;
+    let panel = |threshold: &str| {
+        let more = [("opacity-threshold", threshold), ("map-resolution", "64")];
+        let film = flat_film(maker, &scene, "120", 1024, &more);
+        let [drawn, hidden, presumed, _] = counts(&*film);
+        let label =
+            format!("threshold {threshold}: {drawn} drawn, {hidden} hidden, {presumed} presumed hidden");
+        flat_panel(&*film, film.events().len(), &Look { evidence: false, ..Look::default() }, label)
+    };
+    let content = panels(WIDTH_PT, 2, &[panel("1"), panel("0.75")]);
+    let caption = "A forest from above. Left a map pixel of 16 samples is opaque only if the occluders cover \
+                   all of it. Right it is opaque with up to 4 samples black, so that what shows through \
+                   small gaps is left out as well: presumed hidden, not proven. The paper's Figure 7 uses \
+                   thresholds from 0.7 up.";
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Zhang et al. 1997, Figure 7, in flatland: approximate culling",
+        legend(&content),
+        caption,
+        &content,
+    ))
+}
+
+fn street_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Flat>>, SceneError> {
+    Ok(flat_film(maker, &example("street")?, "12", 64, &[("leaf-primitives", "4")]))
+}
+
+pub fn overlap(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let film = street_film(maker)?;
+    let step = culled_node(&*film, 12);
+    let label = format!("step {step} of {}", film.events().len());
+    let world = panels(WIDTH_PT, 1, &[flat_panel(&*film, step + 1, &Look::default(), label)]);
+    let strips = film.picture(step, MAPS, DepthScale::Linear);
+    let caption = "Flatland: the image is a line of 64 samples, and its maps are strips, white where the \
+                   occluders cover them. A node of the hierarchy (yellow) lies behind the depth estimation \
+                   buffer, the broken line; its pixels are looked up from the level on which they are about \
+                   as large as it, and where one is not opaque, those below it. All are opaque, so the node \
+                   is hidden.";
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Zhang et al. 1997, Figure 8: the overlap test, in flatland",
+        [legend(&world), pixels()].concat(),
+        caption,
+        &below(vec![world, strips]),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Event;
+
+    #[test]
+    fn a_lower_threshold_culls_more_of_the_forest() {
+        let maker = Maker::gray();
+        let scene = example("forest").expect("an example");
+        let of = |threshold: &str| {
+            let more = [("opacity-threshold", threshold), ("map-resolution", "64")];
+            counts(&*flat_film(&maker, &scene, "120", 1024, &more))
+        };
+        let ([exact, hidden, none, _], [fewer, _, presumed, _]) = (of("1"), of("0.75"));
+        assert!(none == 0 && hidden > 0 && presumed > 0 && fewer < exact, "{exact} and {fewer} drawn");
+    }
+
+    #[test]
+    fn the_node_that_is_shown_is_hidden() {
+        let maker = Maker::gray();
+        let film = street_film(&maker).expect("made");
+        let step = culled_node(&*film, 12);
+        assert!(step < film.events().len(), "some node is culled");
+        let next = film.events()[step..].iter().find_map(Event::verdict);
+        assert_eq!(next, Some(Verdict::Hidden));
+    }
+
+    #[test]
+    fn most_of_the_level_that_is_in_view_is_culled() {
+        let maker = Maker::gray();
+        let scene = example("freedoom_e1m1").expect("an example");
+        let [drawn, hidden, ..] = counts(&*flat_film(&maker, &scene, "60", 1024, &[]));
+        assert!(hidden > drawn, "{hidden} hidden, {drawn} drawn");
+    }
+}
