@@ -46,8 +46,9 @@ pub(crate) struct Adapted {
 }
 
 /// Few culled: below this share more occluders are worth a try (Section 6.2).
-const FEW: f32 = 0.5;
-/// Of what is drawn the occluders are this share at most: the paper's frames spend 10 to 25 % on them.
+const FEW: f32 = 0.9;
+/// Occluders are this share of what is in view, at most: of a frame that culls nothing the paper's frames
+/// spend 10 to 25 % on them (Section 6.2, Figure 10).
 const MOST: f32 = 0.25;
 /// By what the limits grow and shrink.
 const GROW: f32 = 1.25;
@@ -84,7 +85,7 @@ impl Budget {
         let [least, most] = Self::range::<S>(prims);
         let drawn = work.in_view - work.culled;
         let culled = work.culled as f32 / work.in_view.max(1) as f32;
-        let share = work.occluders as f32 / drawn.max(work.occluders).max(1) as f32;
+        let share = work.occluders as f32 / work.in_view.max(1) as f32;
         // "If the percentage of the model culled is low, it increases the count. If the percentage is high and
         // the frame rate is low, it decreases the count."
         let factor = match (culled < FEW, share > MOST) {

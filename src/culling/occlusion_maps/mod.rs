@@ -132,7 +132,7 @@ impl Params {
         // A test costs about as much as a few dozen triangles; flatland is there to be looked at.
         match self.leaf_primitives {
             0 if S::CORNERS == 2 => 1,
-            0 => 64,
+            0 => 16,
             n => n,
         }
     }
@@ -287,7 +287,7 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let leaf = Knob::new(
         "leaf-primitives",
         "",
-        "primitives of an object, a leaf of the hierarchy, at most; 0: 64 triangles, 1 segment",
+        "primitives of an object, a leaf of the hierarchy, at most; 0: 16 triangles, 1 segment",
         "Zhang et al. 1997, Section 6.2",
     );
     knobs.integer(leaf, 0..=100_000, &mut params.leaf_primitives);

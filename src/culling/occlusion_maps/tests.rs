@@ -236,11 +236,11 @@ fn the_limit_follows_what_is_culled_and_what_occluders_cost() {
         let work = Work { in_view: 10_000, culled, occluders, tests: 10 };
         budget.adapt::<Solid>(work, 100_000).limit
     };
-    // Shares culled and shares of occluders in what is drawn: (0.4, 0.1), (0.9, 0.3), (0.9, 0.2), (0.4, 0.3).
-    assert_eq!(next(4000, 600), [1000, 1250]);
-    assert_eq!(next(9000, 300), [1000, 800]);
-    assert_eq!(next(9000, 200), [1000, 1000]);
-    assert_eq!(next(4000, 1800), [1000, 1000]);
+    // Shares of what is in view that are culled, and that are occluders.
+    assert_eq!(next(4000, 1000), [1000, 1250], "few culled, with few occluders");
+    assert_eq!(next(9000, 3000), [1000, 800], "many, with more than it takes");
+    assert_eq!(next(9000, 2000), [1000, 1000], "many");
+    assert_eq!(next(4000, 3000), [1000, 1000], "few, but more would cost too much");
     // Between 500 and 5 %.
     let mut budget = Budget::first::<Solid>(0, 100_000);
     assert_eq!(budget.limit, 1000);
