@@ -3,9 +3,10 @@
 
 use std::marker::PhantomData;
 
+use super::answer::{Answer, Decisive, Summary};
 use super::buffer::Step;
 use super::faces::Faces;
-use super::query::{Answer, At, Decisive, Listener};
+use super::query::Listener;
 use super::tiled::TileStep;
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
@@ -91,31 +92,28 @@ pub struct Rasterized {
     pub window: Option<PixelRect>,
 }
 
-/// The line of a method's pseudocode that says where a query stands, if any does.
-type QueryLines = fn(At) -> Option<u8>;
-
-/// Reports what a query reads, as evidence about the node whose box is queried, at lines of a method's
+/// Reports what a query reads, as evidence about the node whose box is queried, at a line of a method's
 /// pseudocode. `N` is the method's own note.
 pub struct QueryReporter<'a, S, N, O> {
     node: NodeId,
-    lines: QueryLines,
+    line: Option<u8>,
     watch: &'a mut O,
     kinds: PhantomData<(S, N)>,
 }
 
 impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> QueryReporter<'a, S, N, O> {
-    /// What is reported about a node goes to `watch`.
-    pub fn new(node: NodeId, lines: QueryLines, watch: &'a mut O) -> Self {
-        Self { node, lines, watch, kinds: PhantomData }
+    /// What is reported about a node goes to `watch`; `line`: the one at which cells are compared, if any is.
+    pub fn new(node: NodeId, line: Option<u8>, watch: &'a mut O) -> Self {
+        Self { node, line, watch, kinds: PhantomData }
     }
 }
 
 impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Listener for QueryReporter<'_, S, N, O> {
     #[inline]
-    fn reaches(&mut self, at: At) {
+    fn compares(&mut self) {
         // Whoever does not listen is not to pay for the call.
         if O::LISTENS
-            && let Some(line) = (self.lines)(at)
+            && let Some(line) = self.line
         {
             self.watch.event(Event::Line(line));
         }
@@ -173,22 +171,21 @@ pub struct Asking<'a, S, N, O> {
     node: Option<NodeId>,
     /// Where a closer look at a tile stands, if there is one.
     close: Option<Stage>,
-    reads: u32,
-    decisive: Option<Decisive>,
+    summary: Summary,
     kinds: PhantomData<(S, N)>,
 }
 
 impl<'a, S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Asking<'a, S, N, O> {
     /// What is reported goes to `watch`.
     pub fn new(watch: &'a mut O, lines: fn(Stage) -> Option<u8>, node: Option<NodeId>) -> Self {
-        Self { watch, lines, node, close: None, reads: 0, decisive: None, kinds: PhantomData }
+        Self { watch, lines, node, close: None, summary: Summary::default(), kinds: PhantomData }
     }
     /// The answer with what was read for it.
     pub fn answer(mut self, is_hidden: bool, nearest: f32) -> Answer {
         if is_hidden {
             self.reaches(Stage::Hidden);
         }
-        Answer { is_hidden, nearest, reads: self.reads, decisive: self.decisive }
+        self.summary.answer(is_hidden, nearest)
     }
     fn reaches(&mut self, stage: Stage) {
         if O::LISTENS
@@ -216,17 +213,9 @@ impl<S: Faces, N: From<DepthNote<S>>, O: Observer<N>> Hears for Asking<'_, S, N,
         };
         next.into_iter().chain(ask).for_each(|stage| self.reaches(stage));
         self.watch.note(move || DepthNote::Read(node, read).into());
-        self.reads += 1;
-        let here = Decisive::of(&read);
+        self.summary.take(&read);
         match read.outcome {
-            Outcome::Shows => {
-                shows.into_iter().for_each(|stage| self.reaches(stage));
-                self.decisive = Some(here);
-            }
-            // Kept is the cell with the least margin.
-            Outcome::Behind if self.decisive.is_none_or(|least| here.margin() < least.margin()) => {
-                self.decisive = Some(here);
-            }
+            Outcome::Shows => shows.into_iter().for_each(|stage| self.reaches(stage)),
             Outcome::Descends if read.cell.level == PyramidCell::TILE => self.reaches(Stage::Keep),
             Outcome::Behind | Outcome::Descends => {}
         }

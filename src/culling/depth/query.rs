@@ -22,142 +22,22 @@
 //! Cost: a box out of view takes one test of six planes at a time; one in view eight corners in SIMD and four
 //! cells where they decide; at worst the pixels along its outline.
 
+use super::answer::{Answer, Summary};
 use super::buffer::{Buffer, Step};
-use super::faces::{Faces, footprint};
+use super::faces::Faces;
 use super::planes::{Over, Planes, below, middle};
-use crate::geometry::{Aabb, Footprint, PixelRect};
+use crate::geometry::{Aabb, PixelRect};
 use crate::raster::{Outcome, PyramidCell, Read};
-
-/// A cell that decided, and the two depths that were compared there, `1/w`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Decisive {
-    pub cell: PyramidCell,
-    /// The farthest depth that it holds.
-    pub held: f32,
-    /// The nearest at which what was asked for begins in it.
-    pub nearest: f32,
-}
-
-impl Decisive {
-    /// The cell of a read.
-    pub(super) fn of(read: &Read) -> Self {
-        Self { cell: read.cell, held: read.held, nearest: read.nearest }
-    }
-    /// By how much the cell hides it, `1/w`; negative or 0 if it does not.
-    pub(super) fn margin(&self) -> f32 {
-        self.held - self.nearest
-    }
-}
-
-/// How a query ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
-    /// Whether nothing of the box can be seen.
-    pub is_hidden: bool,
-    /// The volume's nearest depth, `1/w`.
-    pub nearest: f32,
-    /// Cells that were read.
-    pub reads: u32,
-    /// The cell that decided: the one that shows the box, or of those that hide it the one with the least
-    /// margin. `None` where none decided: the box covers no pixel.
-    pub decisive: Option<Decisive>,
-}
-
-impl Answer {
-    /// Takes in what another part of the image says.
-    pub fn join(&mut self, other: &Self) {
-        self.reads += other.reads;
-        // A cell that shows the box has no margin, and one that hides it has: the least of all shows the box,
-        // or else hides it by the least.
-        let decides = match (self.decisive, other.decisive) {
-            (Some(a), Some(b)) => b.margin() < a.margin(),
-            (None, b) => b.is_some(),
-            (_, None) => false,
-        };
-        if decides {
-            self.decisive = other.decisive;
-        }
-    }
-}
-
-/// Where a query stands: each is about to happen, or has just been decided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum At {
-    /// The next of the cells over the box.
-    Cell,
-    /// Whether the box is behind it is asked, or has been answered.
-    AskCell,
-    /// The box may be seen.
-    Seen,
-    /// It cannot.
-    Hidden,
-    /// A cell of the descent.
-    Descent,
-    /// It is compared.
-    Compare,
-    /// The cell hides the box.
-    Hides,
-    /// It does not; whether it shows the box is asked.
-    Covers,
-    /// It shows it.
-    Shows,
-    /// The next cell below it.
-    Below,
-    /// Whether the box is behind that one is asked, or has been answered.
-    AskBelow,
-    /// One of the cells below shows the box.
-    BelowShows,
-    /// None does.
-    BelowHides,
-}
 
 /// Receives what a query reads, in order. It returns nothing, so a query with a listener and one without are
 /// the same.
 pub trait Listener {
-    /// The query has come so far.
-    #[inline(always)]
-    fn reaches(&mut self, _: At) {}
+    /// A cell is about to be compared with the box.
+    fn compares(&mut self);
     /// The tile of a cell was out of date and is being brought up to date.
     fn refreshes(&mut self, cell: PyramidCell);
     /// A cell was compared with the box.
     fn reads(&mut self, read: Read);
-}
-
-/// Nobody listens; compiles to nothing.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Nobody;
-
-impl Listener for Nobody {
-    #[inline(always)]
-    fn refreshes(&mut self, _: PyramidCell) {}
-    #[inline(always)]
-    fn reads(&mut self, _: Read) {}
-}
-
-/// Whether a box is hidden by what is drawn for the buffer's view, by its planes; `None` if it lies outside
-/// the view. A box that reaches the near plane is not hidden.
-#[inline]
-pub fn hides<S: Faces>(
-    buffer: &mut Buffer<S>,
-    bounds: &Aabb<S::Vector>,
-    listener: impl Listener,
-) -> Option<Answer> {
-    let seen = buffer.projected()?;
-    // All planes at a time, by the bound that keeps primitives out of the image.
-    if seen.frustum.excludes(bounds) {
-        return None;
-    }
-    let view = &seen.view;
-    match footprint(view, &seen.projection, bounds) {
-        Footprint::Outside => None,
-        Footprint::CrossesNear => {
-            // No finite rectangle bounds what reaches the near plane, so no cell can decide.
-            Some(Answer { is_hidden: false, nearest: 1.0 / view.eye.near, reads: 0, decisive: None })
-        }
-        Footprint::Seen(image) => {
-            Some(Query::new(buffer, image.nearest, listener).planes(bounds, bounds, image.pixels))
-        }
-    }
 }
 
 /// Planes of a box, and of the whole if that is another one.
@@ -173,7 +53,9 @@ pub struct Query<'a, S: Faces, L> {
     buffer: &'a mut Buffer<S>,
     /// What receives the reads.
     listener: L,
-    answer: Answer,
+    /// No nearer than that.
+    nearest: f32,
+    summary: Summary,
     /// The pixels that are asked for.
     pixels: PixelRect,
     /// A box, and the box of all that is drawn with what it holds; `None` for all of the pixels.
@@ -185,8 +67,8 @@ pub struct Query<'a, S: Faces, L> {
 impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
     /// A query for something that comes no nearer than a depth, `1/w`.
     pub fn new(buffer: &'a mut Buffer<S>, nearest: f32, listener: L) -> Self {
-        let answer = Answer { is_hidden: true, nearest, reads: 0, decisive: None };
-        Self { buffer, listener, answer, pixels: PixelRect::default(), asked: None, planes: None }
+        let (summary, pixels) = (Summary::default(), PixelRect::default());
+        Self { buffer, listener, nearest, summary, pixels, asked: None, planes: None }
     }
 
     /// Asks for a box by its planes at some of its pixels. `whole`: the box of all that is drawn with what
@@ -199,31 +81,28 @@ impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
         pixels: PixelRect,
     ) -> Answer {
         self.asked = Some([bounds, whole]);
-        self.over(pixels);
-        self.answer
+        self.rectangle(pixels)
     }
     /// Asks for a rectangle of pixels.
     pub fn rectangle(mut self, pixels: PixelRect) -> Answer {
-        self.over(pixels);
-        self.answer
-    }
-
-    fn over(&mut self, pixels: PixelRect) {
         self.pixels = pixels;
         // What covers no pixel's center cannot show.
-        if pixels.is_empty() {
-            return;
-        }
+        let is_hidden = pixels.is_empty() || self.is_behind_all();
+        self.summary.answer(is_hidden, self.nearest)
+    }
+
+    /// Whether nothing of it shows at any of the pixels.
+    fn is_behind_all(&mut self) -> bool {
         // A departure from Section 3.2, which begins at "the single finest resolution pixel in the pyramid
         // that still completely covers the bounding box area": what lies across a border of large cells
         // would begin far up.
-        let (first, last) = self.buffer.pyramid().cover(pixels);
+        let (first, last) = self.buffer.pyramid().cover(self.pixels);
         for y in first.y..=last.y {
             for x in first.x..=last.x {
                 let cell = PyramidCell { level: first.level, x, y };
                 // Where the nearest corner does not decide, the planes are asked.
-                let mut known = [self.answer.nearest, -1.0];
-                if self.answer.nearest >= self.buffer.farthest(cell) {
+                let mut known = [self.nearest, -1.0];
+                if self.nearest >= self.buffer.farthest(cell) {
                     let pixels = self.pixels_of(cell);
                     let over = self.of_cells(&middle(cell), [pixels; 4]);
                     if !over.meets[0] {
@@ -231,25 +110,19 @@ impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
                     }
                     known = [over.up[0], over.fills[0]];
                 }
-                self.listener.reaches(At::Cell);
-                self.listener.reaches(At::AskCell);
-                let is_behind = self.behind(cell, known);
-                self.listener.reaches(At::AskCell);
                 // One cell that it may be seen in is enough.
-                if !is_behind {
-                    self.answer.is_hidden = false;
-                    self.listener.reaches(At::Seen);
-                    return;
+                if !self.behind(cell, known) {
+                    return false;
                 }
             }
         }
-        self.listener.reaches(At::Hidden);
+        true
     }
 
     /// What is known of the box over four cells of a level, given by their middles.
     #[inline]
     fn of_cells(&mut self, (middles, half): &([[f32; 4]; 2], f32), pixels: [PixelRect; 4]) -> Over {
-        let nearest = self.answer.nearest;
+        let nearest = self.nearest;
         let Some([bounds, whole]) = self.asked else {
             let r = self.pixels;
             let holds = |c: PixelRect| c.x0 >= r.x0 && c.x1 <= r.x1 && c.y0 >= r.y0 && c.y1 <= r.y1;
@@ -270,9 +143,7 @@ impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
 
     /// Whether nothing of the box shows in a cell: `up` and `fills` of [`Over`] there.
     fn behind(&mut self, cell: PyramidCell, [up, fills]: [f32; 2]) -> bool {
-        self.listener.reaches(At::Descent);
-        self.listener.reaches(At::Compare);
-        self.answer.reads += 1;
+        self.listener.compares();
         let mut held = self.buffer.farthest(cell);
         // A stale cell holds too far a depth: what is behind it is hidden all the same, and only what is not
         // is worth a refresh.
@@ -290,25 +161,12 @@ impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
         } else {
             Outcome::Descends
         };
-        self.listener.reads(Read { cell, held, nearest: up, outcome });
-        if outcome != Outcome::Behind {
-            self.listener.reaches(At::Covers);
-        }
-        let here = Decisive { cell, held, nearest: up };
+        let read = Read { cell, held, nearest: up, outcome };
+        self.listener.reads(read);
+        self.summary.take(&read);
         match outcome {
-            Outcome::Behind => {
-                self.listener.reaches(At::Hides);
-                // Kept is the cell with the least margin.
-                if self.answer.decisive.is_none_or(|least| here.margin() < least.margin()) {
-                    self.answer.decisive = Some(here);
-                }
-                true
-            }
-            Outcome::Shows => {
-                self.listener.reaches(At::Shows);
-                self.answer.decisive = Some(here);
-                false
-            }
+            Outcome::Behind => true,
+            Outcome::Shows => false,
             Outcome::Descends => self.below(cell),
         }
     }
@@ -329,16 +187,10 @@ impl<'a, S: Faces, L: Listener> Query<'a, S, L> {
             if !over.meets[k] || pixels[k].intersection(self.pixels).is_empty() {
                 continue;
             }
-            self.listener.reaches(At::Below);
-            self.listener.reaches(At::AskBelow);
-            let is_behind = self.behind(children[k], [over.up[k], over.fills[k]]);
-            self.listener.reaches(At::AskBelow);
-            if !is_behind {
-                self.listener.reaches(At::BelowShows);
+            if !self.behind(children[k], [over.up[k], over.fills[k]]) {
                 return false;
             }
         }
-        self.listener.reaches(At::BelowHides);
         true
     }
     /// Whether the depth of a cell is that of a pixel of it. Above the tiles it may be out of date.

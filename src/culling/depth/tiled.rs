@@ -5,9 +5,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::buffer::Projected;
-use super::faces::Faces;
-use crate::geometry::{NodeId, PixelRect, PrimId, View};
+use super::faces::{Faces, footprint};
+use crate::geometry::{
+    Aabb, BoxImage, Footprint, Frustum, NodeId, PixelRect, PrimId, Projection, Space, Vector, View,
+};
 use crate::raster::{
     Answer, Boxes, Clusters, Fate, Hears, How, Isa, Options, Outcome, PyramidCell, Question, Read, Tiles,
 };
@@ -20,6 +21,14 @@ pub enum TileStep {
     Refresh(PyramidCell),
     /// What a node holds, and is not drawn yet, is drawn: with fronts only, or from both sides.
     Draw(NodeId, bool),
+}
+
+/// A view with its projection and its planes, which every question about a box needs.
+#[derive(Clone, Copy, Debug)]
+pub struct Projected<S: Space> {
+    pub view: View<S>,
+    pub projection: Projection<S::Vector>,
+    pub frustum: Frustum<S::Vector>,
 }
 
 /// Tiles, the view they are for, and what can be drawn into them.
@@ -113,6 +122,35 @@ impl<S: Faces> Tiled<S> {
     pub fn depths(&mut self) -> Vec<f32> {
         self.tiles.depths(Isa::best())
     }
+    /// Whether a box is hidden by what is drawn, by its planes, and its nearest depth, `1/w`; `None` if it is
+    /// out of view. One that reaches the near plane is not hidden. `exact`: where tiles do not decide, the
+    /// depths of their pixels do.
+    pub fn hides_box<H: Hears>(
+        &mut self,
+        bounds: &Aabb<S::Vector>,
+        exact: bool,
+        hears: &mut H,
+    ) -> Option<(bool, f32)> {
+        let Projected { view, projection, frustum } = self.projected.as_ref()?;
+        // All planes at a time, by the bound that keeps primitives out of the image.
+        if frustum.excludes(bounds) {
+            return None;
+        }
+        match footprint(view, projection, bounds) {
+            Footprint::Outside => None,
+            // No finite rectangle bounds what reaches the near plane, so no tile can decide.
+            Footprint::CrossesNear => Some((false, 1.0 / view.eye.near)),
+            Footprint::Seen(BoxImage { pixels, nearest }) => {
+                let boxes = Some([ends::<S>(bounds); 2]);
+                Some((self.hides(Question { pixels, nearest, boxes, exact }, hears), nearest))
+            }
+        }
+    }
+    /// The pixels of a tile at which something that near may show, by their exact depths; see
+    /// [`Tiles::open`].
+    pub fn open(&mut self, tile: PyramidCell, nearest: f32, among: u32) -> u32 {
+        self.tiles.open(tile, nearest, among, Isa::best())
+    }
     /// Whether each of many boxes is hidden, by planes and exactly; `None` if it is out of view.
     pub fn hides_all(&mut self, boxes: &Boxes) -> Vec<Option<bool>> {
         let mut answers = Vec::new();
@@ -120,6 +158,12 @@ impl<S: Faces> Tiled<S> {
         let is_hidden = |a: &Answer| (*a != Answer::Outside).then_some(*a == Answer::Hidden);
         answers.iter().map(is_hidden).collect()
     }
+}
+
+/// Least and greatest corner of a box as tiles are asked for it; flatland has a third axis of no size.
+pub fn ends<S: Space>(bounds: &Aabb<S::Vector>) -> [[f32; 3]; 2] {
+    let widen = |v: S::Vector| [0, 1, 2].map(|a| if a < S::Vector::AXES { v.get(a) } else { 0.0 });
+    [widen(bounds.min), widen(bounds.max)]
 }
 
 /// Of the tiles that a primitive covers the one in which it comes nearest to showing, with its nearest depth

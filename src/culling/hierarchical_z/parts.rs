@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::index::CubeIndex;
 use super::{HierarchicalZ, Memory, Params};
 use crate::culling::depth::picture::{last_reads, levels};
-use crate::culling::depth::{Buffer, DepthNote, Faces, Query, QueryReporter, Tiled};
+use crate::culling::depth::{Buffer, DepthNote, Faces, Query, QueryReporter, Step, Tiled};
 use crate::drawing::Drawing;
 use crate::geometry::{Eye, NodeId, PixelRect, Solid, View};
 use crate::method::{DrawList, Frame, Method, Recorder, SettingError, Settings, State, Unobserved, params};
@@ -79,17 +79,16 @@ pub fn pyramid_picture<S: Faces>(
 ) -> (Drawing, bool) {
     let mut buffer = Buffer::default();
     buffer.clear(view);
-    buffer.draw(scene, scene.live(), &Options::default());
+    buffer.step(Step::Draw { scene, prims: scene.live(), options: Options::default() });
     // No part of the picture is to be hatched as stale.
     buffer.refresh_all();
     let mut recorder: Recorder<DepthNote<S>> = Recorder::new(usize::MAX);
     let mut is_hidden = false;
     if let Some((pixels, depth)) = face {
         // The face is of no node and of no line of the pseudocode; the picture shows neither.
-        is_hidden =
-            Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), |_| None, &mut recorder))
-                .rectangle(pixels)
-                .is_hidden;
+        is_hidden = Query::new(&mut buffer, 1.0 / depth, QueryReporter::new(NodeId(0), None, &mut recorder))
+            .rectangle(pixels)
+            .is_hidden;
     }
     (levels(&buffer, view, &last_reads(recorder.notes.iter().rev().map(Some)), scale), is_hidden)
 }

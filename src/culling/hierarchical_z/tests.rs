@@ -7,7 +7,7 @@ use super::parts::figure_1;
 use super::*;
 use crate::culling::cubes::CubeNote;
 use crate::culling::depth::picture::Levels;
-use crate::culling::depth::{Answered, Buffer, DepthNote, Ground, Query, QueryReporter};
+use crate::culling::depth::{Answered, Buffer, DepthNote, Ground, Query, QueryReporter, Step};
 use crate::geometry::{Flat, NodeId, PixelRect, Solid, Space, Vector, View};
 use crate::method::{Context, Note, Recorder, Unobserved, Verdict};
 use crate::raster::{Options, Outcome, render};
@@ -51,10 +51,10 @@ fn face_at_6(pixels: PixelRect) -> (bool, Vec<(u8, f32, Outcome)>) {
     let (scene, view) = figure_1().expect("a valid scene");
     let mut buffer = Buffer::default();
     buffer.clear(&view);
-    buffer.draw(&scene, scene.live(), &Options::default());
+    buffer.step(Step::Draw { scene: &scene, prims: scene.live(), options: Options::default() });
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
-    let reporter = QueryReporter::new(NodeId(0), |_| None, &mut recorder);
+    let reporter = QueryReporter::new(NodeId(0), None, &mut recorder);
     let is_hidden = Query::new(&mut buffer, 1.0 / 6.0, reporter).rectangle(pixels).is_hidden;
     let reads = recorder.notes.iter().filter_map(|n| match n {
         Evidence::Depth(DepthNote::Read(_, r)) => Some((r.cell.level, (1.0 / r.held).round(), r.outcome)),
@@ -174,10 +174,10 @@ fn answered(pixels: PixelRect, depth: f32) -> (Vec<Evidence<Solid>>, String) {
     let (scene, view) = figure_1().expect("a valid scene");
     let mut buffer = Buffer::default();
     buffer.clear(&view);
-    buffer.draw(&scene, scene.live(), &Options::default());
+    buffer.step(Step::Draw { scene: &scene, prims: scene.live(), options: Options::default() });
     buffer.refresh_all();
     let mut recorder: Recorder<Evidence<Solid>> = Recorder::new(1000);
-    let reporter = QueryReporter::new(NodeId(7), |_| None, &mut recorder);
+    let reporter = QueryReporter::new(NodeId(7), None, &mut recorder);
     let answer = Query::new(&mut buffer, 1.0 / depth, reporter).rectangle(pixels);
     let (node, ground, bounds, is_by_planes) = (NodeId(7), Ground::Cells, scene.bounds(), false);
     let answered = Answered { node, bounds, pixels, answer, ground, is_by_planes };

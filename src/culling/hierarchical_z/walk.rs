@@ -6,13 +6,13 @@ use super::index::CubeIndex;
 use super::{Form, Params, Volume};
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, Asking, DepthNote, Faces, Ground, Rasterized, Stage, TileStep, Tiled, deciding,
+    Answer, Answered, Asking, DepthNote, Faces, Ground, Rasterized, Stage, TileStep, Tiled, deciding, ends,
     footprint, project_sphere,
 };
 use crate::drawing::Subject;
 use crate::geometry::{
-    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector,
-    View, nearest_depth,
+    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, Space, Vector, View,
+    nearest_depth,
 };
 use crate::index::{Octree, OctreeNode};
 use crate::method::evidence::{Facing, Tested};
@@ -297,15 +297,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// Whether a primitive that is in no cluster is hidden, by tiles alone.
     fn hides_apart(&mut self, prim: PrimId) -> bool {
         let bounds = self.scene.prim_bounds(prim);
-        match footprint(self.view, &self.projection, &bounds) {
-            Footprint::Outside => true,
-            Footprint::CrossesNear => false,
-            Footprint::Seen(BoxImage { pixels, nearest }) => {
-                let boxes = Some([ends::<S>(&bounds); 2]);
-                let mut asking = Asking::new(&mut *self.watch, |_: Stage| None, None);
-                self.tiled.hides(Question { pixels, nearest, boxes, exact: false }, &mut asking)
-            }
-        }
+        let mut asking = Asking::new(&mut *self.watch, |_: Stage| None, None);
+        self.tiled.hides_box(&bounds, false, &mut asking).is_none_or(|(is_hidden, _)| is_hidden)
     }
 
     /// Whether the tiles hide a cube. `exact`: where they do not decide, the depths of their pixels do.
@@ -446,12 +439,6 @@ fn line_of(stage: Stage) -> Option<u8> {
         Stage::Pixel => line::PIXEL,
         Stage::Hidden => line::ALL_HIDDEN,
     })
-}
-
-/// Least and greatest corner of a box as tiles are asked for it; flatland has a third axis of no size.
-fn ends<S: Space>(bounds: &Aabb<S::Vector>) -> [[f32; 3]; 2] {
-    let widen = |v: S::Vector| [0, 1, 2].map(|a| if a < S::Vector::AXES { v.get(a) } else { 0.0 });
-    [widen(bounds.min), widen(bounds.max)]
 }
 
 /// The children of a cube, those on the eye's side first.

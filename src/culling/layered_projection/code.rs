@@ -251,4 +251,12 @@ pub(super) const DEPARTURES: &[Departure] = &[
         "whether faces have one side is for the scene to say",
         When::Without("backface-culling", "true"),
     ),
+    departure(
+        "6",
+        "what the budget leaves is compared with tiles of coverage masks and depths (Hasselgren, Andersson \
+         and Akenine-Möller 2016), a cell by the planes of its box, and with exact depths where these do \
+         not decide",
+        "the paper asks the hardware's z-buffer",
+        When::With("queries", "true"),
+    ),
 ];

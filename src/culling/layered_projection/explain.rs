@@ -157,8 +157,8 @@ pub struct Queried {
 #[derive(Clone, Copy, Debug)]
 pub struct Compared {
     pub prim: PrimId,
-    /// Its nearest depth and the farthest that is drawn where it would show, `1/w`; `None` where the view
-    /// volume cuts it or it covers no pixel.
+    /// Its nearest depth in the tile in which it comes nearest to showing, and the farthest that is drawn
+    /// there, `1/w`; `None` where it covers no pixel, or only its bounds may show.
     pub depths: Option<[f32; 2]>,
     pub is_hidden: bool,
 }
@@ -604,7 +604,8 @@ fn comparison_sentence<S: Cellular>(n: &Compared) -> String {
             "{name} begins at depth {nearest}, and the farthest that is drawn where it would show is at \
              {held}: {end}."
         ),
-        None => format!("{name} is cut by the view volume or covers no pixel's center: {end}."),
+        None if n.is_hidden => format!("{name} covers no pixel's center: {end}."),
+        None => format!("By its bounds the {} {} may show: {end}.", S::PRIM, n.prim),
     }
 }
 

@@ -4,7 +4,7 @@
 //! 2. assign to each cell the primitives that meet it, and find ρ_max, the most that meet any. Instead of
 //! marking every primitive that was drawn (Section 4.1), those that meet one cell alone are kept apart: only
 //! the others need a mark. To the rest of the house it is a tree of two levels: the region, and below it the
-//! cells.
+//! cells. 3. Where depths will be asked (Section 6), what cells hold is made ready to be drawn into tiles.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,6 +15,7 @@ use super::saved::{self, Key};
 use crate::geometry::{Aabb, CellId, NodeId, PrimId, Space};
 use crate::index::Hierarchy;
 use crate::index::tessellation::{Assignment, Cellular, Tessellation};
+use crate::raster::Clusters;
 use crate::scene::{Part, Progress, Scene};
 
 /// Cells and what is in them.
@@ -22,6 +23,9 @@ use crate::scene::{Part, Progress, Scene};
 pub struct Index<S: Cellular> {
     pub cells: Cells<S>,
     pub assignment: Assignment,
+    /// Where depths are asked, what is drawn into tiles, two groups a node: of the root nothing and what
+    /// several cells share, of each cell what meets it alone and what it shares.
+    pub clusters: Option<Arc<Clusters>>,
     /// How many primitives of each cell hide what is behind them; all of them if there is no table.
     hiding: Option<Vec<u32>>,
     /// ρ_max: the most of any cell.
@@ -38,7 +42,8 @@ impl<S: Cellular> Index<S> {
         let cells = Cells::build(scene, params, &Part { whole: progress, start: 0.0, length: 0.3 })?;
         // "A naive assignment" (Section 4.3): every cell that a primitive meets lists it.
         let assignment =
-            Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.7 })?;
+            Assignment::new(scene, cells.any(), &Part { whole: progress, start: 0.3, length: 0.6 })?;
+        progress.report(0.9, "making clusters");
         Some(Self::of(scene, params, cells, assignment))
     }
     /// Builds it from bytes.
@@ -56,7 +61,12 @@ impl<S: Cellular> Index<S> {
         let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
         let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
         let key = Key::of(scene, params);
-        let mut made = Self { cells, most: assignment.most(), assignment, hiding: None, key, bounds };
+        let clusters = None;
+        let mut made =
+            Self { cells, most: assignment.most(), assignment, clusters, hiding: None, key, bounds };
+        if params.asks_depths() {
+            made.clusters = Some(Arc::new(made.make_ready(scene, params)));
+        }
         if params.surfaces.any_through(scene) {
             // The paper knows opaque primitives only: what lets light through adds nothing to a cell's
             // solidity.
@@ -67,6 +77,18 @@ impl<S: Cellular> Index<S> {
             made.hiding = Some(hiding);
         }
         made
+    }
+    /// 3. For [`Index::clusters`].
+    fn make_ready(&self, scene: &Scene<S>, params: &Params) -> Clusters {
+        let assignment = &self.assignment;
+        // Of what is shared cells keep numbers.
+        let shared = |cell| -> Vec<PrimId> {
+            assignment.shared(cell).iter().map(|n| assignment.all_shared()[*n as usize]).collect()
+        };
+        let cells = || (0..self.count() as u32).map(CellId);
+        let shared: Vec<Vec<PrimId>> = cells().map(shared).collect();
+        let of_cells = cells().zip(&shared).flat_map(|(cell, shared)| [assignment.own(cell), &shared[..]]);
+        Clusters::new(scene, params.surfaces, [&[][..], assignment.all_shared()].into_iter().chain(of_cells))
     }
     /// The primitives that meet a cell: those of it alone, then the shared ones.
     pub fn prims_of(&self, cell: CellId) -> impl Iterator<Item = PrimId> {
@@ -134,6 +156,7 @@ impl<S: Cellular> Hierarchy<S> for Index<S> {
         Some(saved::write(&self.key, &self.cells, &self.assignment))
     }
     fn bytes(&self) -> usize {
-        self.cells.any().bytes() + self.assignment.bytes()
+        let clusters = self.clusters.as_ref().map_or(0, |clusters| clusters.bytes());
+        self.cells.any().bytes() + self.assignment.bytes() + clusters
     }
 }

@@ -113,6 +113,13 @@ macro_rules! section {
     };
 }
 
+impl Params {
+    /// Whether what the budget leaves is compared with the depths of what it drew.
+    fn asks_depths(&self) -> bool {
+        self.queries || self.quality > 0
+    }
+}
+
 impl<S: Cellular + Faces> Method<S> for LayeredProjection {
     type Params = Params;
     type Index = Index<S>;

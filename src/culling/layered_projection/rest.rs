@@ -1,90 +1,124 @@
-//! What the budget leaves, compared with the z-buffer of what it drew. Two extensions of Section 6:
+//! What the budget leaves, compared with the depths of what it drew. Two extensions of Section 6:
 //!
 //! 1. "Render a first chunk of geometry, then use the hardware to cull away unprojected geometry": queries
 //!    for the rest, which make the result exact.
-//! 3. "Adjust the PLP budget to increase the quality": how much of the image the rest could still change,
+//! 2. "Adjust the PLP budget to increase the quality": how much of the image the rest could still change,
 //!    by which a budget is found to be enough.
 //!
-//! A cell is hidden if its box is; then the primitives that meet it alone are. Of those that meet several
-//! cells each is compared by itself, since its fragments may reach over a cell's boundary by the rasterizer's
-//! rounding.
+//! The z-buffer is tiles ([`Tiled`]), into which cells are drawn whole. A cell is hidden if its box is; then
+//! the primitives that meet it alone are. Of those that meet several cells each is compared by itself, since
+//! its fragments may reach over a cell's boundary by the rasterizer's rounding.
 
-use crate::culling::depth::{Answer, Buffer, Faces, Nobody, footprint, hides};
-use crate::geometry::{Aabb, Footprint, PixelRect, PrimId, View};
-use crate::raster::{Options, PyramidCell};
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use super::explain::Evidence;
+use super::index::node_of;
+use crate::culling::depth::{Answer, Faces, Summary, TileStep, Tiled, deciding, footprint};
+use crate::geometry::{Aabb, CellId, Footprint, NodeId, PixelRect, PrimId, View};
+use crate::index::tessellation::Cellular;
+use crate::method::Observer;
+use crate::raster::{Clusters, Fate, Hears, Options, PyramidCell, Read};
 use crate::scene::{Scene, Surfaces};
 
-/// The z-buffer of a frame.
+/// The depths of a frame.
 pub struct Rest<S: Faces> {
-    buffer: Buffer<S>,
-    /// How many of the frame's primitives it holds.
-    drawn: usize,
-    options: Options,
+    tiled: Tiled<S>,
+    /// Cells that were projected since something was asked last.
+    waiting: Vec<CellId>,
+    one_sided: bool,
 }
 
-impl<S: Faces> Rest<S> {
-    /// For primitives that are known to face the eye where that matters.
-    pub fn new(view: &View<S>, surfaces: Surfaces) -> Self {
-        let mut buffer = Buffer::default();
-        buffer.clear(view);
-        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-        Self { buffer, drawn: 0, options }
+impl<S: Cellular + Faces> Rest<S> {
+    /// `clusters`: what cells hold; of a scene of `prims` primitives.
+    pub fn new(view: &View<S>, clusters: &Arc<Clusters>, prims: usize, surfaces: Surfaces) -> Self {
+        let mut tiled = Tiled::default();
+        tiled.clear(view, clusters, prims);
+        Self { tiled, waiting: Vec::new(), one_sided: surfaces.one_sided }
     }
-    /// Draws what was added to the frame's primitives.
-    pub fn catch_up(&mut self, scene: &Scene<S>, prims: &[PrimId]) {
-        if self.drawn < prims.len() {
-            // Those that the pyramid hides are not drawn, which changes no pixel.
-            self.buffer.draw(scene, &prims[self.drawn..], &self.options);
-            self.drawn = prims.len();
+    /// Takes in a cell that is in view and was projected.
+    pub fn add(&mut self, cell: CellId) {
+        self.waiting.push(cell);
+    }
+    /// Draws what was projected.
+    pub fn catch_up(&mut self) {
+        for cell in self.waiting.drain(..) {
+            self.tiled.step(TileStep::Draw(node_of(cell), self.one_sided));
         }
     }
-    /// Whether a box is hidden; `None` if it is out of view.
-    pub fn hides(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
-        // Nobody listens to single reads: the walk notes the answer as a whole.
-        hides(&mut self.buffer, bounds, Nobody)
+    /// Whether a box is hidden; `None` if it is out of view. What decided is found for `O` to tell.
+    pub fn hides<O: Observer<Evidence<S>>>(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
+        let mut sum = Sum::<_, O>::default();
+        let (is_hidden, nearest) = self.tiled.hides_box(bounds, true, &mut sum)?;
+        Some(sum.summary.answer(is_hidden, nearest))
     }
-    /// Draws these primitives, not yet among the frame's, and returns the hidden ones of them.
-    pub fn draw(&mut self, scene: &Scene<S>, prims: &[PrimId]) -> &[PrimId] {
-        self.buffer.refresh_all();
-        self.buffer.draw(scene, prims, &self.options)
+    /// Draws what several cells share and none of them drew. Returns those that are hidden, ascending.
+    pub fn draw_shared<O: Observer<Evidence<S>>>(&mut self, scene: &Scene<S>) -> Vec<PrimId> {
+        let fates = self.tiled.step(TileStep::Draw(NodeId(0), self.one_sided)).to_vec();
+        let mut is_hidden = |&(prim, fate): &(PrimId, Fate)| match fate {
+            Fate::Shown => false,
+            Fate::Hidden | Fate::Away => true,
+            // What hides nothing is in no tile, so its box is asked for. By tiles alone, as all of these are.
+            Fate::Apart => {
+                let mut sum = Sum::<_, O>::default();
+                let hidden = self.tiled.hides_box(&scene.prim_bounds(prim), false, &mut sum);
+                hidden.is_none_or(|(is_hidden, _)| is_hidden)
+            }
+        };
+        let mut hidden: Vec<PrimId> = fates.iter().filter(|f| is_hidden(f)).map(|(prim, _)| *prim).collect();
+        hidden.sort_unstable();
+        hidden
     }
-    /// What [`Rest::draw`] compared for a primitive: its nearest depth, and the farthest that is drawn where
-    /// it would show, `1/w`. `None` where the view volume cuts it or it covers no pixel.
-    pub fn depths(&self, scene: &Scene<S>, prim: PrimId) -> Option<[f32; 2]> {
-        // Right also after the primitive was drawn, as long as it is no single pixel: until the pyramid is
-        // refreshed it holds what it held.
-        let (extent, held) = self.buffer.operands(scene, prim, &self.options)?;
-        Some([extent.nearest, held])
+    /// The nearest depth of a primitive in the tile in which it comes nearest to showing, and the farthest
+    /// that is drawn there, `1/w`. `None` if it covers no pixel.
+    pub fn depths(&self, scene: &Scene<S>, view: &View<S>, prim: PrimId) -> Option<[f32; 2]> {
+        deciding(self.tiled.tiles(), scene, view, prim).map(|read| [read.nearest, read.held])
     }
     /// Begins to find out what part of the image can still change.
     pub fn doubt(&mut self, view: &View<S>) -> Doubt<'_, S> {
-        self.buffer.refresh_all();
-        let (columns, rows) = self.buffer.pyramid().size(Doubt::<S>::LEVEL);
+        let [columns, rows] = self.tiled.tiles().size(PyramidCell::TILE);
         Doubt {
-            buffer: &self.buffer,
+            tiled: &mut self.tiled,
             view: *view,
             columns,
-            marks: vec![false; (columns * rows) as usize],
+            marks: vec![(0.0, 0); (columns * rows) as usize],
             is_all: false,
         }
     }
 }
 
-/// The blocks of pixels that something not drawn yet could change.
+/// Sums up what a question reads, where `O` listens: the walk notes the answer as a whole, no single reads.
+struct Sum<N, O> {
+    summary: Summary,
+    kinds: PhantomData<(N, O)>,
+}
+
+impl<N, O> Default for Sum<N, O> {
+    fn default() -> Self {
+        Self { summary: Summary::default(), kinds: PhantomData }
+    }
+}
+
+impl<N, O: Observer<N>> Hears for Sum<N, O> {
+    const LISTENS: bool = O::LISTENS;
+    fn reads(&mut self, read: Read) {
+        self.summary.take(&read);
+    }
+    fn refreshes(&mut self, _: PyramidCell) {}
+}
+
+/// The pixels that something not drawn yet could change.
 pub struct Doubt<'a, S: Faces> {
-    buffer: &'a Buffer<S>,
+    tiled: &'a mut Tiled<S>,
     view: View<S>,
     columns: u32,
-    marks: Vec<bool>,
+    /// For each tile the nearest depth at which anything of the rest could show in it, and the pixels at
+    /// which something could, bit `8 y + x`.
+    marks: Vec<(f32, u32)>,
     is_all: bool,
 }
 
 impl<S: Faces> Doubt<'_, S> {
-    /// Level of the pyramid whose cells are marked: blocks of 4 × 4 pixels. Finer, and the boxes' rectangles
-    /// cost sixteen times as many marks; coarser, and a block with one open pixel counts as changed by ever
-    /// more pixels that are not.
-    const LEVEL: u32 = 2;
-
     /// Marks what the contents of a box could change.
     pub fn of_box(&mut self, bounds: &Aabb<S::Vector>) {
         // Without bounds in the image it could change any pixel.
@@ -92,7 +126,7 @@ impl<S: Faces> Doubt<'_, S> {
     }
     /// Marks what a primitive could change; whether that is known.
     pub fn of_prim(&mut self, scene: &Scene<S>, prim: PrimId) -> bool {
-        if let Some((extent, _)) = self.buffer.operands(scene, prim, &Options::default()) {
+        if let Some(extent) = S::extent(scene, &self.view, prim, &Options::default()) {
             self.mark(extent.pixels, extent.nearest);
             return true;
         }
@@ -101,8 +135,8 @@ impl<S: Faces> Doubt<'_, S> {
     }
     /// Marks the image of a box; whether it has one: what reaches the near plane has no bounds.
     fn is_bounded(&mut self, bounds: &Aabb<S::Vector>) -> bool {
-        let Some((view, projection)) = self.buffer.view() else { return true };
-        let footprint = footprint(view, projection, bounds);
+        let Some(seen) = self.tiled.projected() else { return true };
+        let footprint = footprint(&seen.view, &seen.projection, bounds);
         if let Footprint::Seen(image) = &footprint {
             self.mark(image.pixels, image.nearest);
         }
@@ -112,29 +146,34 @@ impl<S: Faces> Doubt<'_, S> {
         if r.is_empty() || self.is_all {
             return;
         }
-        // In `1/w` the greater is the nearer: something at least as near as the farthest that a block holds
-        // could show in it. Equal depths count, since which of two equals shows is the rasterizer's choice.
-        for y in r.y0 >> Self::LEVEL..=(r.y1 - 1) >> Self::LEVEL {
-            for x in r.x0 >> Self::LEVEL..=(r.x1 - 1) >> Self::LEVEL {
-                let mark = &mut self.marks[(y * self.columns + x) as usize];
-                let cell = PyramidCell { level: Self::LEVEL as u8, x: x as u16, y: y as u16 };
-                *mark = *mark || nearest >= self.buffer.farthest(cell);
+        // Bits of a row and of a column of pixels that lie in the rectangle.
+        let part = |first: u32, past: u32, from: u32, most: u32| {
+            let (first, past) = (first.max(from) - from, past.min(from + most) - from);
+            (1u32 << past) - (1 << first)
+        };
+        for y in r.y0 / 4..=(r.y1 - 1) / 4 {
+            let rows = part(r.y0, r.y1, 4 * y, 4);
+            // Each of the four bits to a row of its own.
+            let rows = (rows & 1) | (rows & 2) << 7 | (rows & 4) << 14 | (rows & 8) << 21;
+            for x in r.x0 / 8..=(r.x1 - 1) / 8 {
+                let (most, pixels) = &mut self.marks[(y * self.columns + x) as usize];
+                *most = most.max(nearest);
+                *pixels |= rows * part(r.x0, r.x1, 8 * x, 8);
             }
         }
     }
-    /// The share of the image that is marked.
-    pub fn share(&self) -> f32 {
+    /// The share of the image that is marked and not before all of the rest.
+    pub fn share(self) -> f32 {
         if self.is_all {
             return 1.0;
         }
-        let (width, height) = (self.view.width, self.view.height);
-        // Blocks at the right and lower border are cut by the image: count their pixels, not the blocks.
-        let pixels = |at: usize| {
-            let (x, y) = (at as u32 % self.columns, at as u32 / self.columns);
-            let r = PyramidCell { level: Self::LEVEL as u8, x: x as u16, y: y as u16 }.pixels(width, height);
-            u64::from(r.x1 - r.x0) * u64::from(r.y1 - r.y0)
-        };
-        let marked: u64 = (0..self.marks.len()).filter(|&at| self.marks[at]).map(pixels).sum();
-        (marked as f64 / (f64::from(width) * f64::from(height))) as f32
+        let mut open = 0;
+        for (at, (nearest, pixels)) in self.marks.into_iter().enumerate().filter(|(_, mark)| mark.1 != 0) {
+            let (x, y) = ((at as u32 % self.columns) as u16, (at as u32 / self.columns) as u16);
+            // Equal depths count, since which of two equals shows is the rasterizer's choice.
+            open +=
+                self.tiled.open(PyramidCell { level: PyramidCell::TILE, x, y }, nearest, pixels).count_ones();
+        }
+        (f64::from(open) / (f64::from(self.view.width) * f64::from(self.view.height))) as f32
     }
 }

@@ -105,7 +105,7 @@ pub struct Walk<'a, S: Cellular + Faces, O> {
     ended: bool,
     /// Cells projected so far.
     rank: u32,
-    /// What is drawn as a z-buffer, where queries or the quality need one.
+    /// The depths of what is drawn, where queries or the quality ask for them.
     rest: Option<Rest<S>>,
     /// Whether the budget is spent and the rest is decided by queries.
     queries: bool,
@@ -147,7 +147,10 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             reported: 0,
             ended: false,
             rank: 0,
-            rest: (params.queries || params.quality > 0).then(|| Rest::new(view, params.surfaces)),
+            rest: index
+                .clusters
+                .as_ref()
+                .map(|clusters| Rest::new(view, clusters, scene.prim_count(), params.surfaces)),
             queries: false,
             out,
             watch,
@@ -246,7 +249,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn goes_on(&mut self) -> bool {
         // A limit from outside is final.
         let Some(mut rest) = self.rest.take_if(|_| !self.ended) else { return false };
-        rest.catch_up(self.scene, &self.out.prims);
+        rest.catch_up();
         if self.params.queries {
             // First the budget, then queries for the rest, which now mostly find something in front.
             self.line(line::ASK_ON);
@@ -287,7 +290,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let outside =
                 || matches!(self.frustum.test(&scene.prim_bounds(prim), planes), FrustumTest::Outside(_));
             // What the near plane may cut has no bound in the image: there are few of them, so they are
-            // drawn.
+            // listed. Into the tiles they come with the first of their cells.
             if !self.marks[number] && faces() && !outside() && !doubt.of_prim(scene, prim) {
                 self.marks[number] = true;
                 self.out.prims.push(prim);
@@ -302,9 +305,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let Some(rest) = self.rest.as_mut().filter(|_| self.index.assignment.held(cell) > 0) else {
             return false;
         };
-        rest.catch_up(self.scene, &self.out.prims);
+        rest.catch_up();
         // Out of view: projecting it draws nothing and lets the front grow on.
-        let Some(answer) = rest.hides(&bounds) else { return false };
+        let Some(answer) = rest.hides::<O>(&bounds) else { return false };
         self.watch.event(Event::Line(line::ASK));
         self.watch.event(Event::Entered(node));
         self.watch.note(|| Evidence::Queried(Queried { cell, solidity, answer }));
@@ -332,20 +335,30 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             }
         }
         let Some(rest) = &mut self.rest else { return };
-        rest.catch_up(self.scene, &self.out.prims);
-        // They are drawn one after the other, and each is compared with all before it: those that are hidden
-        // come back, in the order in which they went in.
-        let hidden = rest.draw(self.scene, &open).to_vec();
-        let mut hidden = hidden.iter().peekable();
-        for prim in open {
-            let is_hidden = hidden.next_if_eq(&&prim).is_some();
+        rest.catch_up();
+        let (scene, view) = (self.scene, self.view);
+        // What is drawn to is as far as it was found for those that show, and nearer than those that do not:
+        // so before for these and after for the others, where someone listens.
+        let mut before = Vec::new();
+        if O::LISTENS {
+            before.extend(open.iter().map(|&prim| rest.depths(scene, view, prim)));
+        }
+        // They are drawn together, and each is compared with what is drawn when its turn comes.
+        let hidden = rest.draw_shared::<O>(scene);
+        for (at, prim) in open.into_iter().enumerate() {
+            let is_hidden = hidden.binary_search(&prim).is_ok();
             if !is_hidden {
                 self.out.prims.push(prim);
             }
-            let (rest, scene) = (&*rest, self.scene);
+            let rest = &*rest;
             self.watch.event(Event::Line(line::COMPARE));
-            self.watch
-                .note(|| Evidence::Compared(Compared { prim, depths: rest.depths(scene, prim), is_hidden }));
+            self.watch.note(|| {
+                // Of what lets light through the box may show where itself it does not.
+                let shows = |depths: &[f32; 2]| depths[0] >= depths[1];
+                let before = before.get(at).copied().flatten().filter(shows);
+                let depths = if is_hidden { rest.depths(scene, view, prim) } else { before };
+                Evidence::Compared(Compared { prim, depths, is_hidden })
+            });
             let verdict = if is_hidden { Verdict::Hidden } else { Verdict::Visible };
             self.watch.event(Event::DecidedPrim(prim, verdict));
         }
@@ -609,6 +622,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 }
             }
             self.line(line::DRAW);
+            if index.assignment.held(cell) > 0 {
+                self.rest.iter_mut().for_each(|rest| rest.add(cell));
+            }
         }
         self.report_drawn();
         self.rank += 1;

@@ -14,6 +14,11 @@
 //! 4. every n frames, or early, each processor checks its visible structures against the finished image
 //!    (Sections 4.2 and 5.1).
 //!
+//! Its image is a z-buffer with a pyramid ([`Buffer`]), not tiles as elsewhere: a renderer rasterizes the
+//! primitives that arrive, in its region alone, and answers for that region as it is at that tick. Tiles take
+//! what a cube holds at once and all over the image, so that a region would know of primitives that have not
+//! reached its renderer.
+//!
 //! Where this differs from the paper, and why: [`DEPARTURES`]. Cost: O(jobs · log jobs) beside what is drawn
 //! and queried.
 

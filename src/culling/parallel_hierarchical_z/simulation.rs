@@ -15,7 +15,7 @@ use super::machine::{Job, Machine, Unit, Volume, Worked, ticks};
 use super::screen::Screen;
 use crate::culling::cubes::{Check, CubeNote};
 use crate::culling::depth::{
-    Answer, Answered, At, Buffer, Decisive, DepthNote, Faces, Ground, Query, QueryReporter, Rasterized, Step,
+    Answer, Answered, Buffer, Decisive, DepthNote, Faces, Ground, Query, QueryReporter, Rasterized, Step,
     footprint, project_sphere,
 };
 use crate::drawing::Subject;
@@ -584,11 +584,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Simulation<'a, S, O> {
     fn compare(&mut self, question: usize, region: u32) -> bool {
         let Question { image, bounds, whole, node, .. } = self.questions[question];
         let pixels = image.pixels.intersection(self.screen.window(region));
-        let lines = match self.machine.query {
-            Volume::Faces => |at| matches!(at, At::Compare).then_some(line::COMPARE_BOX),
-            Volume::Sphere => |at| matches!(at, At::Compare).then_some(line::COMPARE_SPHERE),
+        let line = match self.machine.query {
+            Volume::Faces => line::COMPARE_BOX,
+            Volume::Sphere => line::COMPARE_SPHERE,
         };
-        let reporter = QueryReporter::new(node, lines, &mut *self.watch);
+        let reporter = QueryReporter::new(node, Some(line), &mut *self.watch);
         // A departure: the paper's renderer compares all pixels at once and has no use for a pyramid (Section
         // 5). The answer is the same.
         let query = Query::new(&mut *self.buffer, image.nearest, reporter);

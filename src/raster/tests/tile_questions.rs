@@ -44,6 +44,8 @@ struct Counted {
     hidden: usize,
     closer: usize,
     blocks: usize,
+    /// Tiles of which something at a depth shows at a part of the pixels.
+    partly_open: usize,
 }
 
 /// Whoever listens changes nothing; what changes is what is heard; the last read is the answer; and what is
@@ -91,6 +93,38 @@ fn ask<S: Drawable>(
     }
 }
 
+/// The pixels of a tile at which something shows are those at which it is not behind the image.
+fn opens_where_the_image_does<S: Drawable>(
+    dice: &mut Dice,
+    view: &View<S>,
+    tiles: &Tiles,
+    truth: &Target,
+    counted: &mut Counted,
+) {
+    for _ in 0..12 {
+        let [x, y] = tiles.size(PyramidCell::TILE).map(|n| dice.below(n));
+        let tile = PyramidCell { level: PyramidCell::TILE, x: x as u16, y: y as u16 };
+        let PixelRect { x0, x1, y0, y1 } = tile.pixels(view.width, view.height);
+        let at = |x: u32, y: u32| truth.depth[(y * view.width + x) as usize];
+        // As deep as one of its pixels, or a little nearer or farther.
+        let depth = at(x0 + dice.below(x1 - x0), y0 + dice.below(y1 - y0));
+        let nearest = depth * [1.0, 1.0 - f32::EPSILON, 1.0 + f32::EPSILON, 0.9, 1.2][dice.below(5) as usize];
+        // What comes no nearer than the far plane is not asked for.
+        let nearest = nearest.max(1.0 / view.eye.far);
+        let (mut among, mut want) = (0, 0);
+        for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+            let bit = u32::from(dice.below(4) > 0) << ((y - y0) * 8 + x - x0);
+            among |= bit;
+            want |= if nearest >= at(x, y) { bit } else { 0 };
+        }
+        for isa in [Isa::best(), Isa::Portable] {
+            let mut tiles = tiles.clone();
+            assert_eq!(tiles.open(tile, nearest, among, isa), want, "{tile:?} at {nearest}, {isa:?}");
+        }
+        counted.partly_open += usize::from(want != 0 && want != among);
+    }
+}
+
 /// The groups of a scene one after the other, with questions between them, which see what is drawn so far.
 fn by_groups<S: Drawable>(
     scene: &Scene<S>,
@@ -113,6 +147,7 @@ fn by_groups<S: Drawable>(
             let boxes = boxes(dice);
             ask(dice, boxes, view, &mut tiles, &target, counted);
         }
+        opens_where_the_image_does(dice, view, &tiles, &target, counted);
     }
     assert_eq!(tiles.depths(Isa::best()), target.depth, "as the image");
     // What shows in the end may have shown when it was drawn, and what faces away was never drawn.
@@ -135,8 +170,9 @@ fn questions_are_heard_whole() {
         let boxes = |dice: &mut Dice| [random_box(dice), random_box(dice)];
         by_groups(&scene, &view, &mut dice, boxes, &mut counted);
     }
-    let Counted { visible, hidden, closer, blocks } = counted;
+    let Counted { visible, hidden, closer, blocks, partly_open } = counted;
     assert!(visible > 500 && hidden > 500 && closer > 100 && blocks > 10, "{counted:?}");
+    assert!(partly_open > 500, "{counted:?}");
 }
 
 #[test]

@@ -218,6 +218,11 @@ impl Tiles {
     pub fn refresh(&mut self, cell: PyramidCell, isa: Isa) {
         query::refresh_cell(self, cell, isa);
     }
+    /// The pixels of a tile, of those `among`, at which something at a depth, `1/w`, may show: where it does
+    /// not lie behind what is drawn. Bit `8 y + x`. Exact, which needs what [`Tiles::clear`] was told to keep.
+    pub fn open(&mut self, tile: PyramidCell, nearest: f32, among: u32, isa: Isa) -> u32 {
+        query::open(self, tile, nearest, among, isa)
+    }
     /// Whether boxes are hidden by what is drawn. `exact`: tiles that do not decide are shaded, which needs
     /// what [`Tiles::clear`] was told to keep; else they count as showing the box.
     pub fn hides_all(&mut self, boxes: &Boxes, exact: bool, isa: Isa, answers: &mut Vec<Answer>) {
@@ -233,14 +238,14 @@ impl Tiles {
         let (x, y) = (usize::from(cell.x), usize::from(cell.y));
         match cell.level {
             PyramidCell::BLOCK => self.block_far[y * self.stride() + x],
-            _ => self.lines[x / 4 * self.rows + y].far[x % 4],
+            _ => self.lines[self.line_of(cell)].far[x % 4],
         }
     }
     /// The pixels of a tile whose nearer layer is begun, bit `8 y + x`, and what none of them is farther
     /// than.
     pub fn begun(&self, cell: PyramidCell) -> (u32, f32) {
-        let (line, k) = (&self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)], cell.x % 4);
-        (line.mask[usize::from(k)], line.near[usize::from(k)])
+        let (line, k) = (&self.lines[self.line_of(cell)], usize::from(cell.x % 4));
+        (line.mask[k], line.near[k])
     }
     /// The pixels of a tile that anything covers, bit `8 y + x`.
     pub fn covered_pixels(&self, cell: PyramidCell) -> u32 {
@@ -298,6 +303,11 @@ impl Tiles {
     #[inline(always)]
     fn stride(&self) -> usize {
         self.strips + 16
+    }
+    /// The line that a tile is in.
+    #[inline(always)]
+    fn line_of(&self, tile: PyramidCell) -> usize {
+        usize::from(tile.x) / 4 * self.rows + usize::from(tile.y)
     }
     /// The first line of a block.
     #[inline(always)]

@@ -53,6 +53,18 @@ pub(super) fn refresh_cell(tiles: &mut Tiles, cell: PyramidCell, isa: Isa) {
     wide::run(isa, Refresh { tiles, cell });
 }
 
+/// See [`Tiles::open`].
+pub(super) fn open(tiles: &mut Tiles, tile: PyramidCell, nearest: f32, among: u32, isa: Isa) -> u32 {
+    let (line, k) = (&tiles.lines[tiles.line_of(tile)], usize::from(tile.x % 4));
+    if nearest < line.far[k] {
+        return 0;
+    }
+    // Where nothing is, anything shows.
+    let covered = among & line.ever[k];
+    let among = among & !covered;
+    if covered == 0 { among } else { among | wide::run(isa, Open { tiles, tile, nearest, among: covered }) }
+}
+
 /// How primitives are drawn.
 #[derive(Clone, Copy)]
 pub struct How<'a> {
@@ -389,9 +401,37 @@ impl Work for Refresh<'_> {
         if cell.level == PyramidCell::BLOCK {
             refresh(l, tiles, x, y);
         } else {
-            let (block, tile) = (y / 4 * tiles.strips + x / 4, y % 4 * 4 + x % 4);
+            let (block, tile) = place_of(tiles, cell);
             look_closer(l, tiles, block, tile);
         }
+    }
+}
+
+/// Of the pixels of a tile those that do not lie before a depth.
+struct Open<'a> {
+    tiles: &'a mut Tiles,
+    tile: PyramidCell,
+    nearest: f32,
+    among: u32,
+}
+
+impl Work for Open<'_> {
+    type Output = u32;
+    #[inline(always)]
+    fn run<L: Wide>(self, l: L) -> u32 {
+        let Self { tiles, tile, nearest, among } = self;
+        let (block, tile) = place_of(tiles, tile);
+        let known = tiles.resolved.at[block][tile];
+        if known == Resolved::NOT || tiles.resolved.floors[known as usize].1 == Resolved::NOT {
+            look_closer(l, tiles, block, tile);
+        }
+        let floor = tiles.resolved.floors[tiles.resolved.at[block][tile] as usize];
+        let depths = &tiles.resolved.depths[floor.1 as usize];
+        let mut open = 0;
+        for at in (0..32).step_by(L::N) {
+            open |= l.bits(l.ge(l.splat(nearest), l.load(&depths[at..]))) << at;
+        }
+        open & among
     }
 }
 
@@ -560,6 +600,12 @@ fn cell_at(level: u8, [x, y]: [usize; 2]) -> PyramidCell {
 /// The tile at its first pixel.
 pub(super) fn tile_at([x, y]: [i32; 2]) -> PyramidCell {
     cell_at(PyramidCell::TILE, [x as usize / 8, y as usize / 4])
+}
+/// The block of a tile, and its number there.
+#[inline(always)]
+fn place_of(tiles: &Tiles, tile: PyramidCell) -> (usize, usize) {
+    let (x, y) = (usize::from(tile.x), usize::from(tile.y));
+    (y / 4 * tiles.strips + x / 4, y % 4 * 4 + x % 4)
 }
 /// Works out the depths of a tile's pixels.
 #[inline(always)]
