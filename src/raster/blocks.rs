@@ -12,8 +12,7 @@
 
 use super::Target;
 use super::fill::{Canvas, fill};
-use super::frame::{Frame, Taker, Triangle, hides};
-use super::pyramid::Pyramid;
+use super::frame::{Frame, Taker, Triangle};
 use super::setup::Setup;
 use super::simd::Lanes;
 use super::vertex::Vertex;
@@ -73,37 +72,18 @@ pub(super) struct Bins {
     starts: Vec<u32>,
     /// The lists: the depth turned round, so that the nearest is least, above the triangle's number.
     lists: Vec<u64>,
-    /// What the pyramid hides.
-    pub hidden: Vec<PrimId>,
     /// What may show, and lets light through.
     pub through: Vec<PrimId>,
-    /// With a pyramid, the boxes of what it does not hide.
-    pub touched: Vec<PixelRect>,
 }
 
-struct Finder<'a> {
-    bins: &'a mut Bins,
-    held: Option<(&'a Pyramid, &'a [f32])>,
-}
-
-impl Taker for Finder<'_> {
+impl Taker for Bins {
     #[inline(always)]
     fn take(&mut self, frame: &Frame, t: Triangle) {
         let Some(rect) = Setup::bounds(t.v, &frame.window) else { return };
-        let (bins, nearest) = (&mut *self.bins, t.v[0].z.max(t.v[1].z).max(t.v[2].z));
-        if let Some((pyramid, depth)) = self.held
-            && t.whole
-            && hides(pyramid, depth, rect, nearest)
-        {
-            bins.hidden.push(PrimId(t.id));
-            return;
-        }
+        let (bins, nearest) = (self, t.v[0].z.max(t.v[1].z).max(t.v[2].z));
         if !frame.fills(t.id) {
             bins.through.push(PrimId(t.id));
             return;
-        }
-        if self.held.is_some() {
-            bins.touched.push(rect);
         }
         let block = |first: u32, past: u32, side: usize| {
             [(first as usize / side) as u16, ((past - 1) as usize / side) as u16]
@@ -127,17 +107,15 @@ impl Taker for Finder<'_> {
 }
 
 impl Bins {
-    /// Finds the triangles of some primitives. A pyramid, with its image, is read as it is before the draw.
+    /// Finds the triangles of some primitives.
     #[inline(always)]
-    pub fn find(&mut self, frame: &Frame, held: Option<(&Pyramid, &[f32])>, prims: &[PrimId]) {
+    pub fn find(&mut self, frame: &Frame, prims: &[PrimId]) {
         self.found.clear();
         self.own.clear();
         self.ready.clear();
         self.meetings = 0;
-        self.hidden.clear();
         self.through.clear();
-        self.touched.clear();
-        frame.find(prims, &mut Finder { bins: self, held });
+        frame.find(prims, self);
     }
     /// Makes the lists of the blocks of an image.
     #[inline(always)]
@@ -182,7 +160,7 @@ impl Bins {
             }
             Corners::Ready(at) => return self.ready[at as usize].within(block),
         };
-        // Whether it is a whole primitive matters to the pyramid alone, which was asked before.
+        // Whether it is a whole primitive matters to its extent alone.
         Setup::new(v, found.id, true, &frame.window)
     }
 }
@@ -201,7 +179,6 @@ pub(super) fn number(bins: &mut [Bins]) -> usize {
 /// Some rows of an image, those of a row of blocks.
 pub(super) struct Band<'a> {
     pub depth: &'a mut [f32],
-    /// Empty where only depths are drawn.
     pub item: &'a mut [u32],
     /// Which of the image's bands it is.
     pub number: usize,
@@ -225,15 +202,9 @@ impl Default for Block {
     }
 }
 
-/// Fills the blocks of a band; ids too if there are `ITEMS`.
+/// Fills the blocks of a band.
 #[inline(always)]
-pub(super) fn fill_band<const ITEMS: bool, L: Lanes>(
-    l: L,
-    frame: &Frame,
-    bins: &[Bins],
-    block: &mut Block,
-    band: Band,
-) {
+pub(super) fn fill_band<L: Lanes>(l: L, frame: &Frame, bins: &[Bins], block: &mut Block, band: Band) {
     let Band { depth, item, number, width, anew } = band;
     let across = width.div_ceil(COLUMNS);
     let (first_row, rows) = (number * ROWS, depth.len() / width);
@@ -257,20 +228,16 @@ pub(super) fn fill_band<const ITEMS: bool, L: Lanes>(
             None => {
                 for row in 0..rows {
                     block.depth[own(row)].copy_from_slice(&depth[out(row)]);
-                    if ITEMS {
-                        block.item[own(row)].copy_from_slice(&item[out(row)]);
-                    }
+                    block.item[own(row)].copy_from_slice(&item[out(row)]);
                 }
             }
         }
         let at = [x0 as u32, first_row as u32];
         let rect = PixelRect { x0: at[0], x1: at[0] + columns as u32, y0: at[1], y1: at[1] + rows as u32 };
-        block.fill::<ITEMS, L>(l, frame, bins, &rect);
+        block.fill(l, frame, bins, &rect);
         for row in 0..rows {
             depth[out(row)].copy_from_slice(&block.depth[own(row)]);
-            if ITEMS {
-                item[out(row)].copy_from_slice(&block.item[own(row)]);
-            }
+            item[out(row)].copy_from_slice(&block.item[own(row)]);
         }
     }
 }
@@ -278,10 +245,9 @@ pub(super) fn fill_band<const ITEMS: bool, L: Lanes>(
 impl Block {
     /// Fills the triangles of the list.
     #[inline(always)]
-    fn fill<const ITEMS: bool, L: Lanes>(&mut self, l: L, frame: &Frame, bins: &[Bins], rect: &PixelRect) {
+    fn fill<L: Lanes>(&mut self, l: L, frame: &Frame, bins: &[Bins], rect: &PixelRect) {
         let Self { depth, item, list } = self;
         let (columns, rows) = ((rect.x1 - rect.x0) as usize, (rect.y1 - rect.y0) as usize);
-        let item: &mut [u32] = if ITEMS { item } else { &mut [] };
         let first = [rect.x0 as i32, rect.y0 as i32];
         let mut canvas = Canvas { depth, item, first, stride: COLUMNS };
         // Depths are not negative, so their bits are ordered as they are.
@@ -295,7 +261,7 @@ impl Block {
             let number = *entry as u32;
             let bins = &bins[bins.partition_point(|bins| bins.before <= number) - 1];
             let Some(setup) = bins.set_up(number - bins.before, frame, rect) else { continue };
-            fill::<ITEMS, L>(l, &setup, &mut canvas);
+            fill(l, &setup, &mut canvas);
             // Looking for the farthest pixel pays once most of the block may have changed.
             filled += (setup.x1 - setup.x0) * (setup.y1 - setup.y0);
             if filled as usize > ROWS * COLUMNS {

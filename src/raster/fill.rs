@@ -14,7 +14,6 @@ use super::vertex::SUBPIXEL_BITS;
 /// Pixels that one thread fills: an image, or a block of it.
 pub(super) struct Canvas<'a> {
     pub depth: &'a mut [f32],
-    /// Empty where only depths are drawn.
     pub item: &'a mut [u32],
     /// Column and row in the image of its first pixel.
     pub first: [i32; 2],
@@ -30,20 +29,20 @@ impl Canvas<'_> {
     }
 }
 
-/// Fills a triangle, whose box lies in the canvas; ids too if there are `ITEMS`.
+/// Fills a triangle, whose box lies in the canvas.
 #[inline(always)]
-pub(super) fn fill<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
+pub(super) fn fill<L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
     // (a) needs edge functions that fit 32-bit lanes and a box no wider than a vector.
     if s.narrow && s.x1 - s.x0 <= L::N as i32 {
-        fill_small::<ITEMS, L>(l, s, canvas);
+        fill_small(l, s, canvas);
     } else {
-        fill_spans::<ITEMS, L>(l, s, canvas);
+        fill_spans(l, s, canvas);
     }
 }
 
 /// Rows that fit a vector, with 32-bit edge functions.
 #[inline(always)]
-fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
+fn fill_small<L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
     let columns = l.first((s.x1 - s.x0) as usize);
     // Closures would not be compiled for the instruction set, so the three edges are written out.
     let [a, b, c] = &s.edges;
@@ -59,30 +58,12 @@ fn fill_small<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas)
     for y in s.y0..s.y1 {
         let at = canvas.place(s.x0, y);
         let inside = l.none_negative(edge_a, edge_b, edge_c, columns);
-        // No nearer than the nearest vertex, whatever the rounding: the test against the pyramid counts on
-        // it.
+        // No nearer than the nearest vertex, whatever the rounding: whoever bounds what is drawn counts on it.
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
-        merge::<ITEMS, L>(l, canvas, at, inside, z, ids);
+        // To the end of the canvas, all of which is ours: so that nearly all vectors are whole ones.
+        l.merge(&mut canvas.depth[at..], &mut canvas.item[at..], inside, z, ids);
         (edge_a, edge_b, edge_c) =
             (l.add_i(edge_a, step_a), l.add_i(edge_b, step_b), l.add_i(edge_c, step_c));
-    }
-}
-
-/// Neighboring pixels of a canvas from one on, a vector of them or as many as there are.
-#[inline(always)]
-fn merge<const ITEMS: bool, L: Lanes>(
-    l: L,
-    canvas: &mut Canvas,
-    at: usize,
-    inside: L::M,
-    z: L::F,
-    ids: L::I,
-) {
-    // To the end of the canvas, all of which is ours: so that nearly all vectors are whole ones.
-    if ITEMS {
-        l.merge(&mut canvas.depth[at..], &mut canvas.item[at..], inside, z, ids);
-    } else {
-        l.merge_depth(&mut canvas.depth[at..], inside, z);
     }
 }
 
@@ -91,7 +72,7 @@ const SPAN_ROWS: usize = 16;
 
 /// Rows of any width, from the exact ends of their spans.
 #[inline(always)]
-fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
+fn fill_spans<L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
     // (b) Three divisions a triangle; spans then take multiplications only.
     let inverse = [s.edges[0].inverse(), s.edges[1].inverse(), s.edges[2].inverse()];
     let (low, high, slope) = (l.splat(s.plane.low), l.splat(s.plane.high), l.splat(s.plane.dx));
@@ -115,22 +96,15 @@ fn fill_spans<const ITEMS: bool, L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas)
             // Every pixel between the ends is covered, so no vector but the last needs a mask.
             let depths = canvas.depth[first..past].chunks_exact_mut(L::N);
             let left = depths.len() * L::N;
-            if ITEMS {
-                for (depth, item) in depths.zip(canvas.item[first..past].chunks_exact_mut(L::N)) {
-                    let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
-                    l.merge(depth, item, l.first(L::N), z, ids);
-                    way = l.add_i(way, next);
-                }
-            } else {
-                for depth in depths {
-                    let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
-                    l.merge_depth(depth, l.first(L::N), z);
-                    way = l.add_i(way, next);
-                }
+            for (depth, item) in depths.zip(canvas.item[first..past].chunks_exact_mut(L::N)) {
+                let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
+                l.merge(depth, item, l.first(L::N), z, ids);
+                way = l.add_i(way, next);
             }
             if first + left < past {
                 let z = l.clamp(l.add(base, l.mul(slope, l.to_f(way))), low, high);
-                merge::<ITEMS, L>(l, canvas, first + left, l.first(past - first - left), z, ids);
+                let (depth, item) = (&mut canvas.depth[first + left..], &mut canvas.item[first + left..]);
+                l.merge(depth, item, l.first(past - first - left), z, ids);
             }
         }
         y += SPAN_ROWS as i32;

@@ -3,7 +3,6 @@
 //! Primitives out of view or turned away are dropped, and those that leave the grid are clipped. What is left
 //! goes to whoever takes it ([`Taker`]): some set it up at once, some look first where it goes.
 
-use super::pyramid::Pyramid;
 use super::setup::{Setup, center};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, Vertex};
 use super::{Extent, Options, fill};
@@ -26,13 +25,6 @@ pub(super) struct Frame<'a> {
 
 /// Primitives whose corners are read at a time.
 const BATCH: usize = 64;
-
-/// Whether a pyramid proves that a triangle shows nowhere, which is asked of whole primitives alone: another
-/// part may show.
-#[inline(always)]
-pub(super) fn hides(pyramid: &Pyramid, depth: &[f32], rect: PixelRect, nearest: f32) -> bool {
-    nearest < pyramid.farthest_over(depth, rect)
-}
 
 /// A triangle on the grid.
 #[derive(Clone, Copy)]

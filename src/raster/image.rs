@@ -1,8 +1,7 @@
 //! Triangles into an image.
 //!
 //! 1. Points are projected to the pixel grid: all of them, or three for each primitive of a small subset.
-//! 2. Primitives are dropped or clipped ([`super::frame`]), and triangles that a pyramid proves hidden are
-//!    left out.
+//! 2. Primitives are dropped or clipped ([`super::frame`]).
 //! 3. The rest are set up: pixel box, edge functions, depth plane ([`super::setup`]).
 //! 4. They are filled ([`super::fill`]).
 //!
@@ -15,12 +14,11 @@ use rayon::prelude::*;
 
 use super::blocks::{self, Band, Bins, Block, fill_band};
 use super::fill::{Canvas, fill};
-use super::frame::{Frame, hides};
-use super::pyramid::Pyramid;
+use super::frame::Frame;
 use super::setup::Setup;
 use super::simd::{self, Lanes, Work};
 use super::vertex::{Camera, Vertex};
-use super::{Options, Sieve, Target, check_size};
+use super::{Options, Target, check_size};
 use crate::geometry::{PrimId, Solid, View};
 use crate::scene::Scene;
 
@@ -40,17 +38,16 @@ const BATCH_PRIMS: usize = 256;
 /// exceeds it, and is filled at once.
 const MOST_ENTRIES: usize = if cfg!(test) { 1 << 13 } else { 1 << 24 };
 
-/// Draws triangles, all or those that a pyramid does not hide; see [`super::Drawable`].
+/// Draws triangles; see [`super::Drawable`].
 pub(super) fn draw(
     target: &mut Target,
-    sieve: Option<Sieve>,
     scene: &Scene<Solid>,
     view: &View<Solid>,
     prims: &[PrimId],
     options: &Options,
 ) {
     check_size(target, view);
-    draw_onto(target, sieve, scene, view, prims, options, None);
+    draw_onto(target, scene, view, prims, options, None);
 }
 
 /// Makes the image anew; see [`super::Drawable::redraw`].
@@ -68,13 +65,12 @@ pub(super) fn redraw(
     target.item.resize(pixels, Target::NONE);
     target.through.clear();
     check_size(target, view);
-    draw_onto(target, None, scene, view, prims, options, Some(1.0 / view.eye.far));
+    draw_onto(target, scene, view, prims, options, Some(1.0 / view.eye.far));
 }
 
 /// Draws onto what the target holds or, where the depth of an empty pixel is given, onto nothing.
 fn draw_onto(
     target: &mut Target,
-    mut sieve: Option<Sieve>,
     scene: &Scene<Solid>,
     view: &View<Solid>,
     prims: &[PrimId],
@@ -111,7 +107,7 @@ fn draw_onto(
     };
     // 2 to 4.
     let by_blocks = (threads > 1 || anew.is_some())
-        && draw_blocks(target, &mut sieve, &frame, prims, options, &mut scratch.bins, anew);
+        && draw_blocks(target, &frame, prims, options, &mut scratch.bins, anew);
     if !by_blocks {
         if let Some(depth) = anew {
             target.depth.fill(depth);
@@ -120,7 +116,7 @@ fn draw_onto(
         let (depth, item, stride) = (&mut target.depth, &mut target.item, view.width as usize);
         let canvas = Canvas { depth, item, first: [0; 2], stride };
         let (setups, through) = (&mut scratch.setups, &mut target.through);
-        simd::run(options.isa, DrawAll { frame: &frame, sieve, prims, setups, through, canvas });
+        simd::run(options.isa, DrawAll { frame: &frame, prims, setups, through, canvas });
     }
     target.scratch = scratch;
 }
@@ -145,7 +141,6 @@ fn for_all<J: Send, S>(
 /// lists would be too long.
 fn draw_blocks(
     target: &mut Target,
-    sieve: &mut Option<Sieve>,
     frame: &Frame,
     prims: &[PrimId],
     options: &Options,
@@ -153,10 +148,6 @@ fn draw_blocks(
     anew: Option<f32>,
 ) -> bool {
     let (width, height, threads) = (target.width as usize, target.height as usize, options.thread_count());
-    // The pyramid is read as it was before the draw: what one chunk draws must not decide what another leaves
-    // out, or the list of hidden primitives would depend on timing. So fewer may be hidden than on one
-    // thread.
-    let held = sieve.as_ref().map(|s| (&*s.pyramid, &target.depth[..]));
     let size = if threads <= 1 { prims.len().max(1) } else { CHUNK_PRIMS };
     bins.resize_with(prims.len().div_ceil(size), Bins::default);
     for_all(
@@ -164,7 +155,7 @@ fn draw_blocks(
         bins.iter_mut().zip(prims.chunks(size)).collect(),
         || (),
         |(), (bins, prims)| {
-            simd::run(options.isa, Find { frame, held, prims, bins });
+            simd::run(options.isa, Find { frame, prims, bins });
         },
     );
     if blocks::number(bins) > MOST_ENTRIES {
@@ -174,15 +165,10 @@ fn draw_blocks(
     // In the order of the chunks, not of the threads that finished them.
     for bins in bins.iter() {
         target.through.extend_from_slice(&bins.through);
-        if let Some(sieve) = sieve {
-            sieve.hidden.extend_from_slice(&bins.hidden);
-            bins.touched.iter().for_each(|&rect| sieve.pyramid.touch(rect));
-        }
     }
-    // No pixel lies in two bands, so bands need no locks. Without items each band gets an empty slice.
-    let mut items: Vec<&mut [u32]> = target.item.chunks_mut(width * blocks::ROWS).collect();
-    items.resize_with(height.div_ceil(blocks::ROWS), Default::default);
-    let bands = target.depth.chunks_mut(width * blocks::ROWS).zip(items).enumerate();
+    // No pixel lies in two bands, so bands need no locks.
+    let pixels = width * blocks::ROWS;
+    let bands = target.depth.chunks_mut(pixels).zip(target.item.chunks_mut(pixels)).enumerate();
     let bands = bands.map(|(number, (depth, item))| Band { depth, item, number, width, anew }).collect();
     for_all(threads, bands, Block::default, |block, band| {
         simd::run(options.isa, FillBand { frame, bins, block, band });
@@ -192,8 +178,6 @@ fn draw_blocks(
 
 struct Find<'a> {
     frame: &'a Frame<'a>,
-    /// The pyramid and its image as they were before the draw.
-    held: Option<(&'a Pyramid, &'a [f32])>,
     prims: &'a [PrimId],
     bins: &'a mut Bins,
 }
@@ -201,7 +185,7 @@ struct Find<'a> {
 impl Work for Find<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
-        self.bins.find(self.frame, self.held, self.prims);
+        self.bins.find(self.frame, self.prims);
     }
 }
 
@@ -216,11 +200,7 @@ impl Work for FillBand<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let Self { frame, bins, block, band } = self;
-        if band.item.is_empty() {
-            fill_band::<false, L>(l, frame, bins, block, band);
-        } else {
-            fill_band::<true, L>(l, frame, bins, block, band);
-        }
+        fill_band(l, frame, bins, block, band);
     }
 }
 
@@ -241,7 +221,6 @@ impl Work for Project<'_> {
 
 struct DrawAll<'a> {
     frame: &'a Frame<'a>,
-    sieve: Option<Sieve<'a>>,
     prims: &'a [PrimId],
     setups: &'a mut Vec<Setup>,
     /// Receives the see-through primitives that may show.
@@ -251,35 +230,17 @@ struct DrawAll<'a> {
 
 impl Work for DrawAll<'_> {
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) {
-        if self.canvas.item.is_empty() { self.fill::<false, L>(l) } else { self.fill::<true, L>(l) }
-    }
-}
-
-impl DrawAll<'_> {
-    #[inline(always)]
-    fn fill<const ITEMS: bool, L: Lanes>(mut self, l: L) {
+    fn run<L: Lanes>(mut self, l: L) {
         // In batches: a setup is filled while it is still in the first cache.
         for prims in self.prims.chunks(BATCH_PRIMS) {
             self.setups.clear();
             self.frame.find(prims, self.setups);
             for setup in self.setups.iter() {
-                if let Some(sieve) = &mut self.sieve
-                    && setup.whole
-                    && hides(sieve.pyramid, self.canvas.depth, setup.rect(), setup.plane.high)
-                {
-                    sieve.hidden.push(PrimId(setup.id));
-                    continue;
-                }
                 if !self.frame.fills(setup.id) {
                     self.through.push(PrimId(setup.id));
                     continue;
                 }
-                if let Some(sieve) = &mut self.sieve {
-                    // Values above it stay as they are until a refresh: too far, which is safe.
-                    sieve.pyramid.touch(setup.rect());
-                }
-                fill::<ITEMS, L>(l, setup, &mut self.canvas);
+                fill(l, setup, &mut self.canvas);
             }
         }
     }

@@ -5,15 +5,14 @@
 
 use super::setup::{Plane, center, pixels};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, Vertex};
-use super::{Extent, Options, Sieve, Target, check_size};
+use super::{Extent, Options, Target, check_size};
 use crate::geometry::{Flat, PixelRect, PrimId, View, orient2d};
 use crate::scene::Scene;
 
-/// Draws segments, all or those that a pyramid does not hide; see [`super::Drawable`]. A line has few pixels
+/// Draws segments; see [`super::Drawable`]. A line has few pixels
 /// and no rows to share out, so it runs on one thread.
 pub(super) fn draw(
     target: &mut Target,
-    mut sieve: Option<Sieve>,
     scene: &Scene<Flat>,
     view: &View<Flat>,
     prims: &[PrimId],
@@ -22,33 +21,19 @@ pub(super) fn draw(
     check_size(target, view);
     let camera = Camera::new(view);
     for &prim in prims {
-        let Some(Seen { pixels, plane, whole }) = set_up(&camera, scene, view, prim, options) else {
+        let Some(Seen { pixels, plane, .. }) = set_up(&camera, scene, view, prim, options) else {
             continue;
         };
-        if let Some(sieve) = &mut sieve {
-            // A part that clipping left is never tested: another part of the segment may show.
-            if whole && plane.high < sieve.pyramid.farthest_over(&target.depth, pixels) {
-                sieve.hidden.push(prim);
-                continue;
-            }
-        }
         // What lets light through hides nothing.
         if options.surfaces.show_through(scene, prim) {
             target.through.push(prim);
             continue;
         }
-        if let Some(sieve) = &mut sieve {
-            sieve.pyramid.touch(pixels);
-        }
         for x in pixels.x0..pixels.x1 {
             let z = depth_at(&plane, x);
-            // Without items ties change nothing: equal depths are equal.
-            let (depth, item) = (&mut target.depth[x as usize], target.item.get_mut(x as usize));
-            if z > *depth || z == *depth && item.as_ref().is_some_and(|item| prim.0 < **item) {
-                *depth = z;
-                if let Some(item) = item {
-                    *item = prim.0;
-                }
+            let (depth, item) = (&mut target.depth[x as usize], &mut target.item[x as usize]);
+            if z > *depth || z == *depth && prim.0 < *item {
+                (*depth, *item) = (z, prim.0);
             }
         }
     }
@@ -78,8 +63,7 @@ pub(super) fn fragments(
     }
 }
 
-/// The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`, which is
-/// tested.
+/// The formula of [`super::reference`]; clamped, so that no pixel is nearer than `plane.high`, an end.
 pub(super) fn depth_at(plane: &Plane, x: u32) -> f32 {
     (plane.z + plane.dx * (center(x as i32) - plane.x) as f32).max(plane.low).min(plane.high)
 }

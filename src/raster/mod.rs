@@ -55,7 +55,7 @@ pub struct Target {
     pub height: u32,
     /// `1/w` of the nearest primitive per pixel, row by row; `1/far` where there is none.
     pub depth: Vec<f32>,
-    /// Its id, or [`Target::NONE`]; empty where only depths are drawn.
+    /// Its id, or [`Target::NONE`].
     pub item: Vec<u32>,
     /// See-through primitives that were drawn, as far as they may cover a pixel; in the order of drawing, and
     /// as often as they were. They leave depths and items as they are.
@@ -77,16 +77,11 @@ impl Target {
     }
     /// Empties the image and gives it the view's size.
     pub fn clear<S: Space>(&mut self, view: &View<S>) {
-        self.clear_depths(view);
-        self.item.resize(self.depth.len(), Self::NONE);
-    }
-    /// The same for depths alone: no items will be drawn, which takes half the memory and less than half the
-    /// time. The depths are the same.
-    pub fn clear_depths<S: Space>(&mut self, view: &View<S>) {
         (self.width, self.height) = (view.width, view.height);
         self.depth.clear();
         self.depth.resize(view.width as usize * view.height as usize, 1.0 / view.eye.far);
         self.item.clear();
+        self.item.resize(self.depth.len(), Self::NONE);
         self.through.clear();
     }
     /// Number of pixels that show another primitive, or the same at another depth, than in `other`;
@@ -163,17 +158,7 @@ impl Options {
     }
 }
 
-/// A z-pyramid that keeps primitives from being drawn. The image is the same with it and without: a primitive
-/// is left out only where every pixel that it can cover holds something nearer.
-pub struct Sieve<'a> {
-    /// The pyramid of the target's depths. Drawing makes it stale where something was drawn; nothing is
-    /// brought up to date.
-    pub pyramid: &'a mut Pyramid,
-    /// Receives the primitives that were left out, in the order of drawing; see-through ones too.
-    pub hidden: &'a mut Vec<PrimId>,
-}
-
-/// What the test of a primitive against the pyramid reads.
+/// Where a primitive is in the image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
     /// The pixels that it can cover.
@@ -209,20 +194,7 @@ pub trait Drawable: Space {
         target.clear(view);
         Self::draw(target, scene, view, prims, options);
     }
-    /// The same but for primitives that the sieve's pyramid proves to be hidden.
-    ///
-    /// # Panics
-    /// As [`Drawable::draw`].
-    fn sift(
-        target: &mut Target,
-        sieve: Sieve,
-        scene: &Scene<Self>,
-        view: &View<Self>,
-        prims: &[PrimId],
-        options: &Options,
-    );
-    /// What [`Drawable::sift`] tests against the pyramid; `None` if it tests nothing, since the primitive
-    /// covers no pixel or has to be clipped.
+    /// Where a primitive is; `None` if it covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
     /// Calls `visit` with the place of each pixel that a primitive covers, row by row, and its depth there:
     /// what [`Drawable::draw`] would compare with the image, of a see-through primitive as well.
@@ -254,17 +226,7 @@ impl Drawable for Flat {
         prims: &[PrimId],
         options: &Options,
     ) {
-        line::draw(target, None, scene, view, prims, options);
-    }
-    fn sift(
-        target: &mut Target,
-        sieve: Sieve,
-        scene: &Scene<Self>,
-        view: &View<Self>,
-        prims: &[PrimId],
-        options: &Options,
-    ) {
-        line::draw(target, Some(sieve), scene, view, prims, options);
+        line::draw(target, scene, view, prims, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         line::extent(scene, view, prim, options)
@@ -297,7 +259,7 @@ impl Drawable for Solid {
         prims: &[PrimId],
         options: &Options,
     ) {
-        image::draw(target, None, scene, view, prims, options);
+        image::draw(target, scene, view, prims, options);
     }
     fn redraw(
         target: &mut Target,
@@ -307,16 +269,6 @@ impl Drawable for Solid {
         options: &Options,
     ) {
         image::redraw(target, scene, view, prims, options);
-    }
-    fn sift(
-        target: &mut Target,
-        sieve: Sieve,
-        scene: &Scene<Self>,
-        view: &View<Self>,
-        prims: &[PrimId],
-        options: &Options,
-    ) {
-        image::draw(target, Some(sieve), scene, view, prims, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         frame::extent(scene, view, prim, options)

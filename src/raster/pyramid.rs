@@ -264,36 +264,10 @@ impl Pyramid {
         };
         (cell(r.x0, r.y0), cell(r.x1 - 1, r.y1 - 1))
     }
-    /// The finest single cell that covers a rectangle of pixels (not empty, in the image).
-    #[inline]
-    pub fn finest_over(&self, r: PixelRect) -> PyramidCell {
-        // One cell of a level holds the first and the last pixel if they agree in all higher bits. Georges
-        // 1995, Section 3.2, begins a query there.
-        let differ = (r.x0 ^ (r.x1 - 1)) | (r.y0 ^ (r.y1 - 1));
-        let level = u32::BITS - differ.leading_zeros();
-        PyramidCell { level: level as u8, x: (r.x0 >> level) as u16, y: (r.y0 >> level) as u16 }
-    }
-    /// The farthest depth that it holds for a rectangle of pixels, from at most four cells above level 0.
-    /// What is drawn until the next refresh does not change it, so it does not matter in which order or on
-    /// how many threads.
-    #[inline]
-    pub fn farthest_over(&self, depth: &[f32], r: PixelRect) -> f32 {
-        let (mut first, mut last) = self.cover(r);
-        if first.level == 0 {
-            first = PyramidCell { level: 1, x: first.x / 2, y: first.y / 2 };
-            last = first;
-        }
-        let mut farthest = f32::INFINITY;
-        for y in first.y..=last.y {
-            for x in first.x..=last.x {
-                farthest = farthest.min(self.farthest(depth, PyramidCell { level: first.level, x, y }));
-            }
-        }
-        farthest
-    }
     /// Panics unless every value that is not stale is the farthest of the pixels below it, and no other is
     /// nearer.
-    pub fn assert_well_formed(&self, depth: &[f32]) {
+    #[cfg(test)]
+    pub(super) fn assert_well_formed(&self, depth: &[f32]) {
         // By definition: the farthest of all pixels under each cell.
         for level in 1..=self.root() {
             let (columns, rows) = self.size(level);

@@ -98,8 +98,6 @@ pub(super) trait Lanes: Copy {
     /// Puts `z` and `ids` where `inside` and nearer than what is there, or as near with a lower id. Of slices
     /// that are longer than `N` the first `N` elements are read, and those outside written as they were.
     fn merge(self, depth: &mut [f32], item: &mut [u32], inside: Self::M, z: Self::F, ids: Self::I);
-    /// Puts `z` where `inside` and nearer than what is there: the same depths as [`Lanes::merge`].
-    fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F);
 }
 
 mod portable {
@@ -173,12 +171,6 @@ mod portable {
                 *item = if wins { id } else { *item };
             }
         }
-        #[inline(always)]
-        fn merge_depth(self, depth: &mut [f32], inside: Self::M, z: Self::F) {
-            for ((depth, inside), z) in depth.iter_mut().zip(inside).zip(z) {
-                *depth = if inside & (z > *depth) { z } else { *depth };
-            }
-        }
     }
 }
 
@@ -212,7 +204,7 @@ mod x86 {
     // 1. A token proves its instruction set. Its field is private to this module, and only `run_avx2` and
     //    `run_avx512` make one, whose callers promise the set. Intrinsics that take and give values, as most
     //    here do, need nothing else.
-    // 2. `merge` and `merge_depth` alone touch memory: a whole vector where each slice has at least as many
+    // 2. `merge` alone touches memory: a whole vector where each slice has at least as many
     //    elements, which it borrows alone and so may write back as they were; else through masks, a lane only
     //    where its number is below the length of each slice. The unaligned forms are used throughout.
     impl Lanes for Avx2 {
@@ -310,22 +302,6 @@ mod x86 {
                 }
             }
         }
-        #[inline(always)]
-        fn merge_depth(self, depth: &mut [f32], inside: __m256i, z: __m256) {
-            // As `merge`, where a tie changes nothing.
-            let (lanes, depth) = (depth.len(), depth.as_mut_ptr());
-            let whole = lanes >= 8;
-            unsafe {
-                let inside = if whole { inside } else { _mm256_and_si256(inside, self.first(lanes)) };
-                let old = if whole { _mm256_loadu_ps(depth) } else { _mm256_maskload_ps(depth, inside) };
-                let wins = _mm256_and_si256(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_GT_OQ>(z, old)), inside);
-                if whole {
-                    _mm256_storeu_ps(depth, _mm256_blendv_ps(old, z, _mm256_castsi256_ps(wins)));
-                } else if _mm256_testz_si256(wins, wins) == 0 {
-                    _mm256_maskstore_ps(depth, wins, z);
-                }
-            }
-        }
     }
 
     impl Lanes for Avx512 {
@@ -393,18 +369,6 @@ mod x86 {
                 if wins != 0 {
                     _mm512_mask_storeu_ps(depth.as_mut_ptr(), wins, z);
                     _mm512_mask_storeu_epi32(item.as_mut_ptr().cast(), wins, ids);
-                }
-            }
-        }
-        #[inline(always)]
-        fn merge_depth(self, depth: &mut [f32], inside: __mmask16, z: __m512) {
-            // As `merge`, where a tie changes nothing.
-            let inside = inside & self.first(depth.len().min(16));
-            unsafe {
-                let old = _mm512_maskz_loadu_ps(inside, depth.as_ptr());
-                let wins = _mm512_mask_cmp_ps_mask::<_CMP_GT_OQ>(inside, z, old);
-                if wins != 0 {
-                    _mm512_mask_storeu_ps(depth.as_mut_ptr(), wins, z);
                 }
             }
         }

@@ -56,56 +56,17 @@ fn any_size_has_a_pyramid() {
     }
 }
 
-/// Triangles of one pixel behind one that is drawn just before them: what is left out does not depend on how
-/// many threads draw.
-#[test]
-fn what_a_pyramid_leaves_out_does_not_depend_on_threads() {
-    let view = straight_view(64, 0.1, 100.0);
-    let wall = [(-8.0, -8.0), (-8.0, 136.0), (136.0, -8.0)].map(|(x, y)| at_px(64, x, y, 2.0));
-    let pixel = |k: u32| {
-        let (x, y) = (f64::from(k % 64), f64::from(k / 64));
-        [(0.1, 0.1), (0.1, 1.4), (1.4, 0.1)].map(|(dx, dy)| at_px(64, x + dx, y + dy, 3.0))
-    };
-    let triangles: Vec<_> = std::iter::once(wall).chain((0..64 * 64).map(pixel)).collect();
-    let scene = soup(&triangles);
-    let left_out = |threads: usize| {
-        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
-        pyramid.clear(64, 64, 1.0 / view.eye.far);
-        let sieve = Sieve { pyramid: &mut pyramid, hidden: &mut hidden };
-        let options = Options { threads, ..Options::default() };
-        Solid::sift(&mut target, sieve, &scene, &view, scene.live(), &options);
-        hidden
-    };
-    let small = Solid::extent(&scene, &view, PrimId(700), &Options::default()).expect("covers a pixel");
-    assert_eq!(small.pixels.area(), 1);
-    assert_eq!(left_out(1), left_out(3));
-}
-
 #[test]
 fn cells_cover_their_rectangles() {
-    let mut dice = Dice::new(6);
-    let depth: Vec<f32> = (0..100 * 70).map(|_| dice.between(0.1, 1.0)).collect();
-    let pyramid = pyramid_of(100, 70, &depth);
+    let (mut dice, pyramid) = (Dice::new(6), pyramid_of(100, 70, &[0.5; 100 * 70]));
     for _ in 0..20_000 {
         let (x0, y0) = (dice.below(100), dice.below(70));
         let r = PixelRect { x0, x1: x0 + 1 + dice.below(100 - x0), y0, y1: y0 + 1 + dice.below(70 - y0) };
         let holds = |p: PixelRect| p.x0 <= r.x0 && p.y0 <= r.y0 && p.x1 >= r.x1 && p.y1 >= r.y1;
-        let one = pyramid.finest_over(r);
-        assert!(holds(one.pixels(100, 70)), "{one:?} holds {r:?}");
-        if one.level > 0 {
-            let finer =
-                cell(one.level - 1, (r.x0 >> (one.level - 1)) as u16, (r.y0 >> (one.level - 1)) as u16);
-            assert!(!holds(finer.pixels(100, 70)), "{one:?} is the finest over {r:?}");
-        }
         let (first, last) = pyramid.cover(r);
         assert!(last.x - first.x <= 1 && last.y - first.y <= 1, "at most four cells over {r:?}");
         let (a, b) = (first.pixels(100, 70), last.pixels(100, 70));
         assert!(holds(PixelRect { x0: a.x0, x1: b.x1, y0: a.y0, y1: b.y1 }));
-        let truth = (r.y0..r.y1)
-            .flat_map(|y| (r.x0..r.x1).map(move |x| (y * 100 + x) as usize))
-            .map(|i| depth[i])
-            .fold(f32::INFINITY, f32::min);
-        assert!(pyramid.farthest_over(&depth, r) <= truth);
     }
 }
 
@@ -137,74 +98,28 @@ fn windows_put_together_are_the_image() {
     }
 }
 
-/// A primitive that the near plane or the border of the grid cuts falls into parts; where the pyramid hides
-/// one of them, another may show. Each part at the near plane comes as near as that, so only those at the
-/// border can be hidden by themselves.
+/// While an image is drawn, tile by tile brought up to date or not: what is not stale is right, and nothing is
+/// held nearer than it is.
 #[test]
-fn parts_of_a_primitive_are_not_judged() {
+fn a_pyramid_that_is_read_while_the_image_is_drawn_holds_nothing_too_near() {
     let mut dice = Dice::new(8);
-    let view = straight_view(64, 0.1, 100.0);
-    let mut cut = 0;
-    for round in 0..2000 {
-        let edge = f64::from(dice.between(8.0, 56.0));
-        let [a, b, c, d] =
-            [(-4.0, -4.0), (-4.0, 68.0), (edge, 68.0), (edge, -4.0)].map(|(x, y)| at_px(64, x, y, 0.2));
-        let [p, q] = [(); 2].map(|()| {
-            at_px(
-                64,
-                f64::from(dice.between(0.0, 64.0)),
-                f64::from(dice.between(0.0, 64.0)),
-                f64::from(dice.between(1.0, 20.0)),
-            )
-        });
-        let behind = Vec3::new(dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), dice.between(0.5, 5.0));
-        let aside = at_px(64, f64::from(dice.between(2e4, 1e6)), f64::from(dice.signed(1e5)), 20.0);
-        let scene = soup(&[[a, b, c], [a, c, d], [p, q, if round % 2 == 0 { behind } else { aside }]]);
-        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
-        pyramid.clear(64, 64, 1.0 / view.eye.far);
-        for part in scene.live().chunks(2) {
-            Solid::sift(
-                &mut target,
-                Sieve { pyramid: &mut pyramid, hidden: &mut hidden },
-                &scene,
-                &view,
-                part,
-                &Options::default(),
-            );
-            pyramid.refresh_all(&target.depth);
+    for round in 0..40 {
+        let triangles: Vec<[Vec3; 3]> = (0..40).map(|_| [(); 3].map(|()| dice.point(6.0))).collect();
+        let (scene, view) = (soup(&triangles), straight_view([64, 90, 17][round % 3], 0.1, 100.0));
+        let (mut target, mut pyramid) = (Target::new(&view), Pyramid::default());
+        pyramid.clear(view.width, view.height, 1.0 / view.eye.far);
+        for part in scene.live().chunks(8) {
+            let (x0, y0) = (dice.below(view.width), dice.below(view.height));
+            let (x1, y1) = (x0 + 1 + dice.below(view.width - x0), y0 + 1 + dice.below(view.height - y0));
+            let window = PixelRect { x0, x1, y0, y1 };
+            let options = Options { window: Some(window), ..Options::default() };
+            Solid::draw(&mut target, &scene, &view, part, &options);
+            pyramid.touch(window);
+            pyramid.assert_well_formed(&target.depth);
+            let (x, y) = (dice.below(view.width.div_ceil(16)), dice.below(view.height.div_ceil(16)));
+            pyramid.refresh(&target.depth, cell(4, x as u16, y as u16));
+            assert!(!pyramid.is_stale(cell(4, x as u16, y as u16)));
+            pyramid.assert_well_formed(&target.depth);
         }
-        cut += usize::from(
-            Solid::extent(&scene, &view, PrimId(2), &Options::default()).is_none()
-                && target.item.contains(&2),
-        );
-        assert!(hidden.iter().all(|h| !target.item.contains(&h.0)), "what is called hidden shows");
-    }
-    assert!(cut > 100, "{cut} show and are cut");
-}
-
-/// A wall that reaches beyond the border of the grid on all sides is cut to a square, and that in two.
-/// One is nearer at a corner than what hides the whole image, the other nowhere: hidden by itself, it says
-/// nothing of the wall.
-#[test]
-fn the_far_part_of_a_wall_does_not_hide_the_wall() {
-    let view = straight_view(64, 0.1, 1000.0);
-    // 1/w = 0.1 − s (x + y), with x and y from −1 to 1 over the image; the border of the grid is at ±512.
-    let wall = [(530.0, 530.0), (-5000.0, 530.0), (530.0, -5000.0)].map(|(x, y): (f64, f64)| {
-        let w = 1.0 / (0.1 - 0.00009 * (x + y));
-        Vec3::new((x * w) as f32, (y * w) as f32, -w as f32)
-    });
-    let curtain = [(-8.0, -8.0), (-8.0, 136.0), (136.0, -8.0)].map(|(x, y)| at_px(64, x, y, 1.0 / 0.105));
-    let scene = soup(&[curtain, wall]);
-    assert_eq!(Solid::extent(&scene, &view, PrimId(1), &Options::default()), None, "it is cut");
-    for threads in [1, 3] {
-        let (mut target, mut pyramid, mut hidden) = (Target::new(&view), Pyramid::default(), Vec::new());
-        pyramid.clear(64, 64, 1.0 / view.eye.far);
-        for prim in [PrimId(0), PrimId(1)] {
-            let sieve = Sieve { pyramid: &mut pyramid, hidden: &mut hidden };
-            let options = Options { threads, ..Options::default() };
-            Solid::sift(&mut target, sieve, &scene, &view, &[prim], &options);
-            pyramid.refresh_all(&target.depth);
-        }
-        assert_eq!(hidden, [], "{threads} threads");
     }
 }
