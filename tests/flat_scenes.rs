@@ -136,4 +136,50 @@ fn what_a_scene_is_for_is_in_its_facts() {
     assert_eq!(door.frame_count(), 10);
     let seen = |frame| look(&door.posed(frame), &door.paths()[0].views[0]).visible;
     assert!(!seen(0).contains(&PrimId(13)) && seen(9).contains(&PrimId(13)), "the chair comes into view");
+    // In a swarm what is seen changes, and from among the bodies most of what is in view is hidden.
+    let swarm = find("swarm.json");
+    assert_eq!(swarm.frame_count(), 24);
+    assert!(swarm.objects().iter().all(|o| o.motion.is_some()) && swarm.prim_count() < 400);
+    let seen = |frame| look(&swarm.posed(frame), &swarm.paths()[0].views[0]);
+    let (first, later) = (seen(0), seen(7));
+    assert!(first.visible != later.visible && first.hidden.len() > 2 * first.visible.len());
+    assert!(later.hidden.len() > 2 * later.visible.len());
+    // Something is seen through each gap of the fence, and nothing through its boards.
+    let holes = find("holes.json");
+    let named = |scene: &Scene<Flat>, p: &PrimId| scene.objects()[scene.object_of(*p).at()].name.clone();
+    let seen = look(&holes, &holes.paths()[0].views[0]).visible;
+    let names: BTreeSet<String> = seen.iter().map(|p| named(&holes, p)).collect();
+    for gap in [2, 5, 10, 20, 40, 80] {
+        assert!(names.contains(&format!("behind_{gap}cm")), "{names:?}");
+    }
+    assert!(!names.iter().any(|n| n.starts_with("behind_board")), "{names:?}");
+}
+
+/// The numbers of Zhang et al. (1997, Section 5.3.2, Figure 5) as `figure5.json` has them: four objects of 30
+/// segments at 2, 3, 4, 5, two of 2 at 50, which alone hide what is behind them.
+#[test]
+fn near_thickets_leave_a_hole_that_far_walls_close() {
+    let (_, scene) = scenes().into_iter().find(|(p, _)| p.ends_with("figure5.json")).expect("the scene");
+    let of = |name: &str| {
+        let is = |p: &&PrimId| scene.objects()[scene.object_of(**p).at()].name == name;
+        scene.live().iter().filter(is).copied().collect::<Vec<_>>()
+    };
+    let view = &scene.paths()[0].views[0];
+    for (name, count, distance) in
+        [("C", 30, 2.0), ("D", 30, 3.0), ("E", 30, 4.0), ("F", 30, 5.0), ("A", 2, 50.0), ("B", 2, 50.0)]
+    {
+        let prims = of(name);
+        let bounds = cullscope::geometry::Aabb::of(prims.iter().flat_map(|p| scene.prim_points(*p)));
+        assert_eq!(prims.len(), count, "{name}");
+        let from_eye = bounds.center().distance(view.eye.position);
+        assert!((from_eye - distance).abs() < 0.001 * distance, "{name}: {from_eye}");
+    }
+    let behind: Vec<PrimId> = ["behind_A", "behind_both", "behind_B"].iter().flat_map(|n| of(n)).collect();
+    assert!(behind.iter().all(|p| look(&scene, view).hidden.contains(p)));
+    for wall in ["A", "B"] {
+        let mut parts = (*scene).clone().into_parts();
+        of(wall).iter().for_each(|p| parts.prims[p.at()] = None);
+        let without = look(&Scene::new(parts).expect("a scene"), view);
+        assert!(of(&format!("behind_{wall}")).iter().any(|p| without.visible.contains(p)), "without {wall}");
+    }
 }

@@ -27,8 +27,9 @@ fn flat(path: &Path) -> std::sync::Arc<Scene<Flat>> {
 }
 
 /// Triangles, objects and views in space; what SOURCE.txt and the files' own lists say.
-const SHIPPED: [(&str, usize, usize, usize); 12] = [
+const SHIPPED: [(&str, usize, usize, usize); 14] = [
     ("box_outline", 16, 3, 48),
+    ("corner_hole", 128, 4, 25),
     ("freedoom_e1m1", 3_693, 135, 119),
     ("freedoom_e1m2", 7_786, 316, 120),
     ("freedoom_e1m5", 27_828, 1_055, 120),
@@ -36,6 +37,7 @@ const SHIPPED: [(&str, usize, usize, usize); 12] = [
     ("joint_convex", 18, 3, 48),
     ("joint_disconnected", 18, 3, 48),
     ("joint_not_convex", 19, 3, 48),
+    ("slit", 20, 2, 25),
     ("tangent_planes", 16, 3, 48),
     ("terrain_jacksboro_65k", 65_322, 132, 120),
     ("tree_aspen_5k", 4_896, 46, 120),
@@ -115,6 +117,36 @@ fn scenes_of_figures_show_what_the_figures_show() {
         assert!(drawn.contains(&of_box_drawn), "{name}: {of_box_drawn} triangles of the box are drawn");
         // Farther on the box comes into sight.
         assert!(views.iter().any(|v| of_box(&truth.look(&scene, v)) > 0), "{name}");
+    }
+}
+
+/// Holes have the pixels that their SOURCE.txt says, each of what stands behind it, and lie in blocks of
+/// 16 × 16 as it says: at most 25 pixels of a block are ignored in the example of Zhang et al. (1997,
+/// Section 5.4).
+#[test]
+fn holes_have_as_many_pixels_as_they_say() {
+    for (name, behind, pixels, in_block) in [
+        ("slit", "behind", 1024, 16),
+        ("corner_hole", "behind_5x5", 25, 25),
+        ("corner_hole", "behind_6x6", 36, 36),
+        ("corner_hole", "behind_6x6_at_corner", 36, 9),
+    ] {
+        let scene = solid(&home().join("scenes3d").join(name).join(format!("{name}.obj")));
+        let view = &scene.paths()[0].views[0];
+        let mut truth = Truth::new(&scene, Surfaces::default(), 1, [1.0; 3]);
+        truth.look(&scene, view);
+        let image = truth.image();
+        assert_eq!((image.width, image.height), (1024, 1024));
+        let (mut count, mut blocks) = (0, vec![0; 64 * 64]);
+        for (at, item) in image.item.iter().enumerate() {
+            assert_ne!(*item, cullscope::raster::Target::NONE, "{name}: nothing at pixel {at}");
+            if scene.objects()[scene.object_of(PrimId(*item)).at()].name == behind {
+                count += 1;
+                blocks[at / 1024 / 16 * 64 + at % 1024 / 16] += 1;
+            }
+        }
+        assert_eq!(count, pixels, "{name}: {behind}");
+        assert!(blocks.iter().all(|n| *n == 0 || *n == in_block), "{name}: {behind}");
     }
 }
 
