@@ -182,6 +182,8 @@ fn generated_models_lose_nothing() {
         ("thin-slabs", 30_000),
         ("seminar-room", 10_000),
         ("cars", 100_000),
+        ("forest", 20_000),
+        ("swarm", 10_000),
     ] {
         let call = if full { format!("generate:{name}") } else { format!("generate:{name}?polygons={few}") };
         check_file(&call, every, random, side_px);

@@ -345,3 +345,93 @@ fn the_body_of_the_machine_room_is_hidden_on_the_first_half_of_the_flight() {
         assert!(if k < 110 { seen == 0 } else { k < 150 || seen > 500 }, "view {k}: {seen} triangles");
     }
 }
+
+/// Pixels of a view that show a primitive of which `is` is true.
+fn pixels_of(scene: &Arc<Scene<Solid>>, view: &View<Solid>, is: impl Fn(PrimId) -> bool) -> Vec<bool> {
+    let mut truth = Truth::new(scene, Surfaces::default(), 1, WHITE);
+    truth.look(scene, view);
+    truth.image().item.iter().map(|item| *item != u32::MAX && is(PrimId(*item))).collect()
+}
+
+/// As in Figures 6 and 7 of Zhang et al. (1997): the trees leave holes of a pixel or a few of the house,
+/// which grow as one comes nearer, and hide all the rest of it.
+#[test]
+fn the_house_in_the_forest_is_seen_through_holes_of_a_few_pixels() {
+    let Ok(AnyScene::Solid(scene)) = load("generate:forest", &LoadOptions::default(), &Quiet) else {
+        panic!("a forest")
+    };
+    let group = |scene: &Scene<Solid>, p: PrimId| scene.objects()[scene.object_of(p).at()].group.clone();
+    let mut parts = (*scene).clone().into_parts();
+    for (k, prim) in parts.prims.iter_mut().enumerate() {
+        if group(&scene, PrimId(k as u32)) != "house" {
+            *prim = None;
+        }
+    }
+    let alone = Arc::new(Scene::new(parts).expect("a house"));
+    let look = |view: &View<Solid>| {
+        let seen = pixels_of(&scene, view, |p| group(&scene, p) == "house");
+        let all = pixels_of(&alone, view, |_| true).iter().filter(|p| **p).count();
+        (seen, all)
+    };
+    let (zoom, views) = (&scene.paths()[0].views, &scene.paths()[1].views);
+    assert_eq!((zoom.len(), views.len(), zoom[0]), (120, 2, views[0]));
+    let (seen, all) = look(&views[0]);
+    let count = seen.iter().filter(|p| **p).count();
+    assert!(all > 30_000, "{all} pixels of the house alone");
+    assert!(count * 100 > all * 2 && count * 100 < all * 12, "{count} of {all} pixels of the house");
+    // Runs of pixels along rows tell how wide holes are.
+    let runs = |seen: &[bool]| {
+        let rows = seen.chunks(1024);
+        let mut runs: Vec<usize> =
+            rows.flat_map(|row| row.split(|p| !p)).map(<[bool]>::len).filter(|n| *n > 0).collect();
+        runs.sort_unstable();
+        [runs[runs.len() / 2], runs[runs.len() * 9 / 10]]
+    };
+    let (far, near) = (runs(&seen), runs(&look(&zoom[119]).0));
+    assert!(far[0] <= 2 && far[1] <= 6 && near[1] * 2 >= far[1] * 3, "holes of {far:?} and {near:?} pixels");
+    // Of 16 × 16 pixels of the house most have at most 25 that show it, and most have some.
+    let solid = pixels_of(&alone, &views[0], |_| true);
+    let (mut whole, mut closed, mut nearly) = (0, 0, 0);
+    for block in 0..64 * 64 {
+        let at = |k: usize| (block / 64 * 16 + k / 16) * 1024 + block % 64 * 16 + k % 16;
+        if (0..256).all(|k| solid[at(k)]) {
+            let holes = (0..256).filter(|k| seen[at(*k)]).count();
+            whole += 1;
+            closed += usize::from(holes == 0);
+            nearly += usize::from(holes <= 25);
+        }
+    }
+    assert!(whole > 100 && closed * 2 < whole && nearly * 100 > whole * 85, "{closed}, {nearly} of {whole}");
+}
+
+/// Section 6.2 of Zhang et al. (1997) and what it needs: from inside nine tenths of what is in view are
+/// hidden, whatever the frame.
+#[test]
+fn from_inside_the_swarm_most_is_hidden() {
+    let load = load("generate:swarm?polygons=320000&bodies=1600", &LoadOptions::default(), &Quiet);
+    let Ok(AnyScene::Solid(scene)) = load else { panic!("a swarm") };
+    for frame in [31, 77] {
+        let posed = Arc::new(scene.posed(frame));
+        let view = scene.paths()[0].views[frame];
+        let in_view = |p: &&PrimId| {
+            let test =
+                view.frustum().test(&posed.prim_bounds(**p), cullscope::geometry::Frustum::<glam::Vec3>::ALL);
+            !matches!(test, cullscope::geometry::FrustumTest::Outside(_))
+        };
+        let all = posed.live().iter().filter(in_view).count();
+        let seen = Truth::new(&posed, Surfaces::default(), 1, WHITE).look(&posed, &view).len();
+        assert!(all > 20_000, "frame {frame}: {all} triangles in view");
+        assert!(seen * 10 < all, "frame {frame}: {seen} of {all} are seen");
+    }
+}
+
+/// Machines must agree on motions as on what moves, so the bits are written down.
+#[test]
+fn a_swarm_stands_in_a_later_frame_where_it_stands_on_every_machine() {
+    let load = load("generate:swarm?polygons=10000&seed=4", &LoadOptions::default(), &Quiet);
+    let Ok(AnyScene::Solid(scene)) = load else { panic!("a swarm") };
+    assert_eq!(
+        scene.posed(31).hash_hex(),
+        "1445ba5a74d5d7e1dd274af211dd75a75fef6a724818455b9baecad99d01d5c7"
+    );
+}

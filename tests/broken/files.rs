@@ -194,12 +194,12 @@ fn generators_say_what_they_take() {
         (
             "generate:castle",
             "generate:castle: there is no generator `castle`; there are: building, city, machine-room, \
-             box-and-objects, thin-slabs, seminar-room, cars",
+             box-and-objects, thin-slabs, seminar-room, cars, forest, swarm",
         ),
         (
             "generate:",
             "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, \
-             thin-slabs, seminar-room, cars",
+             thin-slabs, seminar-room, cars, forest, swarm",
         ),
         (
             "generate:building?storeys=3",

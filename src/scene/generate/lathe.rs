@@ -1,11 +1,12 @@
-//! Surfaces of revolution around any axis, and surfaces over a grid: the finely tessellated shapes of the
-//! generators.
+//! Surfaces of revolution around any axis, along a curve, and over a grid: the finely tessellated shapes of
+//! the generators.
 //!
 //! As everywhere here only addition, multiplication, division and square root are used.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 
-use super::shapes::{Sink, circle};
+use super::shapes::{Frame, Sink, circle};
+use super::walk::spline;
 
 /// A place on a profile: along the axis, and away from it, m.
 pub(super) type Station = [f64; 2];
@@ -36,7 +37,7 @@ pub(super) fn lathe(sink: &mut Sink, from: DVec3, along: DVec3, profile: &[Stati
 }
 
 /// Two unit vectors across `along` and across each other.
-fn across(along: DVec3) -> (DVec3, DVec3) {
+pub(super) fn across(along: DVec3) -> (DVec3, DVec3) {
     let other = if along.y.abs() < 0.9 { DVec3::Y } else { DVec3::X };
     let u = along.cross(other).normalize();
     (u, along.cross(u))
@@ -103,6 +104,27 @@ pub(super) fn sheet(
     }
 }
 
+/// A closed body along a curve in the plane of local x and y, mirrored at that plane. A stop of the curve is
+/// where it is, half the body's extent across the curve in the plane, and half that out of it, m.
+pub(super) fn sweep(sink: &mut Sink, frame: &Frame, stops: &[DVec4], (around, rows): (u32, u32)) {
+    let at = |t: f64| spline(stops.len(), |k| stops[k], t);
+    let center = |j: u32| {
+        let here = at(f64::from(j) / f64::from(rows));
+        frame.at([here.x, here.y, 0.0])
+    };
+    let point = |i: u32, j: u32| {
+        if j == 0 || j == rows {
+            return center(j);
+        }
+        let (t, step) = (f64::from(j) / f64::from(rows), 0.5 / f64::from(rows));
+        let (here, ahead) = (at(t), at(t + step) - at(t - step));
+        let across = (frame.right * -ahead.y + DVec3::Y * ahead.x).normalize();
+        let (c, s) = circle(i % around, around);
+        center(j) + across * (here.z * c) + frame.away * (here.w * s)
+    };
+    sheet(sink, (around, rows), point, |_, j| (center(j) + center(j + 1)) * 0.5);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -130,6 +152,23 @@ mod tests {
         assert!((ball - 4.0 / 3.0 * pi).abs() < 3e-3, "{ball}");
         let tank = volume(|s| lathe(s, from, DVec3::Y, &capsule(3.0, 1.0, 1.0, 64), 256));
         assert!((tank - 7.0 / 3.0 * pi).abs() < 3e-3, "{tank}");
+    }
+
+    #[test]
+    fn a_body_along_a_curve_encloses_its_volume() {
+        let frame = Frame { origin: DVec3::new(1.0, 2.0, 3.0), right: -DVec3::Z, away: DVec3::X };
+        // A quarter of a turn: by Pappus the area of the ellipse times the length of the way of its center,
+        // less what cones lack in the rows at its ends, two thirds, which are no longer than others.
+        let (inner, outer, rows) = (0.2, 0.3, 400);
+        let stops: Vec<DVec4> = (0..=64)
+            .map(|k| circle(k, 256))
+            .map(|(c, s)| DVec4::new(2.0 * c, 2.0 * s, inner, outer))
+            .collect();
+        let got = volume(|sink| sweep(sink, &frame, &stops, (256, rows)));
+        let pi = std::f64::consts::PI;
+        let whole = pi * inner * outer * pi;
+        let least = whole * (1.0 - 4.0 / 3.0 / f64::from(rows));
+        assert!(got > least && got < whole, "{got} instead of {least} to {whole}");
     }
 
     #[test]

@@ -9,6 +9,9 @@ mod building;
 mod car;
 mod cars;
 mod city;
+mod cottage;
+mod creatures;
+mod forest;
 mod furniture;
 mod house;
 mod lathe;
@@ -21,7 +24,9 @@ mod seminar_room;
 mod shapes;
 mod stand;
 mod street;
+mod swarm;
 mod thin_slabs;
+mod tree;
 mod walk;
 
 use self::shapes::Sink;
@@ -77,6 +82,8 @@ static GENERATORS: &[Generator] = &[
     thin_slabs::GENERATOR,
     seminar_room::GENERATOR,
     cars::GENERATOR,
+    forest::GENERATOR,
+    swarm::GENERATOR,
 ];
 
 /// All generators, by name.

@@ -1,6 +1,8 @@
 //! Ways through generated scenes: a walk in the shape of an 8 along straight stretches with rounded corners,
 //! and flights whose line of sight is led too. Shared by all generators.
 
+use std::ops::{Add, Mul};
+
 use glam::{DVec3, Vec3};
 
 use crate::geometry::{Eye, Solid, View, ViewPath};
@@ -54,7 +56,8 @@ pub(super) fn figure_8(stops: &[DVec3], manner: &Manner, origin: DVec3) -> ViewP
     ViewPath { name: "figure 8".into(), views: (0..VIEWS).map(view).collect() }
 }
 
-fn sight(from: DVec3, to: DVec3, far: f64) -> View<Solid> {
+/// The view from one point to another.
+pub(super) fn sight(from: DVec3, to: DVec3, far: f64) -> View<Solid> {
     let eye = Eye {
         position: from.as_vec3(),
         target: to.as_vec3(),
@@ -66,24 +69,30 @@ fn sight(from: DVec3, to: DVec3, far: f64) -> View<Solid> {
     View { eye, width: 1024, height: 1024 }
 }
 
-/// A flight past stops, each where the eye is and what it looks at: a quadratic B-spline, which stays within
-/// the triangles of three stops in a row and goes through the first and the last. As many views between each
-/// two.
+/// A flight past stops, each where the eye is and what it looks at, along the curve of [`spline`]. As many
+/// views between each two.
 pub(super) fn flight(stops: &[(DVec3, DVec3)], views: u32, far: f64, origin: DVec3) -> ViewPath<Solid> {
-    let stop = |k: i64| stops[k.clamp(0, stops.len() as i64 - 1) as usize];
     let view = |k: u32| {
-        // From the middle of a doubled first stop to that of a doubled last one.
-        let way = f64::from(k) / f64::from(views - 1) * stops.len() as f64;
-        let span = (way as i64).min(stops.len() as i64 - 1);
-        let t = way - span as f64;
-        let [before, here, after] = [-1, 0, 1].map(|i| stop(span + i));
-        let weights = [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t];
-        let blend = |pick: fn((DVec3, DVec3)) -> DVec3| {
-            pick(before) * weights[0] + pick(here) * weights[1] + pick(after) * weights[2]
-        };
-        sight(blend(|s| s.0) - origin, blend(|s| s.1) - origin, far)
+        let t = f64::from(k) / f64::from(views - 1);
+        let [from, to] = [spline(stops.len(), |k| stops[k].0, t), spline(stops.len(), |k| stops[k].1, t)];
+        sight(from - origin, to - origin, far)
     };
     ViewPath { name: "flight".into(), views: (0..views).map(view).collect() }
+}
+
+/// The point at `t`, 0..1, of a quadratic B-spline of `count` stops: it stays within the triangles of three
+/// stops in a row and goes through the first and the last.
+pub(super) fn spline<T>(count: usize, stop: impl Fn(usize) -> T, t: f64) -> T
+where
+    T: Mul<f64, Output = T> + Add<Output = T>,
+{
+    // From the middle of a doubled first stop to that of a doubled last one.
+    let way = t * count as f64;
+    let span = (way as usize).min(count - 1);
+    let t = way - span as f64;
+    let [before, here, after] = [span.saturating_sub(1), span, (span + 1).min(count - 1)].map(stop);
+    let weights = [0.5 * (1.0 - t) * (1.0 - t), 0.5 + t * (1.0 - t), 0.5 * t * t];
+    before * weights[0] + here * weights[1] + after * weights[2]
 }
 
 /// The first primitive that the walk of a scene goes through, if any: its object's name and the view before
