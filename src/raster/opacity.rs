@@ -62,9 +62,25 @@ impl Opacity {
             at = at.map(|n| n.div_ceil(2));
         }
         self.levels.truncate(count);
-        for level in 0..count as u8 {
-            let cells: Vec<u32> = self.cells(level).map(|cell| self.present(cell)).collect();
-            self.levels[usize::from(level)].black = cells;
+        for level in 0..count {
+            self.blacken(level);
+        }
+    }
+    /// Makes all samples of a level black.
+    fn blacken(&mut self, level: usize) {
+        let ([width, height], shift) = (self.size, self.shift + level as u32);
+        let map = &mut self.levels[level];
+        // Whole pixels but for the last column and the last row, which the image's edge may cut.
+        let last = |pixels: u32, cells: u32| pixels - ((cells - 1) << shift);
+        let side = 1 << shift;
+        let (right, [down, bottom]) =
+            (last(width, map.columns), if self.is_flat { [1, 1] } else { [side, last(height, map.rows)] });
+        map.black.clear();
+        map.black.resize((map.columns * map.rows) as usize, side * down);
+        let (columns, rows) = (map.columns as usize, map.rows as usize);
+        map.black[(rows - 1) * columns..].fill(side * bottom);
+        for y in 0..rows {
+            map.black[(y + 1) * columns - 1] = right * if y + 1 == rows { bottom } else { down };
         }
     }
     /// Makes the maps of what is drawn into tiles of the same size.
@@ -87,28 +103,31 @@ impl Opacity {
     /// Counts the black samples of level 0 from masks of tiles of 8×4 samples, bit `8 y + x`, given by column
     /// and row; then adds up.
     fn build_from(&mut self, mask: impl Fn(u16, u16) -> u32) {
-        let ([width, height], shift) = (self.size, self.shift);
+        let ([width, height], shift, is_flat) = (self.size, self.shift, self.is_flat);
         let map = &mut self.levels[0];
         map.black.fill(0);
         // A tile holds several pixels, or lies in one.
-        let (wide, high) = (8 >> shift.min(3), if self.is_flat { 1 } else { 4 >> shift.min(2) });
-        let (across, down) = (8 / wide, if self.is_flat { 1 } else { 4 / high });
-        let column = if across == 8 { 0xff } else { (1 << across) - 1 };
-        for y in 0..height.div_ceil(4) {
-            for x in 0..width.div_ceil(8) {
-                let black = !mask(x as u16, y as u16) & present_of_tile([width, height], [x, y]);
+        let (wide, high) = (8 >> shift.min(3), if is_flat { 1 } else { 4 >> shift.min(2) });
+        let (across, down) = (8 / wide, if is_flat { 1 } else { 4 / high });
+        let row = 0xff >> (8 - across);
+        let square = (0..down).fold(0, |bits, y| bits | row << (8 * y));
+        for x in 0..width.div_ceil(8) {
+            for y in 0..height.div_ceil(4) {
+                let is_whole = 8 * x + 8 <= width && 4 * y + 4 <= height;
+                let present = if is_whole { u32::MAX } else { present_of_tile([width, height], [x, y]) };
+                let black = !mask(x as u16, y as u16) & present;
+                // Most tiles are covered as wholes.
                 if black == 0 {
                     continue;
                 }
                 for cell in 0..wide * high {
                     let (i, j) = (cell % wide, cell / wide);
-                    let mut bits = 0;
-                    for row in j * down..(j + 1) * down {
-                        bits |= column << (8 * row + i * across);
-                    }
+                    let bits = black & square << (8 * down * j + across * i);
                     let (to_x, to_y) = ((8 * x + i * across) >> shift, (4 * y + j * down) >> shift);
                     if to_x < map.columns && to_y < map.rows {
-                        map.black[(to_y * map.columns + to_x) as usize] += (black & bits).count_ones();
+                        // All or nothing of it is black as a rule, which needs no counting.
+                        let count = if black == u32::MAX { across * down } else { bits.count_ones() };
+                        map.black[(to_y * map.columns + to_x) as usize] += count;
                     }
                 }
             }
@@ -203,13 +222,15 @@ fn present_of_tile([width, height]: [u32; 2], [x, y]: [u32; 2]) -> u32 {
 
 /// A level from the one below: sums of two by two pixels, fewer at the far edges.
 fn add_up(below: &Map, to: &mut Map) {
-    let (from, wide) = (&below.black, below.columns as usize);
-    for y in 0..to.rows as usize {
-        let rows = 2 * y..(2 * y + 2).min(below.rows as usize);
-        for x in 0..to.columns as usize {
-            let columns = 2 * x..(2 * x + 2).min(wide);
-            let sum = rows.clone().map(|r| from[r * wide..][columns.clone()].iter().sum::<u32>()).sum();
-            to.black[y * to.columns as usize + x] = sum;
+    let (wide, columns) = (below.columns as usize, to.columns as usize);
+    for (y, to) in to.black.chunks_exact_mut(columns).enumerate() {
+        let first = &below.black[2 * y * wide..][..wide];
+        // The last row may have one below it only.
+        let second =
+            if 2 * y + 1 < below.rows as usize { &below.black[(2 * y + 1) * wide..][..wide] } else { &[] };
+        let pairs = first.chunks(2).zip(second.chunks(2).map(Some).chain(std::iter::repeat(None)));
+        for (to, (a, b)) in to.iter_mut().zip(pairs) {
+            *to = a.iter().sum::<u32>() + b.map_or(0, |b| b.iter().sum());
         }
     }
 }

@@ -30,6 +30,18 @@ impl<H: Hears> Work for Behind<'_, H> {
         let (x0, x1, y0, y1) = (p.x0 as i32, p.x1 as i32, p.y0 as i32, p.y1 as i32);
         let asked = Asked { id: 0, x0, x1, y0, y1, nearest: self.nearest, crosses_near: false };
         let [left, right, top, bottom] = asked.blocks();
+        // What is large mostly begins before something that is drawn.
+        for row in top..bottom {
+            for strip in left..right {
+                let nearest = self.tiles.block_near[row * self.tiles.stride() + strip];
+                let is_inside = asked.tiles_inside(strip, row) == 0xffff;
+                if is_inside && nearest > self.tiles.camera.depth_far && self.nearest >= nearest {
+                    let cell = PyramidCell { level: PyramidCell::BLOCK, x: strip as u16, y: row as u16 };
+                    self.read(cell, nearest, Outcome::Shows);
+                    return false;
+                }
+            }
+        }
         for row in top..bottom {
             for strip in left..right {
                 // A block that is full, and all of it nearer.
