@@ -10,6 +10,7 @@
 //! - it culls at least what it culled before (culling nothing is conservative too);
 //! - every certificate is accepted by the independent checker;
 //! - every index keeps the contract of its trait, over degenerate scenes too;
+//! - all of this in each frame of a scene that moves, whatever frame was before;
 //! - what a film says is true: lines, evidence, sentences ([`spoken`]).
 
 #[path = "conformance/spoken.rs"]
@@ -20,11 +21,12 @@ use std::sync::Arc;
 
 use cullscope::culling::Methods;
 use cullscope::drawing::Drawing;
-use cullscope::geometry::{Flat, PrimId, Solid, Space, Vector, View};
+use cullscope::geometry::{Flat, ObjectId, PrimId, Solid, Space, Vector, View};
 use cullscope::method::{Entry, Event, Film, Run, Settings, Verdict};
 use cullscope::raster::{Drawable, Options, Target};
 use cullscope::scene::{
-    AnyScene, LoadOptions, Material, Parts, Quiet, Scene, framing_view, load, random_views,
+    AnyScene, LoadOptions, Material, Motion, Object, Parts, Pose, Quiet, Scene, framing_view, load,
+    random_views,
 };
 use cullscope::trace::{Stamp, Stamps};
 use cullscope::truth::Truth;
@@ -445,4 +447,99 @@ fn indices_are_well_formed_in_flatland() {
 #[test]
 fn indices_are_well_formed_in_space() {
     indices_are_well_formed(&SEEDS.map(|s| soup::<Solid>(s, 80, |c| c)), |c| c);
+}
+
+/// The same in objects of a few primitives each, of which two of three move through the others.
+fn moving<S: Space>(scene: &Scene<S>) -> Arc<Scene<S>> {
+    let mut parts = scene.clone().into_parts();
+    let each = parts.prims.len().div_ceil(15);
+    let pose = |k: usize, frame: usize| {
+        let half = (frame * (17 + k)) as f32 * 0.02;
+        let along = frame as f32 * (k as f32 - 7.0) * 0.35;
+        let rotation = [0.0, 0.0, half.sin(), half.cos()];
+        Pose { rotation, translation: [along, 0.2 * along, -0.3 * along] }
+    };
+    let object = |k: usize| Object {
+        name: format!("part {k}"),
+        group: String::new(),
+        motion: (k % 3 != 2).then(|| (0..5 + k % 3).map(|frame| pose(k, frame)).collect()),
+    };
+    parts.objects = (0..15).map(object).collect();
+    for (at, object) in parts.prim_object.iter_mut().enumerate() {
+        *object = ObjectId((at / each) as u32);
+    }
+    parts.faces.clear();
+    parts.name += ", moving";
+    Arc::new(Scene::new(parts).expect("a valid scene"))
+}
+
+/// Frames in an order in which a person may look at them.
+const FRAMES: [usize; 7] = [0, 1, 2, 3, 9, 3, 0];
+
+fn what_moves_is_followed<S: World>(scenes: &[Arc<Scene<S>>]) {
+    let mut moved = 0;
+    each_case(scenes, |entry, scene, settings| {
+        // Large ones take their time, and say nothing new of parameters.
+        if scene.live().len() > 200 && !settings.0.is_empty() {
+            return;
+        }
+        let mut motion = Motion::new(scene);
+        let first = motion.at(0);
+        let [mut plain, mut counted, mut recorded, mut straight] =
+            [(); 4].map(|()| ready(entry, &first, settings));
+        let mut truth = Truth::new(&first, settings.surfaces(), 1, [1.0; 3]);
+        let options = Options { surfaces: settings.surfaces().both_sides(), ..Options::default() };
+        for (frame, view) in FRAMES.into_iter().zip(views(scene, 1).into_iter().cycle()) {
+            let what = format!("{} {settings:?} on {}, frame {frame}", entry.card().key, scene.name());
+            let now = motion.at(frame);
+            for run in [&mut plain, &mut counted, &mut recorded] {
+                assert!(run.pose(&now, &Quiet), "{what}");
+            }
+            let prims: Vec<_> = now.live().iter().map(|&p| (p, now.prim_bounds(p))).collect();
+            assert_eq!(plain.hierarchy().fault(&prims), None, "{what}");
+            let list = plain.cull(&view);
+            assert_eq!(list, counted.count(&view).0, "{what}: counted");
+            let film = recorded.record(&view, usize::MAX);
+            assert_eq!(list, film.list, "{what}: recorded");
+            assert_eq!(recorded.ended_like(&*film.film), Some(true), "{what}: the film ends as the run did");
+            told_is_answered(&*film.film, &list.prims, &what);
+            check_film(&*film.film).unwrap_or_else(|why| panic!("{what}: {why}"));
+            let mut target = Target::default();
+            list.redraw(&mut target, &now, &view, &options);
+            let judged = truth.judge(&now, &view, &list.prims, &target);
+            assert!(judged.is_exact() || !plain.is_conservative(), "{what}: {judged:?} in {view:?}");
+            // What there was before makes no difference, once it is forgotten.
+            plain.forget();
+            straight.forget();
+            assert!(straight.pose(&first, &Quiet) && straight.pose(&now, &Quiet), "{what}");
+            assert_eq!(plain.cull(&view), straight.cull(&view), "{what}: straight there");
+            counted.forget();
+            recorded.forget();
+            counted.cull(&view);
+            recorded.cull(&view);
+            moved += u32::from(now.bounds() != first.bounds());
+        }
+    });
+    assert!(moved > 100, "only {moved} frames differ from the first in their bounds");
+}
+
+#[test]
+fn what_moves_is_followed_in_flatland() {
+    let mut scenes: Vec<_> =
+        SEEDS.iter().map(|&s| moving(&soup::<Flat>(s, 60, |[a, b, _]| [a, b]))).collect();
+    scenes[1] = glazed(&scenes[1], false);
+    if let AnyScene::Flat(door) = file("scenes2d/moving_door.json") {
+        scenes[2] = door;
+    }
+    what_moves_is_followed(&scenes);
+}
+#[test]
+fn what_moves_is_followed_in_space() {
+    let mut scenes: Vec<_> = SEEDS[..2].iter().map(|&s| moving(&soup::<Solid>(s, 80, |c| c))).collect();
+    scenes[1] = glazed(&scenes[1], false);
+    let generated = load("generate:building?polygons=1000&seed=7", &LoadOptions::default(), &Quiet);
+    if let AnyScene::Solid(scene) = generated.expect("a building") {
+        scenes.push(moving(&scene));
+    }
+    what_moves_is_followed(&scenes);
 }

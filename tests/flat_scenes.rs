@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use cullscope::geometry::{Flat, PrimId, View};
-use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load};
+use cullscope::scene::{AnyScene, LoadOptions, Motion, Quiet, Scene, load};
 use glam::DVec2;
 
 /// Angles between two directions below which nothing counts as seen, radians: what 32-bit rounding moves
@@ -102,7 +102,8 @@ fn every_scene_says_what_it_teaches_and_has_eyes_and_facts() {
 fn every_fact_is_true_and_none_is_missing() {
     for (path, scene) in scenes() {
         for fact in &scene.about().expect {
-            let seen = look(&scene.posed(fact.frame), &scene.paths()[0].views[fact.eye]);
+            let posed = Motion::new(&scene).at(fact.frame);
+            let seen = look(&posed, &scene.paths()[0].views[fact.eye]);
             let what = format!("{}, eye {}, frame {}", path.display(), fact.eye, fact.frame);
             let set = |list: &[PrimId]| list.iter().copied().collect::<BTreeSet<_>>();
             assert_eq!(set(&fact.visible), seen.visible, "visible: {what}");
@@ -134,7 +135,7 @@ fn what_a_scene_is_for_is_in_its_facts() {
     // A door that opens shows more and more.
     let door = find("moving_door.json");
     assert_eq!(door.frame_count(), 10);
-    let seen = |frame| look(&door.posed(frame), &door.paths()[0].views[0]).visible;
+    let seen = |frame| look(&Motion::new(&door).at(frame), &door.paths()[0].views[0]).visible;
     assert!(!seen(0).contains(&PrimId(13)) && seen(9).contains(&PrimId(13)), "the chair comes into view");
     // In a swarm what is seen changes, and from among the bodies most of what is in view is hidden.
     let swarm = find("swarm.json");

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,12 +9,10 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::methods::params_json;
-use super::progress::Bar;
-use super::task::{Ready, Task, moves, seen_by};
+use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
-use crate::geometry::{PrimId, View, each};
-use crate::measure::deadline::Paced;
+use crate::geometry::{PrimId, each};
 use crate::measure::timed;
 use crate::method::surfaces_of;
 use crate::raster::{Options, Target, shade};
@@ -69,6 +66,9 @@ struct Frame {
     drawn_triangles: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     drawn_ids: Option<Vec<u32>>,
+    /// What moving the scene took, and bringing the index to it; of scenes that move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pose_ms: Option<f64>,
     cull_ms: f64,
     draw_ms: f64,
     stages_ms: BTreeMap<&'static str, f64>,
@@ -95,21 +95,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let first = seen_by(0, scene);
-    let Ready { mut run, path, build_ms, bar } = args.task.ready(&first)?;
+    let mut ready = args.task.ready(scene)?;
     let pool = (args.threads > 1)
         .then(|| rayon::ThreadPoolBuilder::new().num_threads(args.threads as usize).build());
     let pool = pool.transpose().map_err(|e| CliError::work("--threads", e.to_string()))?;
-    let mut work = || {
-        if moves(scene) {
-            return moving_frames(args, scene, &path.views, &bar);
-        }
-        frames(args, scene, &mut run, &path.views, 0..path.views.len(), &bar)
-    };
+    let mut work = || frames(args, scene, &mut ready);
     let frames = match &pool {
         Some(pool) => pool.install(&mut work)?,
         None => work()?,
     };
+    let Ready { run, build_ms, bar, .. } = ready;
     drop(bar);
     let report = Report {
         cullscope: env!("CARGO_PKG_VERSION"),
@@ -123,51 +118,31 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     output::emit(args.out.as_deref(), |to| write_report(&report, &frames, to).map(|()| true))
 }
 
-/// Each view sees its own frame of the motions, and the index is built anew for it.
-fn moving_frames<S: World>(
-    args: &Args,
-    scene: &Arc<Scene<S>>,
-    views: &[View<S>],
-    bar: &Bar,
-) -> Result<Vec<Frame>, CliError> {
-    let mut all = Vec::with_capacity(views.len());
-    for at in 0..views.len() {
-        let still = seen_by(at, scene);
-        let mut run = args.task.ready_again(&still, bar)?;
-        all.extend(frames(args, &still, &mut run, views, at..at + 1, bar)?);
-    }
-    Ok(all)
-}
-
-/// Every frame of some views twice: timed, then counted, each time from no memory, so that what a method
-/// keeps from frame to frame is what it would keep.
-fn frames<S: World>(
-    args: &Args,
-    scene: &Scene<S>,
-    run: &mut Paced<S>,
-    views: &[View<S>],
-    which: Range<usize>,
-    bar: &Bar,
-) -> Result<Vec<Frame>, CliError> {
-    let surfaces = surfaces_of(&run.knobs());
+/// Every frame of the path twice: timed, then counted, each time from no memory, so that what a method keeps
+/// from frame to frame is what it would keep.
+fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Result<Vec<Frame>, CliError> {
+    let count = ready.path.views.len();
+    let surfaces = surfaces_of(&ready.run.knobs());
     let background = Theme::Print.flat_linear(Role::Paper);
     let mut truth = args.truth.then(|| Truth::new(scene, surfaces, args.threads as usize, background));
     let mut target = Target::default();
     let options =
         Options { threads: args.threads as usize, surfaces: surfaces.both_sides(), ..Options::default() };
-    let mut frames = Vec::with_capacity(which.len());
-    run.forget();
-    for (i, view) in which.clone().zip(&views[which.clone()]) {
-        bar.report(i as f32 / (views.len() + 1) as f32, "culling and drawing");
-        if bar.cancelled() {
+    let mut frames = Vec::with_capacity(count);
+    ready.run.forget();
+    for i in 0..count {
+        ready.bar.report(i as f32 / (count + 1) as f32, "culling and drawing");
+        if ready.bar.cancelled() {
             return Err(CliError::Interrupted);
         }
-        let ((list, stages_ms), cull_ms) = timed(|| run.stages_ms(view));
+        let (scene, pose_ms) = timed(|| ready.pose(i));
+        let (scene, view) = (&*scene?, &ready.path.views[i]);
+        let ((list, stages_ms), cull_ms) = timed(|| ready.run.stages_ms(view));
         let ((), draw_ms) = timed(|| list.redraw(&mut target, scene, view, &options));
         if let Some(path) = &args.image {
             let rgba = shade(&target, scene, view, background);
             let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
-            let place = output::numbered(path, i, views.len());
+            let place = output::numbered(path, i, count);
             output::write_file(&place, |to| to.write_all(&png_pixels(&picture)).map(|()| true))?;
         }
         let truth = truth.as_mut().map(|t| truth_report(args, t.judge(scene, view, &list.prims, &target)));
@@ -175,6 +150,7 @@ fn frames<S: World>(
             view: i,
             drawn_triangles: list.prims.len(),
             drawn_ids: args.ids.then(|| numbers(&list.ascending())),
+            pose_ms: scene.frame().map(|_| rounded(pose_ms)),
             cull_ms: rounded(cull_ms),
             draw_ms: rounded(draw_ms),
             stages_ms: stages_ms.into_iter().map(|(name, ms)| (name, rounded(ms))).collect(),
@@ -182,9 +158,10 @@ fn frames<S: World>(
             truth,
         });
     }
-    run.forget();
-    for (frame, view) in frames.iter_mut().zip(&views[which]) {
-        let (list, tally) = run.count(view);
+    ready.run.forget();
+    for (i, frame) in frames.iter_mut().enumerate() {
+        ready.pose(i)?;
+        let (list, tally) = ready.run.count(&ready.path.views[i]);
         debug_assert_eq!(list.prims.len(), frame.drawn_triangles, "a counted run draws the same");
         frame.counters = tally.named();
     }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value as Json};
 
 use super::methods::params_json;
-use super::task::{Ready, Task, moves, seen_by};
+use super::task::Task;
 use super::{CliError, World, output};
 use crate::geometry::{ViewPath, each};
 use crate::method::{Budget, KnobValue};
@@ -45,9 +45,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
-    let Ready { mut run, path, bar, .. } = args.task.ready(&seen_by(0, scene))?;
+    let mut ready = args.task.ready(scene)?;
     if let Some((_, time)) =
-        run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_))))
+        ready.run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_))))
     {
         let why = "what fits into a time differs from run to run, and a trace must not";
         return Err(CliError::words(format!("--set budget={time}"), why)
@@ -57,32 +57,29 @@ fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
         Fineness::Coarse => (Detail::Coarse, "coarse"),
         Fineness::Full => (Detail::Full, "full"),
     };
-    let params = params_json(&run.knobs()).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
-    let header = header(scene, run.card().key, params, &path, name);
+    let params = params_json(&ready.run.knobs()).into_iter().map(|(k, v)| (k.to_owned(), v)).collect();
+    let header = header(scene, ready.run.card().key, params, &ready.path, name);
     output::emit(args.out.as_deref(), |to| {
         let mut to = Counted { to, bytes: 0 };
         write_header(&header, &mut to)?;
-        for (frame, view) in path.views.iter().enumerate() {
-            if frame > 0 && moves(scene) {
-                // Words that were right for the first frame are right for all.
-                run = match args.task.ready_again(&seen_by(frame, scene), &bar) {
-                    Err(CliError::Interrupted) => return Ok(false),
-                    ready => ready.map_err(io::Error::other)?,
-                };
-            }
-            let film = run.record(view, FILM_CAP).film;
-            let (done, part, events) =
-                (frame as f32, 1.0 / path.views.len() as f32, film.events().len().max(1) as f32);
+        let count = ready.path.views.len();
+        for frame in 0..count {
+            match ready.pose(frame) {
+                Err(CliError::Interrupted) => return Ok(false),
+                posed => posed.map_err(io::Error::other)?,
+            };
+            let film = ready.run.record(&ready.path.views[frame], FILM_CAP).film;
+            let (done, part, events) = (frame as f32, 1.0 / count as f32, film.events().len().max(1) as f32);
             let stop = |at: usize| {
-                bar.report((done + at as f32 / events) * part, "writing steps");
-                bar.cancelled()
+                ready.bar.report((done + at as f32 / events) * part, "writing steps");
+                ready.bar.cancelled()
             };
             write_film(&*film, frame as u64, detail, &mut to, &stop)?;
-            if bar.cancelled() {
+            if ready.bar.cancelled() {
                 return Ok(false);
             }
             if frame == 0 {
-                forewarn(to.bytes, path.views.len());
+                forewarn(to.bytes, count);
             }
         }
         Ok(true)

@@ -14,7 +14,7 @@ use crate::geometry::ViewPath;
 use crate::measure::deadline::Paced;
 use crate::measure::timed;
 use crate::method::RestoreError;
-use crate::scene::{AnyScene, Scene};
+use crate::scene::{AnyScene, Motion, Part, Scene};
 
 /// Options that say what to run, on what, and from where.
 #[derive(clap::Args)]
@@ -31,6 +31,8 @@ pub(super) struct Task {
 /// A task that can begin.
 pub(super) struct Ready<S: World> {
     pub run: Paced<S>,
+    /// The scene of each view.
+    pub motion: Motion<S>,
     pub path: ViewPath<S>,
     pub build_ms: f64,
     /// Waits and listens for Ctrl-C since before the index was built.
@@ -43,19 +45,21 @@ impl Task {
         self.scene.load()
     }
 
-    /// Checks the words before the work, then builds the index.
+    /// Checks the words before the work, then builds the index for the first view's frame of the scene.
     pub fn ready<S: World>(&self, scene: &Arc<Scene<S>>) -> Result<Ready<S>, CliError> {
         let entry = find::<S>(&self.scene.method)?;
         let settings = settings(&self.scene.set)?;
         entry.knobs(&settings)?;
         let path = self.view.views(scene)?;
+        let mut motion = Motion::new(scene);
+        let first = motion.at(0);
         let bar = Bar::new();
         let saved = self.saved()?;
         let (run, build_ms) = timed(|| match &saved {
-            Some(bytes) => entry.restore(scene, &settings, bytes, &bar).map_err(|e| self.refused(&e)),
-            None => entry.ready(scene, &settings, &bar).map_err(CliError::from),
+            Some(bytes) => entry.restore(&first, &settings, bytes, &bar).map_err(|e| self.refused(&e)),
+            None => entry.ready(&first, &settings, &bar).map_err(CliError::from),
         });
-        let run = Paced::new(run?.ok_or(CliError::Interrupted)?, scene);
+        let run = Paced::new(run?.ok_or(CliError::Interrupted)?, &first);
         if let (Some(path), None) = (&self.preprocess, saved) {
             let Some(bytes) = run.hierarchy().save() else {
                 return Err(CliError::words(
@@ -65,14 +69,7 @@ impl Task {
             };
             output::write_file(path, |to| to.write_all(&bytes).map(|()| true))?;
         }
-        Ok(Ready { run, path, build_ms, bar })
-    }
-
-    /// The method made ready for a scene that moved, by words that were checked.
-    pub fn ready_again<S: World>(&self, scene: &Arc<Scene<S>>, bar: &Bar) -> Result<Paced<S>, CliError> {
-        let (entry, settings) = (find::<S>(&self.scene.method)?, settings(&self.scene.set)?);
-        let run = entry.ready(scene, &settings, bar)?.ok_or(CliError::Interrupted)?;
-        Ok(Paced::new(run, scene))
+        Ok(Ready { run, motion, path, build_ms, bar })
     }
 
     /// The bytes of `--preprocess`, if the file is there.
@@ -92,13 +89,12 @@ impl Task {
     }
 }
 
-/// The scene that a view of a path sees, by its number: where objects move, as they stand in the frame of
-/// that number.
-pub(super) fn seen_by<S: World>(view: usize, scene: &Arc<Scene<S>>) -> Arc<Scene<S>> {
-    if moves(scene) { Arc::new(scene.posed(view)) } else { scene.clone() }
-}
-
-/// Whether the views of a path see different scenes.
-pub(super) fn moves<S: World>(scene: &Scene<S>) -> bool {
-    scene.objects().iter().any(|o| o.motion.is_some())
+impl<S: World> Ready<S> {
+    /// Brings the run to the scene that view `at` of the path sees: where objects move, that of the frame of
+    /// this number.
+    pub fn pose(&mut self, at: usize) -> Result<Arc<Scene<S>>, CliError> {
+        let scene = self.motion.at(at);
+        let part = Part::of(&self.bar, at, self.path.views.len());
+        if self.run.pose(&scene, &part) { Ok(scene) } else { Err(CliError::Interrupted) }
+    }
 }

@@ -10,11 +10,10 @@ use serde_json::Value as Json;
 use super::methods::find;
 use super::progress::Bar;
 use super::step::FILM_CAP;
-use super::task::{moves, seen_by};
 use super::{CliError, World, error::reason, output, scene};
 use crate::geometry::{ViewPath, each};
 use crate::method::Settings;
-use crate::scene::{LoadOptions, Progress, Scene, parse_views};
+use crate::scene::{LoadOptions, Motion, Part, Progress, Scene, parse_views};
 use crate::trace::Detail;
 use crate::trace::format::{self, Header, write_film, write_header};
 use crate::truth::certificate::check_film;
@@ -72,10 +71,8 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
     let path: ViewPath<S> = parse_views(view.as_bytes(), file, scene.origin())?;
     let bar = Bar::new();
     let entry = find::<S>(&header.method)?;
-    let ready = |frame: usize| -> Result<_, CliError> {
-        entry.ready(&seen_by(frame, scene), &settings, &bar)?.ok_or(CliError::Interrupted)
-    };
-    let mut run = ready(0)?;
+    let mut motion = Motion::new(scene);
+    let mut run = entry.ready(&motion.at(0), &settings, &bar)?.ok_or(CliError::Interrupted)?;
     let detail =
         if header.more.get("detail").is_some_and(|d| d == "coarse") { Detail::Coarse } else { Detail::Full };
     let mut same = Same { theirs: read(file)?, line: 1, buffer: Vec::new() };
@@ -86,12 +83,10 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
     write_header(header, &mut same).map_err(differs)?;
     let (mut certificates, mut lost) = (0, 0);
     for (frame, view) in path.views.iter().enumerate() {
-        bar.report(frame as f32 / path.views.len() as f32, "proving");
-        if bar.cancelled() {
+        let part = Part::of(&bar, frame, path.views.len());
+        part.report(0.0, "proving");
+        if bar.cancelled() || !run.pose(&motion.at(frame), &part) {
             return Err(CliError::Interrupted);
-        }
-        if frame > 0 && moves(scene) {
-            run = ready(frame)?;
         }
         let film = run.record(view, FILM_CAP).film;
         certificates += check_film(&*film)

@@ -18,7 +18,9 @@
 use std::ops::Range;
 
 use super::Hierarchy;
+use super::moving::Moving;
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
+use crate::scene::Scene;
 
 /// One node.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +92,8 @@ pub struct KdTree<V> {
     nodes: Vec<KdNode<V>>,
     order: Vec<PrimId>,
     shared: Vec<PrimId>,
+    /// What [`KdTree::refit`] found out the first time.
+    moving: Option<Moving<Aabb<V>>>,
 }
 
 /// By how much a division may multiply references. Where a plane cuts most of what there is, halves hold
@@ -159,7 +163,12 @@ impl<V: Vector> KdTree<V> {
             nodes[at].own = if node.is_leaf() { node.count } else { 0 };
             nodes[at].held = node.count;
         }
-        Some(Self { nodes, order: entries.iter().map(|e| e.prim).collect(), shared: Vec::new() })
+        Some(Self {
+            nodes,
+            order: entries.iter().map(|e| e.prim).collect(),
+            shared: Vec::new(),
+            moving: None,
+        })
     }
 
     /// Builds a tree of at most `height ≥ 1` levels whose boxes end at the splitting planes. A node is not
@@ -173,7 +182,7 @@ impl<V: Vector> KdTree<V> {
         let mut entries = entries(prims);
         entries.sort_unstable_by_key(|e| e.prim);
         let order = Vec::with_capacity(entries.len());
-        let mut tree = Self { nodes: vec![KdNode::new(0, 0)], order, shared: Vec::new() };
+        let mut tree = Self { nodes: vec![KdNode::new(0, 0)], order, shared: Vec::new(), moving: None };
         tree.grow(0, entries, height, cancelled)?;
         Some(tree)
     }
@@ -219,6 +228,60 @@ impl<V: Vector> KdTree<V> {
         }
         self.nodes[at].count = self.order.len() as u32 - self.nodes[at].first;
         Some(())
+    }
+
+    /// Bounds the nodes anew for another frame of the scene that it was built of, and returns those whose
+    /// bounds may have changed. In a tree of cells boxes still end at the planes, but for those of what
+    /// moves: they are whole in each leaf that refers to them. Cost: O(primitives) the first time, then O(primitives
+    /// that move and nodes above them).
+    pub fn refit<S: Space<Vector = V>>(&mut self, scene: &Scene<S>) -> &[NodeId] {
+        let moving = self.moving.take().unwrap_or_else(|| self.moving_of(scene));
+        for list in &moving.lists {
+            let bounds = moving.of(list).iter().fold(list.still, |b, p| b.union(scene.prim_bounds(*p)));
+            self.nodes[list.node.at()].bounds = bounds;
+        }
+        // As when it was built, from below.
+        for node in &moving.nodes {
+            if let Some([a, b]) = self.nodes[node.at()].children() {
+                self.nodes[node.at()].bounds = self.nodes[a.at()].bounds.union(self.nodes[b.at()].bounds);
+            }
+        }
+        &self.moving.insert(moving).nodes
+    }
+    /// The leaves that refer to what moves. Inner nodes are bounded by their children, also where they list
+    /// what crosses their plane: leaves on both sides refer to that.
+    fn moving_of<S: Space<Vector = V>>(&self, scene: &Scene<S>) -> Moving<Aabb<V>> {
+        let listed = |node: NodeId| {
+            let is_leaf = self.nodes[node.at()].is_leaf();
+            let own = if is_leaf { &self.order[self.own(node)] } else { &[] };
+            [own, &self.shared[self.shared(node)]]
+        };
+        let still = |node: NodeId, prims: &mut dyn Iterator<Item = PrimId>| {
+            let cell = self.is_parted().then(|| self.cell(node));
+            let part = |b: Aabb<V>| cell.map_or(b, |c| Aabb { min: b.min.max(c.min), max: b.max.min(c.max) });
+            prims.fold(Aabb::empty(), |all, p| all.union(part(scene.prim_bounds(p))))
+        };
+        let parent = |node| Hierarchy::<S>::parent(self, node);
+        Moving::new(self.nodes.len(), listed, parent, |p| scene.is_moving(p), still)
+    }
+    /// What the planes above a node leave of space.
+    fn cell(&self, node: NodeId) -> Aabb<V> {
+        let mut cell = Aabb { min: V::splat(f32::NEG_INFINITY), max: V::splat(f32::INFINITY) };
+        let mut at = node.0;
+        while at != 0 {
+            let parent = self.nodes[at as usize].parent;
+            let KdNode { axis, split, first_child, .. } = self.nodes[parent as usize];
+            let cut = |v: V, to: fn(f32, f32) -> f32| {
+                V::from_fn(|a| if a == axis as usize { to(v.get(a), split) } else { v.get(a) })
+            };
+            if at == first_child {
+                cell.max = cut(cell.max, f32::min);
+            } else {
+                cell.min = cut(cell.min, f32::max);
+            }
+            at = parent;
+        }
+        cell
     }
 
     /// All nodes; the root first, parents before children.

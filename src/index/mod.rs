@@ -1,7 +1,8 @@
-//! Spatial indexes: built once, then frozen.
+//! Spatial indexes: built once, then frozen but for the boxes of what moves.
 
 mod delaunay;
 mod kd_tree;
+mod moving;
 mod octree;
 pub mod tessellation;
 #[cfg(test)]

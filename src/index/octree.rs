@@ -17,7 +17,9 @@
 use std::ops::Range;
 
 use super::Hierarchy;
+use super::moving::Moving;
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
+use crate::scene::Scene;
 
 /// Where a primitive goes that crosses the planes which divide its cube (Georges 1995, Section 3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,6 +104,9 @@ pub struct Octree<V> {
     nodes: Vec<OctreeNode<V>>,
     order: Vec<PrimId>,
     shared: Vec<PrimId>,
+    /// What [`Octree::refit`] found out the first time: of each list the boxes of what stands still, in the
+    /// cube and whole.
+    moving: Option<Moving<[Aabb<V>; 2]>>,
 }
 
 /// A division may at most double the references: every primitive may go to two parts, or one in seven to all
@@ -130,11 +135,12 @@ impl<V: Vector> Octree<V> {
             nodes: vec![OctreeNode::of(cube_around(&all), 0, 0, 0)],
             order: Vec::with_capacity(entries.len()),
             shared: Vec::new(),
+            moving: None,
         };
         // 1 to 4, depth first.
         tree.grow(0, entries, shape, cancelled)?;
-        // Bounds follow from what nodes hold; a node's own were set when it got its primitives.
-        tree.bound();
+        // Bounds follow from what nodes hold, from below; a node's own were set when it got its primitives.
+        (0..tree.nodes.len()).rev().for_each(|at| tree.bound(at));
         Some(tree)
     }
 
@@ -253,15 +259,46 @@ impl<V: Vector> Octree<V> {
         (stay, passed, parts)
     }
 
-    /// Bounds of inner nodes, from below.
-    fn bound(&mut self) {
-        for at in (0..self.nodes.len()).rev() {
-            for child in self.nodes[at].children() {
-                let child = self.nodes[child as usize];
-                let node = &mut self.nodes[at];
-                (node.bounds, node.whole) = (node.bounds.union(child.bounds), node.whole.union(child.whole));
-            }
+    /// Bounds of a node that has those of what it holds itself, with its children's.
+    fn bound(&mut self, at: usize) {
+        for child in self.nodes[at].children() {
+            let child = self.nodes[child as usize];
+            let node = &mut self.nodes[at];
+            (node.bounds, node.whole) = (node.bounds.union(child.bounds), node.whole.union(child.whole));
         }
+    }
+
+    /// Bounds the nodes anew for another frame of the scene that it was built of, and returns those whose
+    /// bounds may have changed. Cubes stay; what moves out of its cube takes the bounds along, in each cube
+    /// that refers to it. Cost: O(primitives) the first time, then O(primitives that move and nodes above
+    /// them).
+    pub fn refit<S: Space<Vector = V>>(&mut self, scene: &Scene<S>) -> &[NodeId] {
+        let moving = self.moving.take().unwrap_or_else(|| self.moving_of(scene));
+        for node in &moving.nodes {
+            let node = &mut self.nodes[node.at()];
+            (node.bounds, node.whole) = (node.held, node.held_whole);
+        }
+        for list in &moving.lists {
+            // Not clipped to the cube: nobody else may hold the rest.
+            let moved = moving.of(list).iter().fold(Aabb::empty(), |b, p| b.union(scene.prim_bounds(*p)));
+            let node = &mut self.nodes[list.node.at()];
+            [node.held, node.held_whole] = list.still.map(|still| still.union(moved));
+            (node.bounds, node.whole) = (node.held, node.held_whole);
+        }
+        moving.nodes.iter().for_each(|node| self.bound(node.at()));
+        &self.moving.insert(moving).nodes
+    }
+    /// The nodes that hold what moves.
+    fn moving_of<S: Space<Vector = V>>(&self, scene: &Scene<S>) -> Moving<[Aabb<V>; 2]> {
+        let still = |node: NodeId, prims: &mut dyn Iterator<Item = PrimId>| {
+            let cube = &self.nodes[node.at()].cube;
+            prims.fold([Aabb::empty(); 2], |[inside, whole]: [Aabb<V>; 2], p| {
+                let bounds = scene.prim_bounds(p);
+                [inside.union(clipped(&bounds, cube)), whole.union(bounds)]
+            })
+        };
+        let listed = |node| [self.own(node), self.shared(node)];
+        Moving::new(self.nodes.len(), listed, |node| self.parent_of(node), |p| scene.is_moving(p), still)
     }
 
     /// All nodes; the root first, parents before children.

@@ -16,7 +16,7 @@ use super::timing::{Stopwatch, timed};
 use crate::geometry::{PrimId, View};
 use crate::method::{Budget, DrawList, KnobValue, Limit, Recording, Run, Tally, surfaces_of};
 use crate::raster::{Drawable, Options, Target};
-use crate::scene::Scene;
+use crate::scene::{Progress, Scene};
 
 /// Timed frames that are remembered, so that a film shows the frame that was drawn.
 const REMEMBERED: usize = 4096;
@@ -81,8 +81,8 @@ pub struct Paced<S: Drawable> {
     run: Box<dyn Run<S>>,
     scene: Arc<Scene<S>>,
     image: Target,
-    /// How many primitives the timed frame of a view drew.
-    drawn: Vec<(View<S>, u32)>,
+    /// How many primitives the timed frame of a view drew, by the frame of the scene.
+    drawn: Vec<(View<S>, Option<usize>, u32)>,
 }
 
 impl<S: Drawable> Deref for Paced<S> {
@@ -102,6 +102,14 @@ impl<S: Drawable> Paced<S> {
     pub fn new(run: Box<dyn Run<S>>, scene: &Arc<Scene<S>>) -> Self {
         Self { run, scene: scene.clone(), image: Target::default(), drawn: Vec::new() }
     }
+    /// As [`Run::pose`].
+    pub fn pose(&mut self, scene: &Arc<Scene<S>>, progress: &dyn Progress) -> bool {
+        let posed = self.run.pose(scene, progress);
+        if posed {
+            self.scene.clone_from(scene);
+        }
+        posed
+    }
     /// As [`Run::cull`], until the deadline.
     pub fn cull(&mut self, view: &View<S>) -> DrawList<S> {
         let Some(ms) = time_of(&*self.run) else { return self.run.cull(view) };
@@ -110,7 +118,7 @@ impl<S: Drawable> Paced<S> {
         if self.drawn.len() == REMEMBERED {
             self.drawn.clear();
         }
-        self.drawn.push((*view, frame.list.prims.len() as u32));
+        self.drawn.push((*view, self.scene.frame(), frame.list.prims.len() as u32));
         frame.list
     }
     /// As [`Paced::cull`], with the time of each stage of the frame by name, milliseconds; a frame that ends
@@ -153,7 +161,8 @@ impl<S: Drawable> Paced<S> {
         work: impl FnOnce(&mut dyn Run<S>, Option<&Limit<'_>>) -> T,
     ) -> T {
         let Some(ms) = time_of(&*self.run) else { return work(&mut *self.run, None) };
-        let known = self.drawn.iter().rev().find(|(of, _)| of == view).map(|(_, n)| *n);
+        let now = (view, self.scene.frame());
+        let known = self.drawn.iter().rev().find(|(of, frame, _)| (of, *frame) == now).map(|d| d.2);
         let count = known.unwrap_or_else(|| self.cull(view).prims.len() as u32);
         let drawn = Cell::new(0);
         // Also ended from outside, as the timed frame was: what a method does after a budget of its own does

@@ -142,8 +142,7 @@ impl Experiment {
         let mut table = Table::new(self.sweep.columns);
         let mut measured = Vec::new();
         for (i, scene) in scenes.iter().enumerate() {
-            let n = scenes.len() as f32;
-            let part = Part { whole: progress, start: i as f32 / n, length: 1.0 / n };
+            let part = Part::of(progress, i, scenes.len());
             let (mut rows, mut about) = match scene {
                 AnyScene::Flat(scene) => (self.sweep.flat)(scene, &setup, &part)?,
                 AnyScene::Solid(scene) => (self.sweep.solid)(scene, &setup, &part)?,

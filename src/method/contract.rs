@@ -94,6 +94,22 @@ pub trait Method<S: Space>: Sized + Send + Sync + 'static {
         saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Self::Index>, String>;
+    /// Brings the index to another frame of the scene that it was built of, in which only points differ, and
+    /// the memory to the index. `None` when cancelled; then nothing of them is of use. By default the index
+    /// is built anew and the memory, which is of its nodes, is lost. A method that keeps its nodes builds the
+    /// same index whatever frames came between.
+    fn moved(
+        index: &mut Arc<Self::Index>,
+        memory: &mut Self::Memory,
+        scene: &Arc<Scene<S>>,
+        params: &Self::Params,
+        progress: &dyn Progress,
+    ) -> Option<()> {
+        // Without saved bytes nothing can be wrong with them.
+        *index = Arc::new(Self::build(scene, params, None, progress).ok().flatten()?);
+        *memory = Self::Memory::default();
+        Some(())
+    }
     /// The method. There is no second copy of this function. `state` is at its beginning.
     fn cull<O: Observer<Self::Note>>(
         frame: &Frame<'_, S, Self>,

@@ -66,6 +66,9 @@ pub trait Run<S: Space>: Send {
     fn knobs(&self) -> Vec<(Knob, KnobValue)>;
     /// Whether with these parameters its answer includes every visible primitive.
     fn is_conservative(&self) -> bool;
+    /// Goes over to another frame of the scene that it was made ready for (see [`crate::scene::Motion`]);
+    /// what it remembers stays as far as it is still true. False when cancelled; then the run is of no use.
+    fn pose(&mut self, scene: &Arc<Scene<S>>, progress: &dyn Progress) -> bool;
     /// The index.
     fn hierarchy(&self) -> &dyn Hierarchy<S>;
     /// One frame at full speed.
@@ -223,6 +226,17 @@ impl<S: Space, M: Shown<S>> Run<S> for Bound<S, M> {
     }
     fn is_conservative(&self) -> bool {
         M::is_conservative(&self.params)
+    }
+    fn pose(&mut self, scene: &Arc<Scene<S>>, progress: &dyn Progress) -> bool {
+        // The same frame, or nothing moves.
+        if Arc::ptr_eq(&self.scene, scene) {
+            return true;
+        }
+        if M::moved(&mut self.index, &mut self.memory, scene, &self.params, progress).is_none() {
+            return false;
+        }
+        self.scene = scene.clone();
+        true
     }
     fn hierarchy(&self) -> &dyn Hierarchy<S> {
         &*self.index

@@ -30,7 +30,6 @@ pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Res
         let mut notes = Vec::new();
         views::beside_model(path, solid.origin(), &mut found, &mut notes);
         if !(found.is_empty() && notes.is_empty()) {
-            // The only reference so far, so nothing is copied.
             Arc::make_mut(solid).extend(found, notes);
         }
     }

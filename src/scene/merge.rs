@@ -30,7 +30,7 @@ struct Merger<'a> {
 
 /// Merges; see the module.
 pub(super) fn merge_coplanar(parts: &mut Parts<Solid>, progress: &dyn Progress) {
-    let mut merger = Merger::new(parts, false, |_| true);
+    let mut merger = Merger::new(parts, &parts.points, false, |_| true);
     let before: Vec<usize> = merger.prims.iter().map(Vec::len).collect();
     if !merger.run(progress) {
         return;
@@ -48,7 +48,8 @@ impl Scene<Solid> {
     /// material: what occluders are, so none that shows what is behind it. Ordered by their first primitive.
     /// `None` when cancelled.
     pub fn convex_polygons(&self, surfaces: Surfaces, progress: &dyn Progress) -> Option<Vec<Face>> {
-        let mut merger = Merger::new(&self.parts, true, |p| !surfaces.show_through(self, p));
+        let taken = |p| !surfaces.show_through(self, p);
+        let mut merger = Merger::new(&self.tables.parts, self.points(), true, taken);
         merger.run(progress).then(|| merger.into_faces())
     }
 }
@@ -104,7 +105,7 @@ impl Scene<Flat> {
 
 impl<'a> Merger<'a> {
     /// All polygons of `parts` that are taken; `mixed`: those of different objects and materials merge too.
-    fn new(parts: &'a Parts<Solid>, mixed: bool, takes: impl Fn(PrimId) -> bool) -> Self {
+    fn new(parts: &Parts<Solid>, points: &'a [Vec3], mixed: bool, takes: impl Fn(PrimId) -> bool) -> Self {
         let mut covered = vec![false; parts.prims.len()];
         let mut polygons: Vec<(Vec<u32>, Vec<PrimId>)> = Vec::new();
         for face in &parts.faces {
@@ -133,16 +134,7 @@ impl<'a> Merger<'a> {
         }
         edges.sort_unstable();
         let into = (0..rings.len() as u32).collect();
-        Self {
-            points: &parts.points,
-            rings,
-            prims,
-            kinds,
-            edges,
-            into,
-            cutter: Cutter::default(),
-            scratch: Vec::new(),
-        }
+        Self { points, rings, prims, kinds, edges, into, cutter: Cutter::default(), scratch: Vec::new() }
     }
 
     /// Merges what can be merged; whether it was not cancelled.

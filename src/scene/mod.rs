@@ -35,6 +35,7 @@ pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
 pub use load::{file_of, load, load_bytes};
 pub use paths::{figure_eight_path, random_views};
+pub use pose::Motion;
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
 pub use rounding::MAX_COORDINATE;
@@ -156,12 +157,23 @@ impl<S: Space> Parts<S> {
 /// A validated scene. Frozen; shared by reference.
 #[derive(Clone, Debug)]
 pub struct Scene<S: Space> {
-    parts: Parts<S>,
-    live: Vec<PrimId>,
+    /// All that stays from frame to frame where objects move; shared by the scenes of all frames.
+    tables: Arc<Tables<S>>,
+    points: Vec<S::Vector>,
     bounds: Aabb<S::Vector>,
     hash: [u8; 32],
     has_see_through: bool,
+    frame: Option<usize>,
     about: Arc<About>,
+}
+
+/// A scene without its points.
+#[derive(Clone, Debug)]
+struct Tables<S: Space> {
+    /// Its points are those of the scene.
+    parts: Parts<S>,
+    live: Vec<PrimId>,
+    moving: Vec<PrimId>,
 }
 
 impl<S: Space> Scene<S> {
@@ -200,42 +212,46 @@ impl<S: Space> Scene<S> {
         // Asked before each primitive's own material, which most scenes then need not look up.
         let has_see_through =
             live.iter().any(|p| parts.materials[parts.prim_material[p.at()].at()].see_through);
-        let about = Arc::default();
-        let mut scene = Self { bounds: Aabb::empty(), parts, live, hash, has_see_through, about };
-        scene.bounds = scene.live.iter().fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)));
+        let moves = |p: &PrimId| parts.objects[parts.prim_object[p.at()].at()].motion.is_some();
+        let moving = live.iter().copied().filter(moves).collect();
+        let points = std::mem::take(&mut parts.points);
+        let tables = Arc::new(Tables { parts, live, moving });
+        let (frame, about) = (None, Arc::default());
+        let mut scene = Self { bounds: Aabb::empty(), tables, points, hash, has_see_through, frame, about };
+        scene.bounds = scene.live().iter().fold(Aabb::empty(), |b, &p| b.union(scene.prim_bounds(p)));
         Ok(scene)
     }
 
     /// Short name.
     pub fn name(&self) -> &str {
-        &self.parts.name
+        &self.tables.parts.name
     }
     /// Where it came from, as it may be given on the command line again.
     pub fn source(&self) -> &str {
-        &self.parts.source
+        &self.tables.parts.source
     }
     /// All points.
     pub fn points(&self) -> &[S::Vector] {
-        &self.parts.points
+        &self.points
     }
     /// Number of primitive ids, dropped ones included.
     pub fn prim_count(&self) -> usize {
-        self.parts.prims.len()
+        self.tables.parts.prims.len()
     }
     /// Ids of the primitives that exist, ascending; never empty.
     pub fn live(&self) -> &[PrimId] {
-        &self.live
+        &self.tables.live
     }
     /// Corner indices of a primitive, or `None` if it was dropped.
     #[inline]
     pub fn corners(&self, prim: PrimId) -> Option<S::Corners> {
-        self.parts.prims[prim.at()]
+        self.tables.parts.prims[prim.at()]
     }
     /// Corner points of a live primitive (two or three).
     #[inline]
     pub fn prim_points(&self, prim: PrimId) -> impl Iterator<Item = S::Vector> + '_ {
-        let corners = self.parts.prims[prim.at()];
-        (0..S::CORNERS).filter_map(move |i| corners.map(|c| self.parts.points[c.as_ref()[i] as usize]))
+        let corners = self.tables.parts.prims[prim.at()];
+        (0..S::CORNERS).filter_map(move |i| corners.map(|c| self.points[c.as_ref()[i] as usize]))
     }
     /// Bounds of a live primitive.
     #[inline]
@@ -244,20 +260,21 @@ impl<S: Space> Scene<S> {
     }
     /// Object of a primitive.
     pub fn object_of(&self, prim: PrimId) -> ObjectId {
-        self.parts.prim_object[prim.at()]
+        self.tables.parts.prim_object[prim.at()]
     }
     /// Linear diffuse color of a primitive.
     pub fn color_of(&self, prim: PrimId) -> [f32; 3] {
-        self.parts.materials[self.parts.prim_material[prim.at()].at()].color
+        self.tables.parts.materials[self.tables.parts.prim_material[prim.at()].at()].color
     }
     /// Material of a primitive.
     pub fn material_of(&self, prim: PrimId) -> MaterialId {
-        self.parts.prim_material[prim.at()]
+        self.tables.parts.prim_material[prim.at()]
     }
     /// Whether light comes through a primitive, so that it hides nothing.
     #[inline]
     pub fn is_see_through(&self, prim: PrimId) -> bool {
-        self.has_see_through && self.parts.materials[self.parts.prim_material[prim.at()].at()].see_through
+        self.has_see_through
+            && self.tables.parts.materials[self.tables.parts.prim_material[prim.at()].at()].see_through
     }
     /// Whether it does through any live primitive.
     pub fn has_see_through(&self) -> bool {
@@ -266,7 +283,7 @@ impl<S: Space> Scene<S> {
     /// Whether a primitive is seen from behind as from the front, where sides matter.
     #[inline]
     pub fn is_two_sided(&self, prim: PrimId) -> bool {
-        self.parts.materials[self.parts.prim_material[prim.at()].at()].two_sided
+        self.tables.parts.materials[self.tables.parts.prim_material[prim.at()].at()].two_sided
     }
     /// Whether a live primitive turns its back to an eye and has one: strictly, in exact arithmetic.
     #[inline]
@@ -282,15 +299,15 @@ impl<S: Space> Scene<S> {
     }
     /// All objects.
     pub fn objects(&self) -> &[Object] {
-        &self.parts.objects
+        &self.tables.parts.objects
     }
     /// All materials.
     pub fn materials(&self) -> &[Material] {
-        &self.parts.materials
+        &self.tables.parts.materials
     }
     /// Planar convex polygons.
     pub fn faces(&self) -> &[Face] {
-        &self.parts.faces
+        &self.tables.parts.faces
     }
     /// Bounds of all live primitives.
     pub fn bounds(&self) -> Aabb<S::Vector> {
@@ -298,15 +315,15 @@ impl<S: Space> Scene<S> {
     }
     /// What was subtracted from the file's coordinates.
     pub fn origin(&self) -> DVec3 {
-        self.parts.origin
+        self.tables.parts.origin
     }
     /// View paths that came with the scene.
     pub fn paths(&self) -> &[ViewPath<S>] {
-        &self.parts.paths
+        &self.tables.parts.paths
     }
     /// What was noticed while loading.
     pub fn report(&self) -> &Report {
-        &self.parts.report
+        &self.tables.parts.report
     }
     /// What it is for, and facts to expect.
     pub fn about(&self) -> &About {
@@ -314,32 +331,53 @@ impl<S: Space> Scene<S> {
     }
     /// Adds view paths and notes that were found beside a model.
     fn extend(&mut self, paths: Vec<ViewPath<S>>, notes: Vec<String>) {
-        self.parts.paths.extend(paths);
-        notes.into_iter().for_each(|n| self.parts.report.note(n));
+        // The only reference so far, so nothing is copied.
+        let parts = &mut Arc::make_mut(&mut self.tables).parts;
+        parts.paths.extend(paths);
+        notes.into_iter().for_each(|n| parts.report.note(n));
     }
     /// The same scene, saying this about itself.
     pub fn with_about(mut self, about: About) -> Self {
         self.about = Arc::new(about);
         self
     }
-    /// SHA-256 of the geometry (points, corners, objects, materials), lower-case hex.
+    /// Live primitives of objects that move, ascending.
+    pub fn moving(&self) -> &[PrimId] {
+        &self.tables.moving
+    }
+    /// Whether a primitive belongs to an object that moves.
+    #[inline]
+    pub fn is_moving(&self, prim: PrimId) -> bool {
+        self.objects()[self.object_of(prim).at()].motion.is_some()
+    }
+    /// The frame of its motions that it shows; `None` if it is as it was loaded.
+    pub fn frame(&self) -> Option<usize> {
+        self.frame
+    }
+    /// SHA-256 of the geometry (points, corners, objects, materials, motions), lower-case hex; of a frame of
+    /// a scene that moves, of that hash and the frame's number.
     pub fn hash_hex(&self) -> String {
         self.hash.iter().map(|b| format!("{b:02x}")).collect()
     }
     /// Bytes that the tables take, names left out.
     pub fn memory_bytes(&self) -> usize {
         use std::mem::size_of;
-        let faces: usize =
-            self.parts.faces.iter().map(|f| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len())).sum();
-        self.parts.points.len() * size_of::<S::Vector>()
-            + self.parts.prims.len()
+        let faces: usize = self
+            .tables
+            .parts
+            .faces
+            .iter()
+            .map(|f| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len()))
+            .sum();
+        self.points.len() * size_of::<S::Vector>()
+            + self.tables.parts.prims.len()
                 * (size_of::<Option<S::Corners>>() + size_of::<ObjectId>() + size_of::<MaterialId>())
-            + self.live.len() * size_of::<PrimId>()
+            + self.tables.live.len() * size_of::<PrimId>()
             + faces
     }
     /// The parts again, to make another scene of them.
     pub fn into_parts(self) -> Parts<S> {
-        self.parts
+        Parts { points: self.points, ..Arc::unwrap_or_clone(self.tables).parts }
     }
     /// Normal of a live primitive, not of unit length; see [`Space::normal`].
     #[inline]
@@ -396,6 +434,13 @@ fn digest<S: Space>(parts: &Parts<S>) -> [u8; 32] {
         // Only what departs from the plain material, so that plain scenes keep the hash that old traces name.
         if material.see_through || material.two_sided {
             hash.update([u8::from(material.see_through), u8::from(material.two_sided)]);
+        }
+    }
+    // Likewise only what moves.
+    for (i, object) in parts.objects.iter().enumerate() {
+        for pose in object.motion.iter().flat_map(|m| m.iter()) {
+            hash.update((i as u32).to_le_bytes());
+            pose.rotation.iter().chain(&pose.translation).for_each(|v| hash.update(v.to_le_bytes()));
         }
     }
     hash.0.update(&hash.1);

@@ -30,6 +30,14 @@ pub struct Part<'a> {
     pub length: f32,
 }
 
+impl<'a> Part<'a> {
+    /// Part `at` of `count` equal ones.
+    pub fn of(whole: &'a dyn Progress, at: usize, count: usize) -> Self {
+        let length = 1.0 / count.max(1) as f32;
+        Self { whole, start: at as f32 * length, length }
+    }
+}
+
 impl Progress for Part<'_> {
     fn report(&self, fraction: f32, what: &'static str) {
         self.whole.report(self.start + fraction.clamp(0.0, 1.0) * self.length, what);

@@ -2,6 +2,7 @@
 
 use cullscope::geometry::{PrimId, Vector};
 use cullscope::scene::Dropped::{NotFinite, OutOfRange};
+use cullscope::scene::Motion;
 
 use super::{counts, error, solid};
 
@@ -293,7 +294,7 @@ pub fn animated(path: &str) -> String {
 fn a_rigid_animation_becomes_a_motion() {
     let scene = solid("m.gltf", animated("translation").as_bytes());
     assert_eq!(scene.frame_count(), 25);
-    assert_eq!(scene.posed(12).bounds().min.to_array(), [22.0, 0.0, 0.0]);
+    assert_eq!(Motion::new(&scene).at(12).bounds().min.to_array(), [22.0, 0.0, 0.0]);
     for bad in [animated("sideways"), animated("scale").replace("\"node\":1", "\"node\":77")] {
         let still = solid("m.gltf", bad.as_bytes());
         assert_eq!(still.frame_count(), 1);

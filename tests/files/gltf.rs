@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use cullscope::geometry::{PrimId, Solid, Vector};
-use cullscope::scene::{AnyScene, LoadOptions, Progress, Quiet, Scene, SceneError, load, load_bytes};
+use cullscope::scene::{AnyScene, LoadOptions, Motion, Progress, Quiet, Scene, SceneError, load, load_bytes};
 use meshoptimizer_rs::Workspace;
 use meshoptimizer_rs::codec::{self, IndexEncoding, VertexEncoding};
 use serde_json::{Value, json};
@@ -569,8 +569,9 @@ fn a_cubic_spline_goes_by_its_tangents() {
     made.bytes[at + 24..at + 28].copy_from_slice(&8f32.to_le_bytes());
     made.bytes[at + 36..at + 40].copy_from_slice(&(-8f32).to_le_bytes());
     let scene = made.scene();
-    assert_eq!(scene.posed(12).bounds().min.to_array(), [2.0, 0.0, 0.0]);
-    assert_eq!(scene.posed(24).bounds().min.to_array(), [0.0; 3]);
+    let mut motion = Motion::new(&scene);
+    assert_eq!(motion.at(12).bounds().min.to_array(), [2.0, 0.0, 0.0]);
+    assert_eq!(motion.at(24).bounds().min.to_array(), [0.0; 3]);
 }
 
 #[test]

@@ -124,6 +124,16 @@ impl<S: Space> Method<S> for Frustum {
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         Ok(KdTree::build(boxes, params.tree_height, || progress.cancelled()))
     }
+    fn moved(
+        index: &mut Arc<Self::Index>,
+        (): &mut (),
+        scene: &Arc<Scene<S>>,
+        _: &Params,
+        _: &dyn Progress,
+    ) -> Option<()> {
+        Arc::make_mut(index).refit(scene);
+        Some(())
+    }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         (): &mut (),

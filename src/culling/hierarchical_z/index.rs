@@ -11,6 +11,7 @@ use crate::raster::{Clusters, Drawable};
 use crate::scene::{Progress, Scene};
 
 /// An octree with the clusters of its cubes.
+#[derive(Clone)]
 pub struct CubeIndex<S: Space> {
     octree: Octree<S::Vector>,
     clusters: Arc<Clusters>,
@@ -21,11 +22,14 @@ impl<S: Drawable> CubeIndex<S> {
     pub fn build(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
         let octree = params.cubes.build(scene, progress)?;
         progress.report(0.5, "making clusters");
-        let nodes = (0..octree.nodes().len() as u32).map(NodeId);
-        // What is a cube's own apart from what it shares, which may be drawn already.
-        let groups = nodes.flat_map(|node| [octree.own(node), octree.shared(node)]);
-        let clusters = Arc::new(Clusters::new(scene, params.surfaces, groups));
+        let clusters = clusters(scene, params, &octree);
         (!progress.cancelled()).then_some(Self { octree, clusters })
+    }
+    /// Goes over to another frame of the scene: the cubes stay, with the bounds of what they hold now. The
+    /// clusters are made anew, all of them.
+    pub fn follow(&mut self, scene: &Scene<S>, params: &Params) {
+        self.octree.refit(scene);
+        self.clusters = clusters(scene, params, &self.octree);
     }
     /// The tree.
     pub fn octree(&self) -> &Octree<S::Vector> {
@@ -35,6 +39,13 @@ impl<S: Drawable> CubeIndex<S> {
     pub fn clusters(&self) -> &Arc<Clusters> {
         &self.clusters
     }
+}
+
+fn clusters<S: Drawable>(scene: &Scene<S>, params: &Params, octree: &Octree<S::Vector>) -> Arc<Clusters> {
+    let nodes = (0..octree.nodes().len() as u32).map(NodeId);
+    // What is a cube's own apart from what it shares, which may be drawn already.
+    let groups = nodes.flat_map(|node| [octree.own(node), octree.shared(node)]);
+    Arc::new(Clusters::new(scene, params.surfaces, groups))
 }
 
 /// As a tree it is the octree.

@@ -179,6 +179,17 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         keeps_nothing(saved)?;
         Ok(CubeIndex::build(scene, params, progress))
     }
+    fn moved(
+        index: &mut Arc<Self::Index>,
+        _: &mut Memory,
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        _: &dyn Progress,
+    ) -> Option<()> {
+        // The cubes stay, and with them the visible list.
+        Arc::make_mut(index).follow(scene, params);
+        Some(())
+    }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         memory: &mut Memory,

@@ -8,7 +8,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::memory::Owner;
+use super::memory::{Memory, Owner};
 use super::occluders::Occluders;
 use super::ranking::Ranking;
 use super::selection::{Selection, Wanted};
@@ -16,7 +16,7 @@ use super::space::Shape;
 use super::{Params, saved};
 use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Space};
 use crate::index::{Hierarchy, KdTree};
-use crate::scene::{Part, Progress, Scene};
+use crate::scene::{Face, Part, Progress, Scene};
 
 /// What is built once: the kD-tree, the occluders that any place can choose, and which each chooses.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Index<S: Shape> {
     pub selection: Selection,
     /// Bounds of each object that is small enough to be tested as a whole.
     pub details: Vec<Option<Aabb<S::Vector>>>,
+    /// The occluders that move, with the faces that they are made of.
+    moving: Vec<(u32, Face)>,
     /// Where the runs of one object begin in the two lists of the tree, whose nodes sort them by object.
     runs: [Vec<(u32, ObjectId)>; 2],
     /// The selection with the numbers that all polygons of the scene have, to be saved.
@@ -129,9 +131,44 @@ impl<S: Shape> Index<S> {
         let Some(ranking) = Ranking::new(&occluders, || progress.cancelled()) else { return Ok(None) };
         let selection = selection.renumbered(&kept);
         let runs = runs(scene, &tree);
+        // All primitives of a face are of one object, or of objects that stand still.
+        let moves = |id: u32| occluders.prims(id).iter().any(|p| scene.is_moving(*p));
+        let face = |id: u32| faces[occluders.get(id).source as usize].clone();
+        let ids = 0..occluders.len() as u32;
+        let moving = if scene.moving().is_empty() {
+            vec![]
+        } else {
+            ids.filter(|id| moves(*id)).map(|id| (id, face(id))).collect()
+        };
         // 5.
         let details = details(scene);
-        Ok(Some(Self { tree, occluders, ranking, selection, details, runs, saved: saved.into() }))
+        Ok(Some(Self { tree, occluders, ranking, selection, details, moving, runs, saved: saved.into() }))
+    }
+    /// Goes over to another frame of the scene: the tree keeps its planes and each place its list of
+    /// occluders, which only says where to look; boxes and occluders are where they are now, and of the
+    /// memory stays what is still true. False if an occluder has lost its area; then nothing of it may be used.
+    pub fn follow(&mut self, scene: &Scene<S>, memory: &mut Memory<S>) -> bool {
+        if !self.occluders.follow(scene.points(), &self.moving) {
+            return false;
+        }
+        if !self.moving.is_empty()
+            && let Some(ranking) = Ranking::new(&self.occluders, || false)
+        {
+            self.ranking = ranking;
+        }
+        let mut moved: Vec<ObjectId> = scene.moving().iter().map(|p| scene.object_of(*p)).collect();
+        moved.dedup();
+        for object in &moved {
+            self.details[object.at()] = self.details[object.at()].map(|_| Aabb::empty());
+        }
+        for &prim in scene.moving() {
+            if let Some(bounds) = &mut self.details[scene.object_of(prim).at()] {
+                *bounds = bounds.union(scene.prim_bounds(prim));
+            }
+        }
+        let occluders: Vec<u32> = self.moving.iter().map(|(id, _)| *id).collect();
+        memory.follow(self.tree.refit(scene), &moved, &occluders);
+        true
     }
     /// The primitives that a node has for itself, object by object.
     pub fn own(&self, node: NodeId) -> impl Iterator<Item = (ObjectId, &[PrimId])> {
@@ -236,6 +273,11 @@ impl<S: Shape> Hierarchy<S> for Index<S> {
             + self.ranking.bytes::<S>()
             + self.selection.bytes()
             + self.details.len() * size_of::<Option<Aabb<S::Vector>>>()
+            + self
+                .moving
+                .iter()
+                .map(|(_, f)| size_of::<Face>() + 4 * (f.corners.len() + f.prims.len()))
+                .sum::<usize>()
             + self.runs.iter().map(|r| r.len() * size_of::<(u32, ObjectId)>()).sum::<usize>()
     }
 }

@@ -77,6 +77,20 @@ impl<S: Shape> Default for Memory<S> {
     }
 }
 
+impl<S: Shape> Kept<S> {
+    /// Forgets relations to some occluders (ascending).
+    fn forget(&mut self, occluders: &[u32]) {
+        let names = &self.names;
+        if names.iter().any(|(id, _)| occluders.binary_search(id).is_ok()) {
+            let stays = |at: usize| occluders.binary_search(&names[at].0).is_err();
+            let mut at = 0..names.len();
+            self.relations.retain(|_| at.next().is_some_and(stays));
+            self.names.retain(|(id, _)| occluders.binary_search(id).is_err());
+        }
+        self.hider = self.hider.filter(|id| occluders.binary_search(id).is_err());
+    }
+}
+
 /// A direction, and whether the Eye stands within the scene's box.
 pub type Sight = (u32, bool);
 
@@ -88,6 +102,24 @@ pub enum Owner {
 }
 
 impl<S: Shape> Memory<S> {
+    /// Forgets what is no longer true in another frame of the scene: of nodes with other bounds, of objects
+    /// that moved, and of occluders that did, ascending.
+    pub fn follow(&mut self, nodes: &[NodeId], objects: &[ObjectId], occluders: &[u32]) {
+        // Before the first frame nothing is kept.
+        if self.nodes.is_empty() {
+            return;
+        }
+        nodes.iter().for_each(|node| self.nodes[node.at()] = Kept::default());
+        for object in objects {
+            (self.objects[object.at()], self.near[object.at()]) = (Kept::default(), None);
+        }
+        if occluders.is_empty() {
+            return;
+        }
+        self.nodes.iter_mut().chain(&mut self.objects).for_each(|kept| kept.forget(occluders));
+        // Those near an object are chosen so that they do not cut it.
+        self.near.fill(None);
+    }
     /// Begins a frame: earlier eye_sides are stale, relations are not.
     pub fn begin(&mut self, nodes: usize, objects: usize, occluders: usize, prims: usize) {
         // Only the first frame grows anything: the memory belongs to one index.

@@ -331,6 +331,19 @@ impl<S: Shape> Method<S> for LargeOccluders {
     ) -> Result<Option<Index<S>>, String> {
         Index::build(scene, params, saved, progress)
     }
+    fn moved(
+        index: &mut Arc<Index<S>>,
+        memory: &mut Memory<S>,
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        progress: &dyn Progress,
+    ) -> Option<()> {
+        if !Arc::make_mut(index).follow(scene, memory) {
+            *index = Arc::new(Index::build(scene, params, None, progress).ok().flatten()?);
+            *memory = Memory::default();
+        }
+        Some(())
+    }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         memory: &mut Memory<S>,

@@ -43,6 +43,29 @@ pub struct Occluders<S: Shape> {
     prims: Vec<PrimId>,
 }
 
+impl<S: Shape> Occluder<S> {
+    /// With these corners; `None` without area.
+    fn of(corners: &[S::Point], source: u32, edges: Range<u32>, prims: Range<u32>) -> Option<Self> {
+        // Without area there is no normal, and nothing to hide behind.
+        let vector = S::area(corners);
+        let area = vector.length();
+        if area.is_nan() || area <= 0.0 {
+            return None;
+        }
+        // From the sum over all corners: where rounding bent the polygon, a normal from three of them would
+        // depend on which three.
+        let (normal, anchor) = (vector * (1.0 / area), corners[0]);
+        let heights = corners.iter().map(|c| normal.dot(*c - anchor));
+        // From 0, at which the anchor itself lies.
+        let slab = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
+        // The mean of the corners, not the centroid of the area: it serves to choose occluders and to label
+        // them, and no claim rests on it.
+        let center =
+            corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
+        Some(Self { normal, anchor, slab, center, area, source, edges, prims })
+    }
+}
+
 impl<S: Shape> Occluders<S> {
     /// Makes ready those faces that can hide anything: at most [`MAX_EDGES`] corners and some area.
     pub fn new(points: &[S::Vector], faces: &[Face]) -> Self {
@@ -52,25 +75,12 @@ impl<S: Shape> Occluders<S> {
         let mut names: Vec<([u32; 2], u32)> = Vec::new();
         for (source, face) in faces.iter().enumerate().filter(|(_, f)| f.corners.len() <= MAX_EDGES) {
             let corners = corners_of::<S>(points, &face.corners);
-            // Without area there is no normal, and nothing to hide behind.
-            let vector = S::area(&corners);
-            let area = vector.length();
-            if area.is_nan() || area <= 0.0 {
-                continue;
-            }
-            // From the sum over all corners: where rounding bent the polygon, a normal from three of them
-            // would depend on which three.
-            let (normal, anchor) = (vector * (1.0 / area), corners[0]);
-            let heights = corners.iter().map(|c| normal.dot(*c - anchor));
-            // From 0, at which the anchor itself lies.
-            let slab = heights.fold([0.0f64; 2], |[low, high], h| [low.min(h), high.max(h)]);
-            // The mean of the corners, not the centroid of the area: it serves to choose occluders and to
-            // label them, and no claim rests on it.
-            let center =
-                corners.iter().fold(S::Point::default(), |sum, c| sum + *c) * (1.0 / corners.len() as f64);
+            let (edge, prim) = (made.edges.len() as u32, made.prims.len() as u32);
+            let edges = edge..edge + corners.len() as u32;
+            let prims = prim..prim + face.prims.len() as u32;
+            let Some(occluder) = Occluder::of(&corners, source as u32, edges, prims) else { continue };
             // Tables beside each other, not a vector for each: testing reads edges of many occluders in a
             // row.
-            let (edge, prim) = (made.edges.len() as u32, made.prims.len() as u32);
             for i in 0..corners.len() {
                 let (name, sense) = S::edge_key(&face.corners, i);
                 names.push((name, made.edges.len() as u32));
@@ -79,17 +89,7 @@ impl<S: Shape> Occluders<S> {
             }
             // Kept for back-face culling, which asks each of them exactly, and for the name.
             made.prims.extend(&face.prims);
-            let (edges, prims) = (edge..made.edges.len() as u32, prim..made.prims.len() as u32);
-            made.all.push(Occluder {
-                normal,
-                anchor,
-                slab,
-                center,
-                area,
-                source: source as u32,
-                edges,
-                prims,
-            });
+            made.all.push(occluder);
         }
         // Equal corner pairs get equal numbers: whether two occluders share an edge is then a comparison.
         names.sort_unstable();
@@ -98,6 +98,21 @@ impl<S: Shape> Occluders<S> {
             made.keys[*edge as usize].0 = made.key_count as u32 - 1;
         }
         made
+    }
+
+    /// Brings those with these numbers and faces to where their points are now. False if one of them has no
+    /// area there.
+    pub fn follow(&mut self, points: &[S::Vector], moving: &[(u32, Face)]) -> bool {
+        for (id, face) in moving {
+            let corners = corners_of::<S>(points, &face.corners);
+            let Occluder { source, edges, prims, .. } = self.all[*id as usize].clone();
+            let Some(occluder) = Occluder::of(&corners, source, edges.clone(), prims) else { return false };
+            self.all[*id as usize] = occluder;
+            for (i, edge) in edges.enumerate() {
+                self.edges[edge as usize] = S::edge(&corners, i);
+            }
+        }
+        true
     }
 
     /// How many there are.

@@ -131,6 +131,17 @@ impl<S: Faces> Method<S> for ParallelHierarchicalZ {
         keeps_nothing(saved)?;
         Ok(params.cubes.build(scene, progress))
     }
+    fn moved(
+        index: &mut Arc<Self::Index>,
+        _: &mut Memory,
+        scene: &Arc<Scene<S>>,
+        _: &Params,
+        _: &dyn Progress,
+    ) -> Option<()> {
+        // The cubes stay, and with them what the lists say of them.
+        Arc::make_mut(index).refit(scene);
+        Some(())
+    }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         memory: &mut Memory,
