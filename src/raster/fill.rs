@@ -58,7 +58,7 @@ fn fill_small<L: Lanes>(l: L, s: &Setup, canvas: &mut Canvas) {
     for y in s.y0..s.y1 {
         let at = canvas.place(s.x0, y);
         let inside = l.none_negative(edge_a, edge_b, edge_c, columns);
-        // No nearer than the nearest vertex, whatever the rounding: whoever bounds what is drawn counts on it.
+        // No nearer than the nearest vertex, whatever the rounding: bounds of what is drawn count on it.
         let z = l.clamp(l.add(l.splat(s.plane.at_row(y)), along), low, high);
         // To the end of the canvas, all of which is ours: so that nearly all vectors are whole ones.
         l.merge(&mut canvas.depth[at..], &mut canvas.item[at..], inside, z, ids);

@@ -42,6 +42,8 @@ impl<S: Cellular + Faces> Rest<S> {
     }
     /// Draws what was projected.
     pub fn catch_up(&mut self) {
+        // Only now: most of a frame is projected before anything is asked, and without a question nothing is
+        // drawn.
         for cell in self.waiting.drain(..) {
             self.tiled.step(TileStep::Draw(node_of(cell), self.one_sided));
         }
@@ -49,25 +51,29 @@ impl<S: Cellular + Faces> Rest<S> {
     /// Whether a box is hidden; `None` if it is out of view. What decided is found for `O` to tell.
     pub fn hides<O: Observer<Evidence<S>>>(&mut self, bounds: &Aabb<S::Vector>) -> Option<Answer> {
         let mut sum = Sum::<_, O>::default();
+        // Exactly: a cell that is let through though it is hidden costs more than some tiles' depths.
         let (is_hidden, nearest) = self.tiled.hides_box(bounds, true, &mut sum)?;
         Some(sum.summary.answer(is_hidden, nearest))
     }
-    /// Draws what several cells share and none of them drew. Returns those that are hidden, ascending.
-    pub fn draw_shared<O: Observer<Evidence<S>>>(&mut self, scene: &Scene<S>) -> Vec<PrimId> {
-        let fates = self.tiled.step(TileStep::Draw(NodeId(0), self.one_sided)).to_vec();
-        let mut is_hidden = |&(prim, fate): &(PrimId, Fate)| match fate {
-            Fate::Shown => false,
-            Fate::Hidden | Fate::Away => true,
-            // What hides nothing is in no tile, so its box is asked for. By tiles alone, as all of these are.
-            Fate::Apart => {
-                let mut sum = Sum::<_, O>::default();
-                let hidden = self.tiled.hides_box(&scene.prim_bounds(prim), false, &mut sum);
-                hidden.is_none_or(|(is_hidden, _)| is_hidden)
+    /// Draws what several cells share and none of them drew. Returns of each primitive of the scene whether
+    /// it is among these and hidden.
+    pub fn draw_shared<O: Observer<Evidence<S>>>(&mut self, scene: &Scene<S>) -> Vec<bool> {
+        let (mut is_hidden, mut apart) = (vec![false; scene.prim_count()], Vec::new());
+        // Most of it is in hidden cells.
+        for &(prim, fate) in self.tiled.draw_unhidden(NodeId(0), self.one_sided) {
+            match fate {
+                Fate::Shown => {}
+                Fate::Hidden | Fate::Away => is_hidden[prim.at()] = true,
+                Fate::Apart => apart.push(prim),
             }
-        };
-        let mut hidden: Vec<PrimId> = fates.iter().filter(|f| is_hidden(f)).map(|(prim, _)| *prim).collect();
-        hidden.sort_unstable();
-        hidden
+        }
+        // What hides nothing is in no tile, so its box is asked for. By tiles alone, as the others are.
+        for prim in apart {
+            let mut sum = Sum::<_, O>::default();
+            let hidden = self.tiled.hides_box(&scene.prim_bounds(prim), false, &mut sum);
+            is_hidden[prim.at()] = hidden.is_none_or(|(is_hidden, _)| is_hidden);
+        }
+        is_hidden
     }
     /// The nearest depth of a primitive in the tile in which it comes nearest to showing, and the farthest
     /// that is drawn there, `1/w`. `None` if it covers no pixel.
@@ -157,23 +163,39 @@ impl<S: Faces> Doubt<'_, S> {
             let rows = (rows & 1) | (rows & 2) << 7 | (rows & 4) << 14 | (rows & 8) << 21;
             for x in r.x0 / 8..=(r.x1 - 1) / 8 {
                 let (most, pixels) = &mut self.marks[(y * self.columns + x) as usize];
+                // The greatest of all for each pixel: a bound that takes eight bytes a tile.
                 *most = most.max(nearest);
                 *pixels |= rows * part(r.x0, r.x1, 8 * x, 8);
             }
         }
     }
-    /// The share of the image that is marked and not before all of the rest.
-    pub fn share(self) -> f32 {
+    /// A bound on the share of the image that the rest could change: as close as it takes to know whether it
+    /// exceeds `most`.
+    pub fn share(self, most: f32) -> f32 {
         if self.is_all {
             return 1.0;
         }
-        let mut open = 0;
-        for (at, (nearest, pixels)) in self.marks.into_iter().enumerate().filter(|(_, mark)| mark.1 != 0) {
+        let pixels = f64::from(self.view.width) * f64::from(self.view.height);
+        let share = |open: u32| (f64::from(open) / pixels) as f32;
+        // Equal depths count, since which of two equals shows is the rasterizer's choice.
+        let (mut least, mut greatest, mut undecided) = (0, 0, Vec::new());
+        for (at, (nearest, marked)) in self.marks.into_iter().enumerate().filter(|(_, mark)| mark.1 != 0) {
             let (x, y) = ((at as u32 % self.columns) as u16, (at as u32 / self.columns) as u16);
-            // Equal depths count, since which of two equals shows is the rasterizer's choice.
-            open +=
-                self.tiled.open(PyramidCell { level: PyramidCell::TILE, x, y }, nearest, pixels).count_ones();
+            let tile = PyramidCell { level: PyramidCell::TILE, x, y };
+            let [open, may] = self.tiled.tiles().open_bounds(tile, nearest, marked);
+            (least, greatest) = (least + open.count_ones(), greatest + may.count_ones());
+            if open != may {
+                undecided.push((tile, nearest, may & !open));
+            }
         }
-        (f64::from(open) / (f64::from(self.view.width) * f64::from(self.view.height))) as f32
+        // Exact depths take time, and mostly tiles decide.
+        for (tile, nearest, pixels) in undecided {
+            if share(least) > most || share(greatest) <= most {
+                break;
+            }
+            let open = self.tiled.open(tile, nearest, pixels).count_ones();
+            (least, greatest) = (least + open, greatest - (pixels.count_ones() - open));
+        }
+        share(greatest)
     }
 }

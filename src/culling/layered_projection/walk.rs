@@ -260,7 +260,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             // bounded, not what does: the promise holds, and the budget is larger than it need be.
             self.line(line::GROW);
             let most = 1.0 - self.params.quality as f32 / 100.0;
-            let (share, bare) = self.doubt(&mut rest);
+            let (share, bare) = self.doubt(&mut rest, most);
             let drawn = self.out.prims.len() as u32;
             self.watch.note(|| Evidence::Bounded(Bounded { share, most, drawn }));
             for prim in bare {
@@ -272,9 +272,9 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.rest = Some(rest);
         self.left > 0
     }
-    /// The share of the image that what is in view and not drawn could still change; and the primitives that
-    /// have no bounds in the image, which were drawn instead.
-    fn doubt(&mut self, rest: &mut Rest<S>) -> (f32, Vec<PrimId>) {
+    /// The share of the image that what is in view and not drawn could still change, bounded as close as
+    /// `most` asks for; and the primitives that have no bounds in the image, which were drawn instead.
+    fn doubt(&mut self, rest: &mut Rest<S>, most: f32) -> (f32, Vec<PrimId>) {
         let (index, scene, eye, planes) =
             (self.index, self.scene, self.view.eye.position, Frustum::<S::Vector>::ALL);
         let (mut doubt, mut bare) = (rest.doubt(self.view), Vec::new());
@@ -297,7 +297,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 bare.push(prim);
             }
         }
-        (doubt.share(), bare)
+        (doubt.share(most), bare)
     }
     /// Whether all of a cell is hidden by what is drawn; then it leaves the front.
     fn is_hidden(&mut self, cell: CellId, solidity: f32) -> bool {
@@ -346,7 +346,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         // They are drawn together, and each is compared with what is drawn when its turn comes.
         let hidden = rest.draw_shared::<O>(scene);
         for (at, prim) in open.into_iter().enumerate() {
-            let is_hidden = hidden.binary_search(&prim).is_ok();
+            let is_hidden = hidden[prim.at()];
             if !is_hidden {
                 self.out.prims.push(prim);
             }

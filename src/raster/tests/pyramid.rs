@@ -98,8 +98,8 @@ fn windows_put_together_are_the_image() {
     }
 }
 
-/// While an image is drawn, tile by tile brought up to date or not: what is not stale is right, and nothing is
-/// held nearer than it is.
+/// While an image is drawn, tile by tile brought up to date or not: what is not stale is right, and nothing
+/// is held nearer than it is.
 #[test]
 fn a_pyramid_that_is_read_while_the_image_is_drawn_holds_nothing_too_near() {
     let mut dice = Dice::new(8);

@@ -269,7 +269,7 @@ fn a_group_of_flatland_tells_what_became_of_each_segment() {
     tiles.clear(&straight_line(33), true);
     let fates: Vec<(PrimId, Fate)> = (0..5)
         .flat_map(|group| {
-            let (how, mut fates) = (How { one_sided: true, skipped: &[] }, Vec::new());
+            let (how, mut fates) = (How { one_sided: true, skipped: &[], tested: false }, Vec::new());
             tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates);
             fates
         })

@@ -219,7 +219,11 @@ impl Clusters {
     }
     /// The clusters of a group.
     pub(super) fn of_group(&self, group: usize) -> &[Cluster] {
-        &self.clusters[self.groups[group].clusters.clone()]
+        &self.clusters[self.range_of(group)]
+    }
+    /// Their numbers.
+    pub(super) fn range_of(&self, group: usize) -> Range<usize> {
+        self.groups[group].clusters.clone()
     }
     /// What became of the primitives of a group, from the tags of what faced the eye and of what showed.
     pub(super) fn fates(&self, group: usize, skipped: &[bool], told: &Told, to: &mut Vec<(PrimId, Fate)>) {

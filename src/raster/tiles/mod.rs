@@ -186,7 +186,8 @@ impl Tiles {
         query::draw(self, clusters, one_sided, isa);
     }
     /// Draws a group of occluders and tells what became of each primitive, in the order of the group's
-    /// clusters: all that face the eye are drawn, but for those that are drawn already.
+    /// clusters: all that face the eye are drawn, but for those that are drawn already and, where clusters
+    /// are tested, those of hidden ones. These are told to be hidden, whichever way they face.
     pub fn draw_group(
         &mut self,
         clusters: &Clusters,
@@ -199,6 +200,11 @@ impl Tiles {
             return;
         }
         self.scratch.told.begin();
+        if how.tested {
+            // What becomes of a cluster is not looked for primitive by primitive.
+            let prims = clusters.of_group(group).iter().flat_map(|c| c.prims.clone());
+            self.scratch.told.faced.extend(prims.map(|prim| (prim << 2 | 3) as i32));
+        }
         query::draw_group(self, clusters, group, how, isa);
         self.scratch.told.is_asked = false;
         clusters.fates(group, how.skipped, &self.scratch.told, fates);
@@ -218,10 +224,23 @@ impl Tiles {
     pub fn refresh(&mut self, cell: PyramidCell, isa: Isa) {
         query::refresh_cell(self, cell, isa);
     }
-    /// The pixels of a tile, of those `among`, at which something at a depth, `1/w`, may show: where it does
-    /// not lie behind what is drawn. Bit `8 y + x`. Exact, which needs what [`Tiles::clear`] was told to keep.
+    /// The pixels of a tile, of those `among`, at which something at a depth, `1/w`, shows by all that is
+    /// drawn: where it does not lie behind that. Bit `8 y + x`. It needs what [`Tiles::clear`] was told to
+    /// keep.
     pub fn open(&mut self, tile: PyramidCell, nearest: f32, among: u32, isa: Isa) -> u32 {
-        query::open(self, tile, nearest, among, isa)
+        let [bare, may] = self.open_bounds(tile, nearest, among);
+        if bare == may { may } else { bare | query::open(self, tile, nearest, may & !bare, isa) }
+    }
+    /// Pixels that are among those of [`Tiles::open`], and pixels that hold all of these: as far as it is
+    /// known.
+    pub fn open_bounds(&self, tile: PyramidCell, nearest: f32, among: u32) -> [u32; 2] {
+        let (line, k) = (&self.lines[self.line_of(tile)], usize::from(tile.x % 4));
+        if nearest < line.far[k] {
+            return [0; 2];
+        }
+        let hidden = if nearest < line.near[k] { line.mask[k] } else { 0 };
+        // Where nothing is, anything shows.
+        [among & !line.ever[k], among & !hidden]
     }
     /// Whether boxes are hidden by what is drawn. `exact`: tiles that do not decide are shaded, which needs
     /// what [`Tiles::clear`] was told to keep; else they count as showing the box.

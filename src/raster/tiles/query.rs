@@ -9,6 +9,8 @@
 //! 4. of the tiles that are left, pixels that nothing covers; then a plane that nothing in the tile is
 //!    farther than, and exact depths, each worked out when it is first asked for (`resolve`).
 
+use std::ops::Range;
+
 use super::clusters::{Boxes, Cluster, Clusters};
 use super::heard::{Hears, Nobody, Outcome, Read};
 use super::look::{Asked, BLOCK, Look, PIXEL, Span, TILE};
@@ -55,14 +57,7 @@ pub(super) fn refresh_cell(tiles: &mut Tiles, cell: PyramidCell, isa: Isa) {
 
 /// See [`Tiles::open`].
 pub(super) fn open(tiles: &mut Tiles, tile: PyramidCell, nearest: f32, among: u32, isa: Isa) -> u32 {
-    let (line, k) = (&tiles.lines[tiles.line_of(tile)], usize::from(tile.x % 4));
-    if nearest < line.far[k] {
-        return 0;
-    }
-    // Where nothing is, anything shows.
-    let covered = among & line.ever[k];
-    let among = among & !covered;
-    if covered == 0 { among } else { among | wide::run(isa, Open { tiles, tile, nearest, among: covered }) }
+    wide::run(isa, Open { tiles, tile, nearest, among })
 }
 
 /// How primitives are drawn.
@@ -72,6 +67,8 @@ pub struct How<'a> {
     pub one_sided: bool,
     /// Of each primitive of the scene whether it is drawn already; none if empty.
     pub skipped: &'a [bool],
+    /// Front to back, without the clusters that are hidden when their turn comes; else all in their order.
+    pub tested: bool,
 }
 
 /// What is asked for: what lies in a rectangle of pixels, no nearer than a depth; or a box there.
@@ -101,26 +98,34 @@ impl Work for DrawAll<'_> {
     fn run<L: Wide>(self, l: L) {
         let Self { tiles, clusters, one_sided } = self;
         tiles.forget();
-        let look = tiles.look;
-        let (mut seen, mut asked, mut open) = (Vec::new(), Vec::new(), Vec::new());
-        look.in_view(l, &clusters.boxes, &mut seen);
-        front_to_back(&look, &clusters.boxes, &mut seen);
-        look.project(l, &clusters.boxes, &seen, &mut asked);
-        for a in &asked {
-            let own = Span::new(&look, &tiles.camera.eye, clusters.boxes.at(a.id as usize), a.nearest);
-            let (spans, hears) = (Spans { own, whole: None }, &mut Nobody);
-            // By tiles alone: most are far behind, and the others draw what hides more.
-            let hidden = Fine { tiles, asked: a, spans, exact: false, open: &mut open, hears };
-            if a.crosses_near || !(a.is_empty() || l.apart(hidden)) {
-                let cluster = &clusters.clusters[a.id as usize];
-                l.apart(DrawCluster { tiles, clusters, how: How { one_sided, skipped: &[] }, cluster });
-            }
-        }
-        Draw { l, tiles, clusters, one_sided, skipped: &[] }.flush();
+        let how = How { one_sided, skipped: &[], tested: true };
+        draw_unhidden(l, tiles, clusters, 0..clusters.clusters.len(), how);
     }
 }
 
-/// The clusters of a group, all of them.
+/// Draws those of some clusters that are not hidden when their turn comes, front to back.
+#[inline(always)]
+fn draw_unhidden<L: Wide>(l: L, tiles: &mut Tiles, clusters: &Clusters, range: Range<usize>, how: How<'_>) {
+    let look = tiles.look;
+    let (mut seen, mut asked, mut open) = (Vec::new(), Vec::new(), Vec::new());
+    look.in_view(l, &clusters.boxes, &mut seen);
+    seen.retain(|&i| range.contains(&(i as usize)));
+    front_to_back(&look, &clusters.boxes, &mut seen);
+    look.project(l, &clusters.boxes, &seen, &mut asked);
+    for a in &asked {
+        let own = Span::new(&look, &tiles.camera.eye, clusters.boxes.at(a.id as usize), a.nearest);
+        let (spans, hears) = (Spans { own, whole: None }, &mut Nobody);
+        // By tiles alone: most are far behind, and the others draw what hides more.
+        let hidden = Fine { tiles, asked: a, spans, exact: false, open: &mut open, hears };
+        if a.crosses_near || !(a.is_empty() || l.apart(hidden)) {
+            let cluster = &clusters.clusters[a.id as usize];
+            l.apart(DrawCluster { tiles, clusters, how, cluster });
+        }
+    }
+    Draw { l, tiles, clusters, one_sided: how.one_sided, skipped: how.skipped }.flush();
+}
+
+/// The clusters of a group.
 struct DrawGroup<'a> {
     tiles: &'a mut Tiles,
     clusters: &'a Clusters,
@@ -134,6 +139,9 @@ impl Work for DrawGroup<'_> {
     fn run<L: Wide>(self, l: L) {
         let Self { tiles, clusters, group, how } = self;
         tiles.forget();
+        if how.tested {
+            return draw_unhidden(l, tiles, clusters, clusters.range_of(group), how);
+        }
         for cluster in clusters.of_group(group) {
             l.apart(DrawCluster { tiles, clusters, how, cluster });
         }
@@ -165,7 +173,7 @@ impl Work for DrawCluster<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
-        let Self { tiles, clusters, how: How { one_sided, skipped }, cluster } = self;
+        let Self { tiles, clusters, how: How { one_sided, skipped, .. }, cluster } = self;
         Draw { l, tiles, clusters, one_sided, skipped }.cluster(cluster);
     }
 }
