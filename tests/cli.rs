@@ -1,5 +1,8 @@
 //! The real program on small scenes: every subcommand, exit status, error lines, JSON keys, files.
 
+#[path = "cli/motion.rs"]
+mod motion;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -250,26 +253,6 @@ fn what_stands_behind_glass_is_seen() {
         };
         // The scene's own facts of its first eye; where glass is a wall, the front and it are all one sees.
         assert_eq!([seen("see-through=clear"), seen("see-through=solid")], [Some(12), Some(4)], "{method}");
-    }
-}
-
-#[test]
-fn view_i_sees_frame_i_of_the_motions() {
-    let here = folder("motion");
-    let view = r#"{"eye":[0.5,-3],"target":[0.5,-2],"fov_degrees":80,"near":0.1,"far":100}"#;
-    let views = format!("{{\"width\":512,\"views\":[{}]}}", [view; 10].join(","));
-    fs::write(here.join("still.json"), views).expect("a written view");
-    let door = shipped("scenes2d/moving_door.json");
-    for method in ["large-occluders", "hierarchical-z"] {
-        let task = [door.as_str(), "--method", method, "--view", "still.json"];
-        let frames = &json(&done(&here, &with(&["cull", "--truth"], &task)))["frames"];
-        let of = |frame: usize, key: &str| frames[frame]["truth"][key].as_u64().expect("a count");
-        assert!((0..10).all(|f| of(f, "missed_triangles") + of(f, "wrong_pixels") == 0), "{method}");
-        // The door opens, which the scene's facts say too.
-        let visible = [0, 3, 9].map(|f| of(f, "visible_triangles"));
-        assert!(visible[0] < visible[1] && visible[1] < visible[2], "{method}: {visible:?}");
-        done(&here, &with(&["step", "--out", "steps.jsonl"], &task));
-        assert!(done(&here, &["trace", "check", "steps.jsonl", "--prove"]).contains("proven"), "{method}");
     }
 }
 

@@ -519,6 +519,10 @@ fn what_moves_is_followed<S: World>(scenes: &[Arc<Scene<S>>]) {
             recorded.cull(&view);
             moved += u32::from(now.bounds() != first.bounds());
         }
+        // The last frame is that which it was built for.
+        let view = views(scene, 1)[0];
+        plain.forget();
+        assert_eq!(plain.cull(&view), ready(entry, &first, settings).cull(&view), "{}", scene.name());
     });
     assert!(moved > 100, "only {moved} frames differ from the first in their bounds");
 }

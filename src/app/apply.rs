@@ -36,7 +36,7 @@ impl State {
                 s.settings.0.insert(name, value);
             }),
             Command::Eye(view, gesture) => self.move_eye(&view, gesture),
-            Command::Frame(path, frame) => self.go_frame(path, frame),
+            Command::Frame(path, frame) => self.go_frame(path, frame, 0),
             Command::Observe(camera) if camera.is_sound() => {
                 self.observer = camera;
                 self.is_to_frame = false;
@@ -129,6 +129,7 @@ impl State {
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
                 self.bookmarks.len() > action as usize - Action::Bookmark1 as usize
             }
+            Action::PlayPath => self.path_length() > 1,
             _ if action.info().menu == Menu::Step => !self.is_empty(),
             _ if action.info().menu == Menu::Edit => open,
             _ => true,
@@ -144,6 +145,7 @@ impl State {
             Action::ShowEye => s.eye,
             Action::ShowEvidence => s.evidence,
             Action::Swap => self.is_swapped,
+            Action::PlayPath => self.is_path_playing,
             Action::LockEye => self.is_eye_locked,
             Action::SurfaceSolid => s.surface == Surface::Solid,
             Action::SurfaceWire => s.surface == Surface::Wire,
@@ -400,8 +402,8 @@ impl State {
         self.record();
     }
 
-    pub(super) fn go_frame(&mut self, path: usize, frame: usize) {
-        self.change(0, |s| {
+    pub(super) fn go_frame(&mut self, path: usize, frame: usize, gesture: Gesture) {
+        self.change(gesture, |s| {
             if let Some(stage) = &mut s.stage {
                 stage.go(path, frame);
             }
@@ -427,7 +429,7 @@ impl State {
     }
 
     pub(super) fn load(&mut self, wanted: Wanted, views: Option<String>) {
-        self.is_playing = false;
+        (self.is_playing, self.is_path_playing) = (false, false);
         self.worker.ask(&format!("Opening {}", wanted.source), Job::Load { wanted, views });
     }
 

@@ -151,6 +151,8 @@ actions! {
     Step PreviousFrame "previous-frame" "Previous view of the path" ["["] "The Eye goes one view back along \
         its path.";
     Step NextFrame "next-frame" "Next view of the path" ["]"] "The Eye goes one view on along its path.";
+    Step PlayPath "play-path" "Play or pause the path" ["Shift+Space"] "The Eye goes along its path, and \
+        what moves moves.";
     Step Slower "slower" "Play slower" ["Minus"] "Halves the speed.";
     Step Faster "faster" "Play faster" ["Plus"] "Doubles the speed.";
     Step Bookmark "bookmark" "Bookmark this step" ["Ctrl+B"] "Keeps this step to come back to; again to \

@@ -100,6 +100,9 @@ impl State {
         said.push(
             if said.is_empty() { "all parameters at their defaults" } else { "the rest by default" }.into(),
         );
+        if let Some((frame, count)) = self.staged().and_then(|s| s.frame_of_motion()) {
+            said.push(format!("frame {} of {count} of what moves", frame + 1));
+        }
         said.extend(match self.shown.look_in {
             _ if matches!(self.stage, Some(Either::Flat(_))) => None,
             LookIn::Off => None,

@@ -47,7 +47,7 @@ pub use outline::Outline;
 pub use pick::Column;
 pub use session::{Bookmark, Session, SessionError, write_file};
 pub use shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Shown, Surface, Theme};
-pub use stage::{Reading, Recorded, SceneFacts, Stage, Staged};
+pub use stage::{PoseKey, Reading, Recorded, SceneFacts, Stage, Staged};
 pub use start::{Shot, Start};
 pub use state::{Effect, Notice, State};
 pub use why::{Because, spoken, why};

@@ -228,7 +228,11 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
     let number = || value.parse::<u32>().ok();
     Some(match word {
         "go-to" => Command::GoTo(number()? as usize),
-        "frame" => Command::Frame(0, number()? as usize),
+        // A view of the first path, or `PATH:VIEW`.
+        "frame" => match value.split_once(':') {
+            Some((path, view)) => Command::Frame(path.parse().ok()?, view.parse().ok()?),
+            None => Command::Frame(0, number()? as usize),
+        },
         "method" => Command::Method(value.to_owned()),
         "filter" => Command::Filter(value.to_owned()),
         "paper-table" => Command::Tables(Tables::Measure(tables().map(|t| t.0).find(|name| *name == value)?)),

@@ -12,7 +12,7 @@ use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel};
-use crate::scene::{Report, Scene, framing_view, write_views};
+use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
 use crate::trace::{Moves, Stamps};
 
 /// Image size of the Eye when the scene brings no view of its own, pixels.
@@ -34,7 +34,7 @@ pub struct Recorded<S: Space> {
 
 /// A scene with everything that is looked at.
 pub struct Stage<S: Space> {
-    /// The scene.
+    /// The scene as it was loaded; see [`Stage::posed`].
     pub scene: Arc<Scene<S>>,
     /// Changes whenever another scene is on stage; for caches.
     pub serial: u64,
@@ -52,6 +52,9 @@ pub struct Stage<S: Space> {
     flight: Option<Vec<View<S>>>,
 }
 
+/// A scene on stage by [`Stage::serial`], and its frame.
+pub type PoseKey = (u64, Option<usize>);
+
 /// What became of a flight.
 pub enum Flight {
     /// It is recorded from now on.
@@ -68,16 +71,28 @@ pub enum Flight {
 }
 
 impl<S: Space> Stage<S> {
-    /// Puts a scene on stage, with its own view paths or one view that frames it.
+    /// Puts a scene on stage, with its own view paths or one view that frames it; where things move, with a
+    /// path through the motions.
     pub fn new(scene: Arc<Scene<S>>, own: Option<ViewPath<S>>, serial: u64) -> Self {
         let mut paths: Vec<_> =
             own.into_iter().chain(scene.paths().iter().cloned()).filter(|p| !p.views.is_empty()).collect();
+        let framing = || framing_view(&scene.bounds(), DEFAULT_IMAGE_PX[0], DEFAULT_IMAGE_PX[1]);
+        let first = paths.first().map_or_else(framing, |p| p.views[0]);
+        paths.extend(motion_path(&scene, &paths, first));
         if paths.is_empty() {
-            let view = framing_view(&scene.bounds(), DEFAULT_IMAGE_PX[0], DEFAULT_IMAGE_PX[1]);
-            paths.push(ViewPath { name: "overview".into(), views: vec![view] });
+            paths.push(ViewPath { name: "overview".into(), views: vec![first] });
         }
         let view = paths[0].views[0];
         Self { scene, serial, paths, path: 0, frame: 0, view, recorded: None, flight: None }
+    }
+    /// The scene as the film knows it: where objects move, in the frame of the film. As it was loaded before
+    /// there is a film.
+    pub fn posed(&self) -> &Arc<Scene<S>> {
+        self.recorded.as_ref().map_or(&self.scene, |r| r.film.scene())
+    }
+    /// What the pictures of the scene depend on; for caches.
+    pub fn pose_key(&self) -> PoseKey {
+        (self.serial, self.posed().frame())
     }
     /// The path that is followed.
     pub fn views(&self) -> &[View<S>] {
@@ -87,7 +102,7 @@ impl<S: Space> Stage<S> {
     /// as its path's view as long as that does the scene justice: its far plane goes back where the scene
     /// reaches beyond it as it did not before, and its near plane comes forward where the scene does.
     pub fn fitted(&self, mut view: View<S>) -> View<S> {
-        let (bounds, base) = (self.scene.bounds(), self.views()[self.frame].eye);
+        let (bounds, base) = (self.posed().bounds(), self.views()[self.frame].eye);
         let at = view.eye.position;
         let reach = |p: S::Vector| bounds.corners().map(|c| (c - p).length()).fold(0.0, f32::max);
         let gap = |p: S::Vector| (p.max(bounds.min).min(bounds.max) - p).length();
@@ -132,9 +147,9 @@ impl<S: Space> Stage<S> {
     /// The box of a primitive, an object or a node; `None` of anything else.
     pub fn bounds_of(&self, subject: Subject) -> Option<Aabb<S::Vector>> {
         match subject {
-            Subject::Prim(prim) => Some(self.scene.prim_bounds(prim)),
+            Subject::Prim(prim) => Some(self.posed().prim_bounds(prim)),
             Subject::Object(object) => {
-                let boxes = self.scene.prims_of(object).into_iter().map(|p| self.scene.prim_bounds(p));
+                let boxes = self.scene.prims_of(object).into_iter().map(|p| self.posed().prim_bounds(p));
                 Some(boxes.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b)))
             }
             Subject::Node(node) => self.hierarchy().map(|h| h.bounds(node)),
@@ -176,6 +191,8 @@ pub trait SceneFacts {
     fn object_count(&self) -> usize;
     /// Name of an object; empty if there is none.
     fn object_name(&self, object: ObjectId) -> &str;
+    /// Number of objects that move, and of the frames of the longest motion.
+    fn motions(&self) -> (usize, usize);
 }
 
 impl<S: Space> SceneFacts for Scene<S> {
@@ -214,6 +231,9 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
     fn object_name(&self, object: ObjectId) -> &str {
         self.objects().get(object.at()).map_or("", |o| &o.name)
+    }
+    fn motions(&self) -> (usize, usize) {
+        (self.objects().iter().filter(|o| o.motion.is_some()).count(), self.frame_count())
     }
 }
 
@@ -259,6 +279,8 @@ pub trait Staged {
     fn paths(&self) -> Vec<(String, usize)>;
     /// Path and frame.
     fn place(&self) -> (usize, usize);
+    /// Which frame of its motions the scene shows, and of how many; `None` where nothing moves.
+    fn frame_of_motion(&self) -> Option<(usize, usize)>;
     /// Whether the Eye was moved away from its path.
     fn is_eye_moved(&self) -> bool;
     /// What became of near and far where the Eye was moved out of the range of its path's view, in a line.
@@ -316,6 +338,10 @@ impl<S: Methods> Staged for Stage<S> {
     fn place(&self) -> (usize, usize) {
         (self.path, self.frame)
     }
+    fn frame_of_motion(&self) -> Option<(usize, usize)> {
+        let count = self.scene.frame_count();
+        self.posed().frame().map(|frame| (frame % count, count))
+    }
     fn is_eye_moved(&self) -> bool {
         self.view != self.views()[self.frame]
     }
@@ -363,7 +389,7 @@ impl<S: Methods> Stage<S> {
             (true, true) => facts.push(("surface", "see-through, two-sided".into())),
         }
         facts.extend(
-            scene
+            self.posed()
                 .prim_points(prim)
                 .zip(["corner a", "corner b", "corner c"])
                 .map(|(p, name)| (name, Self::vector(p))),
@@ -390,6 +416,9 @@ impl<S: Methods> Stage<S> {
             ("name", self.scene.object_name(object).to_owned()),
             ("holds", format!("{} {}s", self.scene.prims_of(object).len(), S::PRIM)),
         ];
+        if let Some(motion) = self.scene.objects().get(object.at()).and_then(|o| o.motion.as_ref()) {
+            facts.push(("moves", format!("{} frames, repeated", motion.len())));
+        }
         if let Some(bounds) = self.bounds_of(Subject::Object(object)).filter(|b| !b.is_empty()) {
             facts.push(("box", Self::box_text(&bounds)));
         }

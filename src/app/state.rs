@@ -59,6 +59,8 @@ pub struct State {
     pub detail: Detail,
     /// Whether the film plays.
     pub is_playing: bool,
+    /// Whether the Eye goes along its path.
+    pub is_path_playing: bool,
     /// Events a second.
     pub speed: f32,
     /// What is selected.
@@ -106,6 +108,8 @@ pub struct State {
     pub(super) film_cap: usize,
     /// Events that playing has yet to show, less than one after each tick.
     pub(super) pending: f32,
+    /// Views that playing the path has yet to show, less than one after each.
+    pub(super) pending_views: f32,
     /// Number of the scene that was put on stage last.
     pub(super) serial: u64,
     /// Commands of the start that are still to run.
@@ -128,6 +132,7 @@ impl State {
             step: 0,
             detail: Detail::Full,
             is_playing: false,
+            is_path_playing: false,
             speed: 10.0,
             selection: Subject::None,
             selected_before: vec![],
@@ -153,6 +158,7 @@ impl State {
             recall: None,
             film_cap: FILM_CAP_EVENTS,
             pending: 0.0,
+            pending_views: 0.0,
             serial: 0,
             commands: vec![],
         }

@@ -3,12 +3,17 @@
 use super::command::Action;
 use super::concern::Concern;
 use super::session::Bookmark;
-use super::shown::{Breakpoint, Dialog};
+use super::shown::{Breakpoint, Dialog, Gesture};
 use super::stage::Reading;
 use super::state::State;
 use crate::drawing::Subject;
 use crate::method::Event;
 use crate::trace::{Detail, Moves};
+
+/// Views a second of a path that plays.
+const VIEWS_PER_SECOND: f32 = 12.0;
+/// All views that playing a path comes to are one step of undo.
+const PATH_GESTURE: Gesture = Gesture::MAX - 1;
 
 impl State {
     /// Goes to a step; beyond the end is the end.
@@ -128,6 +133,14 @@ impl State {
                     self.go_to(0);
                 }
             }
+            Action::PlayPath => {
+                self.is_path_playing = !self.is_path_playing;
+                self.pending_views = 0.0;
+                // Before the first event there is nothing to see of any film.
+                if self.is_path_playing && self.step == 0 {
+                    self.go_to(self.len());
+                }
+            }
             Action::Slower => self.speed = (self.speed * 0.5).max(0.25),
             Action::Faster => self.speed = (self.speed * 2.0).min(1e6),
             Action::ToggleDetail => {
@@ -139,7 +152,7 @@ impl State {
             Action::PreviousFrame | Action::NextFrame => {
                 let Some((path, frame)) = self.staged().map(|s| s.place()) else { return true };
                 let next = if action == Action::NextFrame { frame + 1 } else { frame.saturating_sub(1) };
-                self.go_frame(path, next);
+                self.go_frame(path, next, 0);
             }
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
                 self.go_bookmark(action as usize - Action::Bookmark1 as usize);
@@ -212,8 +225,33 @@ impl State {
         }
     }
 
-    /// Moves a playing film on by some seconds; returns whether it still plays.
+    /// Moves what plays on by some seconds, the film and the path; returns whether something still plays.
     pub fn tick(&mut self, seconds: f32) -> bool {
+        let goes_on = self.tick_path(seconds);
+        self.tick_film(seconds) || goes_on
+    }
+
+    /// Views of the path that is followed; 0 if nothing is open.
+    pub(super) fn path_length(&self) -> usize {
+        self.staged().map_or(0, |s| s.paths()[s.place().0].1)
+    }
+
+    fn tick_path(&mut self, seconds: f32) -> bool {
+        self.is_path_playing &= self.path_length() > 1;
+        let Some((path, frame)) = self.staged().map(|s| s.place()).filter(|_| self.is_path_playing) else {
+            return false;
+        };
+        self.pending_views = (self.pending_views + seconds.max(0.0) * VIEWS_PER_SECOND).min(1.0);
+        // A view stays until its film is there, so that each is seen.
+        if self.pending_views >= 1.0 && self.busy().is_none() {
+            self.pending_views = 0.0;
+            self.go_frame(path, (frame + 1) % self.path_length(), PATH_GESTURE);
+            self.refresh();
+        }
+        true
+    }
+
+    fn tick_film(&mut self, seconds: f32) -> bool {
         if !self.is_playing || self.is_empty() {
             return false;
         }

@@ -648,3 +648,63 @@ fn a_figure_brings_its_session_back() {
     assert!(other.notices.iter().any(|n| n.is_error));
     let _ = std::fs::remove_file(path);
 }
+
+#[test]
+fn what_moves_is_shown_in_the_frame_of_its_film() {
+    let mut state = opened("scenes2d/moving_door.json");
+    let leaf = |state: &State| {
+        let Some(Either::Flat(stage)) = &state.stage else { panic!("a flat stage") };
+        (stage.posed().prim_bounds(PrimId(2)), stage.recorded.as_ref().map(|r| r.film.scene().frame()))
+    };
+    let shown = |state: &State| state.staged().and_then(|s| s.frame_of_motion());
+    // Both of its eyes are fewer than the door has frames, so there is a path that stands still.
+    assert_eq!(state.staged().map(|s| s.paths()), Some(vec![("eyes".into(), 2), ("motion".into(), 10)]));
+    let shut = leaf(&state).0;
+    state.apply(Command::Frame(1, 9));
+    state.block_until_idle();
+    let (open, of_film) = leaf(&state);
+    assert_eq!((of_film, shown(&state)), (Some(Some(9)), Some((9, 10))));
+    // A quarter turn: what was one unit wide and flat stands upright.
+    assert!(shut.size().x > 0.99 && shut.size().y < 0.01 && open.size().x < 0.01 && open.size().y > 0.99);
+    // The room behind it comes into view with it: a chair is drawn that was hidden.
+    state.apply(Command::Method("large-occluders".into()));
+    state.block_until_idle();
+    let hidden = |state: &State| {
+        let film = state.film().expect("a film");
+        film.stamps.counts(film.reel.events().len()).of(Verdict::Hidden)
+    };
+    let of_open = hidden(&state);
+    state.apply(Command::Select(Subject::Object(ObjectId(2))));
+    assert!(state.staged().expect("a stage").facts(state.selection).iter().any(|f| f.0 == "moves"));
+    let session = state.session();
+    state.apply(Action::Undo);
+    state.apply(Action::Undo);
+    state.block_until_idle();
+    assert_eq!((leaf(&state).0, shown(&state)), (shut, Some((0, 10))), "undo shuts the door");
+    state.restore(session, None);
+    state.block_until_idle();
+    assert_eq!((leaf(&state).0, hidden(&state)), (open, of_open), "a session opens it as far as it was");
+}
+
+#[test]
+fn a_path_plays_view_by_view_and_is_one_step_of_undo() {
+    let mut state = opened("scenes2d/moving_door.json");
+    state.apply(Command::Frame(1, 0));
+    state.block_until_idle();
+    let place = |state: &State| state.staged().map(|s| s.place());
+    state.apply(Action::PlayPath);
+    assert!(state.is_path_playing && state.step == state.len(), "what the film decided is seen");
+    for view in (1..10).chain([0, 1]) {
+        assert!(state.tick(0.04) && state.tick(0.06), "it goes on");
+        // The film is being recorded: nothing goes on before it is there.
+        state.tick(1.0);
+        state.block_until_idle();
+        assert_eq!(place(&state), Some((1, view)));
+        assert_eq!(state.step, state.len(), "still at the end of the film");
+    }
+    state.apply(Action::PlayPath);
+    assert!(!state.tick(1.0) && place(&state) == Some((1, 1)));
+    state.apply(Action::Undo);
+    state.block_until_idle();
+    assert_eq!(place(&state), Some((1, 0)), "back where it began to play");
+}

@@ -20,7 +20,7 @@ use crate::geometry::{Either, Flat, Solid, View, each};
 use crate::measure::deadline::Paced;
 use crate::method::Settings;
 use crate::raster::Drawable;
-use crate::scene::{AnyScene, Progress, Scene};
+use crate::scene::{AnyScene, Motion, Part, Progress, Scene};
 use crate::trace::{Moves, Stamps};
 
 /// Events that a film keeps: 10 million, about 160 MB, before it is capped.
@@ -28,7 +28,7 @@ pub const FILM_CAP_EVENTS: usize = 10_000_000;
 
 /// A film to record.
 pub struct Request<S: Methods> {
-    /// The scene.
+    /// The scene as it was loaded.
     pub scene: Arc<Scene<S>>,
     /// Which scene on stage it is.
     pub scene_serial: u64,
@@ -36,7 +36,8 @@ pub struct Request<S: Methods> {
     pub method: String,
     /// Its parameters.
     pub settings: Settings,
-    /// Views of the path before this one, which a method may remember.
+    /// Views of the path before this one, which a method may remember; the one to record sees the frame of
+    /// what moves that is as many.
     pub before: Vec<View<S>>,
     /// The view to record.
     pub view: View<S>,
@@ -212,7 +213,10 @@ struct Ready<S: Drawable> {
     scene_serial: u64,
     method: String,
     settings: Settings,
+    motion: Motion<S>,
     run: Paced<S>,
+    /// The views since it remembers, in the order of their frames.
+    flown: Vec<View<S>>,
 }
 
 impl Bench {
@@ -255,6 +259,12 @@ impl Bench {
     }
 }
 
+/// A run that was stopped while it changed is of no use.
+fn gone<S: Drawable>(ready: &mut Option<Ready<S>>) -> Done {
+    *ready = None;
+    Done::Cancelled
+}
+
 /// Records a film, on the index that is ready if it still fits.
 fn record<S: Methods + Drawable>(
     ready: &mut Option<Ready<S>>,
@@ -271,33 +281,51 @@ fn record<S: Methods + Drawable>(
         let Some(method) = S::method(&request.method) else {
             return Done::RecordFailed(format!("there is no method `{}` in {}", request.method, S::NAME));
         };
-        match method.ready(&request.scene, &request.settings, ticket) {
+        let mut motion = Motion::new(&request.scene);
+        let first = motion.at(0);
+        match method.ready(&first, &request.settings, ticket) {
             Err(error) => return Done::RecordFailed(error.to_string()),
             Ok(None) => return Done::Cancelled,
             Ok(Some(run)) => {
-                let run = Paced::new(run, &request.scene);
+                let run = Paced::new(run, &first);
                 *ready = Some(Ready {
                     scene_serial: request.scene_serial,
                     method: request.method,
                     settings: request.settings,
+                    motion,
                     run,
+                    flown: Vec::new(),
                 });
             }
         }
     }
-    let Some(Ready { run, .. }) = ready else { return Done::Cancelled };
-    // A film does not depend on what was looked at before: the path's earlier views make the memory anew.
+    let Some(Ready { run, motion, flown, .. }) = ready else { return Done::Cancelled };
+    // A film does not depend on what was looked at before: the path's earlier views make the memory anew,
+    // those that are not the last ones.
     ticket.report(0.5, "recording");
-    run.forget();
+    if !request.before.starts_with(flown) {
+        run.forget();
+        flown.clear();
+    }
+    // The bar says that it records, whatever that takes.
+    let still = Part { whole: ticket, start: 0.5, length: 0.3 };
     if run.remembers() {
-        for view in &request.before {
+        for (frame, view) in request.before.iter().enumerate().skip(flown.len()) {
             if ticket.cancelled() {
                 return Done::Cancelled;
             }
+            if !run.pose(&motion.at(frame), &still) {
+                return gone(ready);
+            }
             run.cull(view);
+            flown.push(*view);
         }
     }
+    if !run.pose(&motion.at(request.before.len()), &still) {
+        return gone(ready);
+    }
     let recording = run.record(&request.view, request.cap);
+    flown.push(request.view);
     if ticket.cancelled() {
         return Done::Cancelled;
     }

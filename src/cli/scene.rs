@@ -9,9 +9,12 @@ use serde::Serialize;
 
 use super::methods::json_text;
 use super::progress::Bar;
+use super::view::paths;
 use super::{CliError, World, convert, output, suggest};
 use crate::geometry::{Vector, each};
-use crate::scene::{AnyScene, LoadOptions, Recenter, Scene, SceneError, file_of, generators, load};
+use crate::scene::{
+    AnyScene, LoadOptions, Recenter, Scene, SceneError, file_of, framing_view, generators, load,
+};
 
 /// What `cull` and `step` look at, and with what.
 #[derive(clap::Args)]
@@ -163,6 +166,8 @@ struct Info {
     see_through: usize,
     two_sided: usize,
     moving_objects: usize,
+    /// Of the longest motion.
+    frames: usize,
     paths: Vec<PathInfo>,
     memory_bytes: usize,
     sha256: String,
@@ -200,8 +205,8 @@ fn info<S: World>(scene: &Arc<Scene<S>>, json: bool) -> Result<(), CliError> {
         see_through: scene.live().iter().filter(|p| scene.is_see_through(**p)).count(),
         two_sided: scene.live().iter().filter(|p| scene.is_two_sided(**p)).count(),
         moving_objects: scene.objects().iter().filter(|o| o.motion.is_some()).count(),
-        paths: scene
-            .paths()
+        frames: scene.frame_count(),
+        paths: paths(scene, framing_view(&scene.bounds(), 1, 1))
             .iter()
             .map(|p| PathInfo { name: p.name.clone(), views: p.views.len() })
             .collect(),
@@ -235,7 +240,11 @@ fn table<S: World>(info: &Info) -> String {
     }
     row("points", info.points.to_string());
     row("faces", format!("{} convex polygons", info.faces));
-    row("objects", format!("{} ({} moving)", info.objects, info.moving_objects));
+    let moving = match info.moving_objects {
+        0 => "none moving".into(),
+        n => format!("{n} moving, {} frames", info.frames),
+    };
+    row("objects", format!("{} ({moving})", info.objects));
     row(
         "groups",
         if info.groups.is_empty() {

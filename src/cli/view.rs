@@ -5,16 +5,16 @@ use glam::DVec3;
 use super::{CliError, World, output, suggest};
 use crate::geometry::{Eye, Vector, View, ViewPath};
 use crate::raster::Target;
-use crate::scene::{Scene, framing_view, random_views, read_views};
+use crate::scene::{Scene, framing_view, motion_path, random_views, read_views};
 
 /// Options that choose views.
 #[derive(clap::Args)]
-#[command(next_help_heading = "Views (one of)")]
+#[command(next_help_heading = "Views (one of); where objects move, view i of a path sees frame i")]
 pub(super) struct ViewArgs {
     /// A view or path in a JSON file
     #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "random_views", "eye"])]
     view: Option<String>,
-    /// A path that the scene brought, such as `walk`
+    /// A path that the scene brought, such as `walk`; where things move and no path is as long, also `motion`
     #[arg(long, value_name = "NAME", conflicts_with_all = ["random_views", "eye"])]
     path: Option<String>,
     /// So many random views, the same for the same --seed
@@ -102,12 +102,9 @@ impl ViewArgs {
             return Ok(read_views(file, scene.origin())?);
         }
         if let Some(name) = &self.path {
-            return scene
-                .paths()
-                .iter()
-                .find(|p| p.name == *name)
-                .cloned()
-                .ok_or_else(|| no_path(scene, name));
+            let paths = paths(scene, self.first(scene));
+            let at = paths.iter().position(|p| p.name == *name).ok_or_else(|| no_path(&paths, name))?;
+            return Ok(paths[at].clone());
         }
         if let Some(count) = self.random_views {
             let views = random_views(scene, count as usize, self.seed);
@@ -117,10 +114,14 @@ impl ViewArgs {
         if let Some(eye) = &self.eye {
             return Ok(ViewPath::single(self.single(scene, eye, width, height)?));
         }
-        Ok(ViewPath::single(match scene.paths().first() {
-            Some(path) => path.views[0],
-            None => framing_view(&scene.bounds(), width, height),
-        }))
+        Ok(ViewPath::single(self.first(scene)))
+    }
+
+    /// The scene's first view, or one that frames it.
+    fn first<S: World>(&self, scene: &Scene<S>) -> View<S> {
+        let (width, height) = self.size.unwrap_or((1024, 1024));
+        let own = scene.paths().first().map(|path| path.views[0]);
+        own.unwrap_or_else(|| framing_view(&scene.bounds(), width, height))
     }
 
     fn single<S: World>(
@@ -162,8 +163,14 @@ impl ViewArgs {
     }
 }
 
-fn no_path<S: World>(scene: &Scene<S>, name: &str) -> CliError {
-    let names: Vec<&str> = scene.paths().iter().map(|p| p.name.as_str()).collect();
+/// The scene's paths, and one through its motions that looks from `view`.
+pub(super) fn paths<S: World>(scene: &Scene<S>, view: View<S>) -> Vec<ViewPath<S>> {
+    let own = scene.paths();
+    own.iter().cloned().chain(motion_path(scene, own, view)).collect()
+}
+
+fn no_path<S: World>(paths: &[ViewPath<S>], name: &str) -> CliError {
+    let names: Vec<&str> = paths.iter().map(|p| p.name.as_str()).collect();
     let error = CliError::words("--path", format!("the scene brought no path `{name}`"));
     if names.is_empty() {
         error.with_help("it brought none; give --view FILE")

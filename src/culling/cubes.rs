@@ -110,7 +110,9 @@ impl Cubes {
         };
         // Dropped primitives are never drawn, so no cube is to hold them.
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
-        Octree::build(boxes, &shape, &|| progress.cancelled())
+        let mut octree = Octree::build(boxes, &shape, &|| progress.cancelled())?;
+        octree.refit(scene);
+        Some(octree)
     }
 }
 

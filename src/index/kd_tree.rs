@@ -232,9 +232,13 @@ impl<V: Vector> KdTree<V> {
 
     /// Bounds the nodes anew for another frame of the scene that it was built of, and returns those whose
     /// bounds may have changed. In a tree of cells boxes still end at the planes, but for those of what
-    /// moves: they are whole in each leaf that refers to them. Cost: O(primitives) the first time, then O(primitives
-    /// that move and nodes above them).
+    /// moves: they are whole in each leaf that refers to them. Called once when it is built, so that it is
+    /// the same whatever frames come before another one. Cost: O(primitives) the first time, then
+    /// O(primitives that move and nodes above them).
     pub fn refit<S: Space<Vector = V>>(&mut self, scene: &Scene<S>) -> &[NodeId] {
+        if scene.moving().is_empty() {
+            return &[];
+        }
         let moving = self.moving.take().unwrap_or_else(|| self.moving_of(scene));
         for list in &moving.lists {
             let bounds = moving.of(list).iter().fold(list.still, |b, p| b.union(scene.prim_bounds(*p)));

@@ -270,9 +270,13 @@ impl<V: Vector> Octree<V> {
 
     /// Bounds the nodes anew for another frame of the scene that it was built of, and returns those whose
     /// bounds may have changed. Cubes stay; what moves out of its cube takes the bounds along, in each cube
-    /// that refers to it. Cost: O(primitives) the first time, then O(primitives that move and nodes above
+    /// that refers to it. Called once when it is built, so that it is the same whatever frames come before
+    /// another one. Cost: O(primitives) the first time, then O(primitives that move and nodes above
     /// them).
     pub fn refit<S: Space<Vector = V>>(&mut self, scene: &Scene<S>) -> &[NodeId] {
+        if scene.moving().is_empty() {
+            return &[];
+        }
         let moving = self.moving.take().unwrap_or_else(|| self.moving_of(scene));
         for node in &moving.nodes {
             let node = &mut self.nodes[node.at()];

@@ -1,12 +1,15 @@
-//! The contract of [`Hierarchy`] sees each fault that it names; boxes for tests of all trees.
+//! The contract of [`Hierarchy`] sees each fault that it names; boxes follow what moves; boxes for tests of
+//! all trees.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::Hierarchy;
+use super::{Hierarchy, KdTree, Octree, Redistribution, Shape, nodes};
 use crate::geometry::dice::Dice;
-use crate::geometry::{Aabb, Flat, NodeId, PrimId, Vector};
+use crate::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Space, Vector};
+use crate::scene::{Motion, Object, Pose, Scene, samples};
 
 /// Boxes in a cube of side 16, whose sizes are 0 to each of `sizes` in turn; or with corners on a coarse
 /// grid, where centers are equal and dividing planes fall.
@@ -104,4 +107,75 @@ fn the_contract_sees_what_is_wrong() {
     assert!(broken(&|w| w.held[1] = 1).contains("more primitives"));
     assert!(broken(&|w| w.bounds[2] = span(2.0, 5.0)).contains("do not hold those of 2"));
     assert!(broken(&|w| w.bounds[1] = span(0.0, 1.5)).contains("do not hold 1"));
+}
+
+/// A scene of objects of two primitives, of which every other moves.
+fn moving<S: Space>(seed: u64, n: u32) -> Arc<Scene<S>> {
+    let mut parts = Arc::unwrap_or_clone(samples::soup::<S>(seed, n)).into_parts();
+    let mut dice = Dice::new(seed);
+    let mut pose = || {
+        let half = dice.between(-1.5, 1.5);
+        let translation = std::array::from_fn(|_| dice.between(-9.0, 9.0));
+        Pose { rotation: [0.0, 0.0, half.sin(), half.cos()], translation }
+    };
+    let mut object = |k: u32| Object {
+        name: String::new(),
+        group: String::new(),
+        motion: k.is_multiple_of(2).then(|| (0..4).map(|_| pose()).collect()),
+    };
+    parts.objects = (0..n.div_ceil(2)).map(&mut object).collect();
+    for (at, object) in parts.prim_object.iter_mut().enumerate() {
+        *object = ObjectId(at as u32 / 2);
+    }
+    Arc::new(Scene::new(parts).expect("a valid scene"))
+}
+
+fn boxes<S: Space>(scene: &Scene<S>) -> Vec<(PrimId, Aabb<S::Vector>)> {
+    scene.live().iter().map(|&p| (p, scene.prim_bounds(p))).collect()
+}
+
+/// Boxes follow what moves; where none ends at a plane they are as tight as if they were computed anew.
+fn boxes_follow<S: Space>() {
+    for seed in 0..12 {
+        let scene = moving::<S>(seed, 20 + 40 * seed as u32);
+        let mut motion = Motion::new(&scene);
+        let first = motion.at(0);
+        let all = || boxes(&first).into_iter();
+        let mut whole = KdTree::build(all(), 5, || false).expect("not cancelled");
+        let mut cells = KdTree::build_cells(all(), 5, &|| false).expect("not cancelled");
+        let mut octrees = Redistribution::ALL.map(|redistribution| {
+            let shape = Shape { levels: 6, leaf_prims: 3, redistribution, small: 0.3 };
+            Octree::build(all(), &shape, &|| false).expect("not cancelled")
+        });
+        for frame in [0, 2, 1, 3, 0] {
+            let now = motion.at(frame);
+            let prims = boxes(&now);
+            let tight = |hierarchy: &dyn Hierarchy<S>, node: NodeId| {
+                let bounds = hierarchy.prims(node).iter().map(|p| now.prim_bounds(*p));
+                bounds.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b))
+            };
+            let changed = whole.refit(&now).len();
+            assert!(changed > 0 && changed <= whole.nodes().len(), "seed {seed}");
+            cells.refit(&now);
+            assert_eq!(Hierarchy::<S>::fault(&whole, &prims), None, "seed {seed}, frame {frame}");
+            assert_eq!(Hierarchy::<S>::fault(&cells, &prims), None, "seed {seed}, frame {frame}, cells");
+            for (tree, redistribution) in octrees.iter_mut().zip(Redistribution::ALL) {
+                tree.refit(&now);
+                let what = format!("seed {seed}, frame {frame}, {redistribution:?}");
+                assert_eq!(Hierarchy::<S>::fault(&*tree, &prims), None, "{what}");
+                for node in nodes::<S>(&*tree).filter(|_| redistribution == Redistribution::Parent) {
+                    assert_eq!(Hierarchy::<S>::bounds(&*tree, node), tight(&*tree, node), "{what}");
+                }
+            }
+            for node in nodes::<S>(&whole) {
+                assert_eq!(Hierarchy::<S>::bounds(&whole, node), tight(&whole, node), "seed {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn boxes_follow_what_moves() {
+    boxes_follow::<Flat>();
+    boxes_follow::<Solid>();
 }

@@ -34,7 +34,7 @@ pub use assemble::MAX_PRIMS;
 pub use example::example;
 pub use generate::{Generator, GeneratorParam, generators};
 pub use load::{file_of, load, load_bytes};
-pub use paths::{figure_eight_path, random_views};
+pub use paths::{figure_eight_path, motion_path, random_views};
 pub use pose::Motion;
 pub use progress::{Part, Progress, Quiet};
 pub use report::{Dropped, Report, SceneError};
@@ -59,7 +59,8 @@ pub struct Object {
     pub name: String,
     /// Name of the group it belongs to, or empty.
     pub group: String,
-    /// Rigid motion, if it moves: one transform a frame, repeated; applied to the stored points.
+    /// Rigid motion, if it moves: one transform a frame, repeated; applied to the stored points, which then
+    /// are its own. See [`Motion`].
     pub motion: Option<Arc<[Pose]>>,
 }
 
@@ -207,6 +208,9 @@ impl<S: Space> Scene<S> {
         if live.is_empty() {
             let why = parts.report.reasons();
             return Err(SceneError::Empty { scene: parts.source, prim: S::PRIM, why });
+        }
+        if parts.objects.iter().any(|o| o.motion.is_some()) {
+            pose::split(&mut parts);
         }
         let hash = digest(&parts);
         // Asked before each primitive's own material, which most scenes then need not look up.

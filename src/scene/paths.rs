@@ -38,6 +38,14 @@ pub fn figure_eight_path<S: Space>(scene: &Scene<S>, count: usize) -> ViewPath<S
     ViewPath { name: "figure 8".into(), views: views.collect() }
 }
 
+/// The path through the motions of a scene whose own `paths` are all shorter: `motion`, a view a frame, each
+/// of them `view`. `None` where nothing moves, or a path is as long.
+pub fn motion_path<S: Space>(scene: &Scene<S>, paths: &[ViewPath<S>], view: View<S>) -> Option<ViewPath<S>> {
+    let count = scene.frame_count();
+    let is_missing = count > 1 && paths.iter().all(|p| p.views.len() < count);
+    is_missing.then(|| ViewPath { name: "motion".into(), views: vec![view; count] })
+}
+
 /// `count` views of 256 pixels from random points inside the scene's bounds in random directions.
 pub fn random_views<S: Space>(scene: &Scene<S>, count: usize, seed: u64) -> Vec<View<S>> {
     let mut rng = Pcg32::new(seed, 31);

@@ -1,12 +1,12 @@
 //! Motions: a scene as it is at any frame, for the price of the points that move.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use sha2::{Digest, Sha256};
 
-use super::{Pose, Scene};
+use super::{Parts, Pose, Scene};
 use crate::geometry::{Aabb, ObjectId, Space, Vector};
 
 impl Pose {
@@ -32,11 +32,9 @@ const KEPT: usize = 3;
 
 /// A scene at any frame of its motions: the same ids, objects and materials, and only points that differ.
 ///
-/// What moving objects share with others is split once. A frame then rewrites the points that move in a
-/// scene of an earlier frame that nobody looks at any more; only as long as there is none it copies the
-/// points. Where nothing moves, every frame is the scene itself.
+/// A frame rewrites the points that move in a scene of an earlier frame that nobody looks at any more; only
+/// as long as there is none it copies the points. Where nothing moves, every frame is the scene itself.
 pub struct Motion<S: Space> {
-    /// The scene with its shared points split, at rest.
     rest: Arc<Scene<S>>,
     moving: Vec<Moving<S>>,
     /// Bounds of what does not move.
@@ -54,57 +52,28 @@ struct Moving<S: Space> {
 }
 
 impl<S: Space> Motion<S> {
-    /// The motions of a scene as it was loaded. Cost: O(points + primitives) if something moves.
+    /// The motions of a scene as it was loaded. Cost: O(primitives) if something moves.
     pub fn new(scene: &Arc<Scene<S>>) -> Self {
-        let mut made = Self {
-            rest: scene.clone(),
-            moving: Vec::new(),
-            still: Aabb::empty(),
-            made: Vec::new(),
-            written: 0,
-        };
-        if !scene.moving().is_empty() {
-            made.split();
+        let mut points: BTreeMap<ObjectId, BTreeSet<u32>> = BTreeMap::new();
+        for &prim in scene.moving() {
+            let corners = scene.corners(prim);
+            let of_object = points.entry(scene.object_of(prim)).or_default();
+            of_object.extend(corners.iter().flat_map(|c| c.as_ref()));
         }
-        made
-    }
-
-    /// Gives moving objects points of their own.
-    fn split(&mut self) {
-        let scene = Arc::make_mut(&mut self.rest);
-        let owned = owners(scene);
-        let tables = Arc::make_mut(&mut scene.tables);
-        let mut moved: BTreeMap<ObjectId, BTreeMap<u32, u32>> = BTreeMap::new();
-        for prim in &tables.moving {
-            let object = tables.parts.prim_object[prim.at()];
-            let Some(corners) = &mut tables.parts.prims[prim.at()] else { continue };
-            let mut own = [0u32; 3];
-            for (to, from) in own.iter_mut().zip(corners.as_ref()) {
-                *to = *moved.entry(object).or_default().entry(*from).or_insert_with(|| {
-                    if owned[*from as usize] {
-                        return *from;
-                    }
-                    scene.points.push(scene.points[*from as usize]);
-                    scene.points.len() as u32 - 1
-                });
-            }
-            *corners = S::corners_from(own);
+        let moving = points.into_iter().filter_map(|(object, points)| {
+            let poses = scene.objects()[object.at()].motion.clone()?;
+            Some(Moving {
+                poses,
+                points: points.into_iter().map(|p| (p, scene.points()[p as usize])).collect(),
+            })
+        });
+        let moving: Vec<_> = moving.collect();
+        let mut still = Aabb::empty();
+        if !moving.is_empty() {
+            let stands = scene.live().iter().filter(|p| !scene.is_moving(**p));
+            still = stands.fold(still, |b, p| b.union(scene.prim_bounds(*p)));
         }
-        // A face is of one object.
-        for face in &mut tables.parts.faces {
-            let Some(object) = face.prims.first().map(|p| tables.parts.prim_object[p.at()]) else { continue };
-            let Some(moved) = moved.get(&object) else { continue };
-            for corner in &mut face.corners {
-                *corner = moved.get(corner).copied().unwrap_or(*corner);
-            }
-        }
-        for (object, points) in moved {
-            let Some(poses) = tables.parts.objects[object.at()].motion.clone() else { continue };
-            let points = points.into_values().map(|at| (at, scene.points[at as usize])).collect();
-            self.moving.push(Moving { poses, points });
-        }
-        let still = scene.live().iter().filter(|p| !scene.is_moving(**p));
-        self.still = still.fold(Aabb::empty(), |b, p| b.union(scene.prim_bounds(*p)));
+        Self { rest: scene.clone(), moving, still, made: Vec::new(), written: 0 }
     }
 
     /// The scene at `frame`, each motion repeated. Where a motion leads out of the numbers, a point stays
@@ -150,15 +119,44 @@ impl<S: Space> Motion<S> {
     }
 }
 
+/// Gives objects that move points of their own, also in the faces that they are made of.
+pub(super) fn split<S: Space>(parts: &mut Parts<S>) {
+    let owned = owned(parts);
+    let mut moved: BTreeMap<(ObjectId, u32), u32> = BTreeMap::new();
+    for (corners, object) in parts.prims.iter_mut().zip(&parts.prim_object) {
+        let Some(corners) = corners.as_mut().filter(|_| parts.objects[object.at()].motion.is_some()) else {
+            continue;
+        };
+        let mut own = [0u32; 3];
+        for (to, &from) in own.iter_mut().zip(corners.as_ref()) {
+            *to = if owned[from as usize] {
+                from
+            } else {
+                *moved.entry((*object, from)).or_insert_with(|| {
+                    parts.points.push(parts.points[from as usize]);
+                    parts.points.len() as u32 - 1
+                })
+            };
+        }
+        *corners = S::corners_from(own);
+    }
+    for face in &mut parts.faces {
+        // A face is of one object.
+        let Some(object) = face.prims.first().map(|p| parts.prim_object[p.at()]) else { continue };
+        for corner in &mut face.corners {
+            *corner = moved.get(&(object, *corner)).copied().unwrap_or(*corner);
+        }
+    }
+}
+
 /// Of each point whether primitives of one object alone use it.
-fn owners<S: Space>(scene: &Scene<S>) -> Vec<bool> {
-    let mut owner: Vec<Option<ObjectId>> = vec![None; scene.points().len()];
+fn owned<S: Space>(parts: &Parts<S>) -> Vec<bool> {
+    let mut owner: Vec<Option<ObjectId>> = vec![None; parts.points.len()];
     let mut is_owned = vec![true; owner.len()];
-    for &prim in scene.live() {
-        let object = scene.object_of(prim);
-        for point in scene.corners(prim).iter().flat_map(|c| c.as_ref()) {
-            let before = owner[*point as usize].replace(object);
-            is_owned[*point as usize] &= before.is_none_or(|b| b == object);
+    for (corners, &object) in parts.prims.iter().zip(&parts.prim_object) {
+        for &point in corners.iter().flat_map(|c| c.as_ref()) {
+            let before = owner[point as usize].replace(object);
+            is_owned[point as usize] &= before.is_none_or(|b| b == object);
         }
     }
     is_owned
@@ -171,7 +169,7 @@ mod tests {
     use super::*;
     use crate::geometry::dice::Dice;
     use crate::geometry::{Flat, PrimId, Solid};
-    use crate::scene::{Face, Object, Parts};
+    use crate::scene::{Face, Object};
 
     fn turned(degrees: f32, translation: [f32; 3]) -> Pose {
         let half = degrees.to_radians() / 2.0;
@@ -273,8 +271,8 @@ mod tests {
     fn a_frame_costs_what_moves_and_not_the_scene() {
         let scene = swarm(1, 3000);
         let mut motion = Motion::new(&scene);
-        // Corners of the two thirds that have a motion; of two triangles five.
-        let moving = 2000 * 5;
+        // Corners of the two thirds that have a motion; of two triangles four.
+        let moving = 2000 * 4;
         let mut held = motion.at(0);
         for frame in 1..20 {
             let next = motion.at(frame);

@@ -36,7 +36,7 @@ pub fn show(
         let mut camera = state.observer;
         camera.frame_flat(
             &target_box(state, stage),
-            &stage.scene.bounds(),
+            &stage.posed().bounds(),
             rect.width() / rect.height().max(1.0),
         );
         answers.push(Command::Observe(camera));
@@ -89,7 +89,7 @@ fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
     let eye = &stage.view.eye;
     match state.selection {
         Subject::Eye => Aabb::of([eye.position, eye.target]),
-        selected => stage.bounds_of(selected).unwrap_or_else(|| stage.scene.bounds().with(eye.position)),
+        selected => stage.bounds_of(selected).unwrap_or_else(|| stage.posed().bounds().with(eye.position)),
     }
 }
 

@@ -263,6 +263,10 @@ fn report(state: &State, ui: &mut egui::Ui) {
         scene.prim_name(),
         count(scene.object_count())
     ));
+    let (moving, frames) = scene.motions();
+    if moving > 0 {
+        ui.label(format!("{} of them move, in {} frames", count(moving), count(frames)));
+    }
     if report.dropped.is_empty() {
         ui.label("Nothing was dropped.");
     }

@@ -18,7 +18,7 @@ const AIM: f32 = 0.12;
 
 /// What `F` brings into the picture.
 pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
-    let (whole, eye) = (stage.scene.bounds(), stage.view.eye.position);
+    let (whole, eye) = (stage.posed().bounds(), stage.view.eye.position);
     match state.selection {
         Subject::Eye => {
             let around = Vec3::splat(whole.diagonal() * 0.1);
@@ -127,7 +127,7 @@ impl Outside<'_> {
         let Some(at) = clicked else { return };
         self.response.request_focus();
         let (origin, direction) = ray(self.view, self.response.rect, at);
-        let hit = figure::pick(&self.stage.scene, origin, direction, |_| true);
+        let hit = figure::pick(self.stage.posed(), origin, direction, |_| true);
         if self.response.double_clicked() {
             match hit {
                 // The point under the cursor becomes what the Observer turns around.
@@ -188,7 +188,7 @@ pub fn look_around(
             let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
             matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
         };
-        let hit = figure::pick(&stage.scene, origin, direction, drawn);
+        let hit = figure::pick(stage.posed(), origin, direction, drawn);
         answers.push(Command::Select(hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))));
     }
     hand.is_flying |= response.has_focus();

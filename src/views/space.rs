@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::handles::Hand;
 use super::{Answers, palette, reach};
-use crate::app::{Command, LookIn, Stage, Staged, State, Surface, Theme, WIDTH_PT};
+use crate::app::{Command, LookIn, PoseKey, Stage, Staged, State, Surface, Theme, WIDTH_PT};
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure;
 use crate::geometry::{Solid, View};
@@ -19,7 +19,7 @@ const FIGURE_DPI: f32 = 300.0;
 /// What lies on the graphics card.
 #[derive(Clone, Debug, Default)]
 pub struct Uploaded {
-    scene: u64,
+    scene: PoseKey,
     film: u64,
     /// The marks of a step, and the film, step and look that they were drawn for.
     marks: Option<((u64, usize, figure::Look), Drawing<Vec3>)>,
@@ -54,7 +54,7 @@ pub fn show(
     ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
     if !is_eye && state.is_to_frame {
         let mut camera = state.observer;
-        camera.frame_solid(&reach::target_box(state, stage), &stage.scene.bounds(), pane.aspect_ratio());
+        camera.frame_solid(&reach::target_box(state, stage), &stage.posed().bounds(), pane.aspect_ratio());
         answers.push(Command::Observe(camera));
     }
     let rect =
@@ -144,9 +144,9 @@ fn upload(state: &State, stage: &Stage<Solid>, now: &mut Uploaded, gpu: &RenderS
         *now = Uploaded::default();
     }
     let Some(layer) = resources.get_mut::<SpaceLayer>() else { return };
-    if now.scene != stage.serial {
-        *now = Uploaded { scene: stage.serial, ..Uploaded::default() };
-        layer.set_scene(&gpu.device, &stage.scene);
+    if now.scene != stage.pose_key() {
+        *now = Uploaded { scene: stage.pose_key(), ..Uploaded::default() };
+        layer.set_scene(&gpu.device, stage.posed());
     }
     let Some(recorded) = &stage.recorded else { return };
     if now.film != recorded.serial {

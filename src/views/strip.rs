@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, FontId, Rangef, Rect, Sense, Stroke, pos2, vec2
 
 use super::handles::Hand;
 use super::{Answers, palette};
-use crate::app::{Column, Command, Gesture, Stage, State};
+use crate::app::{Column, Command, Gesture, PoseKey, Stage, State};
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
@@ -19,7 +19,7 @@ const LOOK_GESTURE: Gesture = Gesture::MAX;
 const STRIP: f32 = 22.0;
 
 /// The columns of the image, and the scene and view that they were rendered for.
-pub type Image = ((u64, View<Flat>), Vec<Column>);
+pub type Image = ((PoseKey, View<Flat>), Vec<Column>);
 
 /// Shows what the Eye sees.
 pub fn show(
@@ -42,7 +42,7 @@ pub fn show(
     let painter = ui.painter_at(rect);
     let colors = palette::panel(state);
     painter.rect_filled(rect, 0.0, colors.canvas);
-    let key = (stage.serial, stage.view);
+    let key = (stage.pose_key(), stage.view);
     if rendered.as_ref().is_none_or(|(k, _)| *k != key) {
         *rendered = Some((key, stage.image()));
     }
@@ -121,7 +121,7 @@ fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: 
 fn extent(stage: &Stage<Flat>, subject: Subject) -> Option<(f32, f32)> {
     let corners: Vec<_> = match subject {
         Subject::Prim(prim) if prim.at() < stage.scene.prim_count() => {
-            stage.scene.prim_points(prim).collect()
+            stage.posed().prim_points(prim).collect()
         }
         _ => stage.bounds_of(subject).filter(|b| !b.is_empty())?.corners().collect(),
     };

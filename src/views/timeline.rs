@@ -109,6 +109,8 @@ fn frames(state: &State, stage: &dyn Staged, ui: &mut egui::Ui, answers: &mut An
                 });
             combo.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "View path"));
         }
+        let icon = if state.is_path_playing { Icon::Pause } else { Icon::Play };
+        super::icon_button(state, ui, Action::PlayPath, icon, answers);
         super::action_button(state, ui, Action::PreviousFrame, "[", answers);
         let last = names[path].1 - 1;
         let mut at = frame;

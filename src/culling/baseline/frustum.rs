@@ -122,7 +122,11 @@ impl<S: Space> Method<S> for Frustum {
         progress.report(0.0, "building the kD-tree");
         // Every primitive lies in one leaf only, so none is drawn twice and none needs a mark.
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
-        Ok(KdTree::build(boxes, params.tree_height, || progress.cancelled()))
+        let Some(mut tree) = KdTree::build(boxes, params.tree_height, || progress.cancelled()) else {
+            return Ok(None);
+        };
+        tree.refit(scene);
+        Ok(Some(tree))
     }
     fn moved(
         index: &mut Arc<Self::Index>,

@@ -76,6 +76,7 @@ impl Params {
         };
         // Runs of one object are decided together.
         tree.sort_lists(|p| (scene.object_of(p), p));
+        tree.refit(scene);
         Some(tree)
     }
 }
@@ -146,7 +147,8 @@ impl<S: Shape> Index<S> {
     }
     /// Goes over to another frame of the scene: the tree keeps its planes and each place its list of
     /// occluders, which only says where to look; boxes and occluders are where they are now, and of the
-    /// memory stays what is still true. False if an occluder has lost its area; then nothing of it may be used.
+    /// memory stays what is still true. False if an occluder has lost its area; then nothing of it may be
+    /// used.
     pub fn follow(&mut self, scene: &Scene<S>, memory: &mut Memory<S>) -> bool {
         if !self.occluders.follow(scene.points(), &self.moving) {
             return false;

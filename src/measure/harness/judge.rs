@@ -17,8 +17,8 @@ pub const CHECKING: &str = "comparing with the truth";
 const BACKGROUND: [f32; 3] = [1.0; 3];
 
 /// The exact answer to the view that it looked at last.
-pub struct Judge<'a, S: World> {
-    scene: &'a Arc<Scene<S>>,
+pub struct Judge<S: World> {
+    scene: Arc<Scene<S>>,
     /// Every how many views [`Judge::each`] compares; 0: never.
     every: usize,
     truth: Truth,
@@ -68,12 +68,12 @@ impl Checked {
     }
 }
 
-impl<'a, S: World> Judge<'a, S> {
+impl<S: World> Judge<S> {
     /// Of a scene, whose surfaces are taken as the experiment's settings say.
-    pub fn new(scene: &'a Arc<Scene<S>>, setup: &Setup) -> Self {
+    pub fn new(scene: &Arc<Scene<S>>, setup: &Setup) -> Self {
         let surfaces = setup.settings.surfaces();
         Self {
-            scene,
+            scene: scene.clone(),
             surfaces,
             every: setup.check_every,
             truth: Truth::new(scene, surfaces, 1, BACKGROUND),
@@ -84,9 +84,13 @@ impl<'a, S: World> Judge<'a, S> {
         }
     }
 
+    /// Goes over to another frame of the scene.
+    pub fn pose(&mut self, scene: &Arc<Scene<S>>) {
+        self.scene.clone_from(scene);
+    }
     /// Finds what is visible, ascending.
     pub fn look(&mut self, view: &View<S>) -> &[PrimId] {
-        self.visible = self.truth.look(self.scene, view);
+        self.visible = self.truth.look(&*self.scene, view);
         self.view = Some(*view);
         self.exact.clear();
         &self.visible
@@ -107,10 +111,10 @@ impl<'a, S: World> Judge<'a, S> {
         let coverage_percent = if all == 0 { 100.0 } else { 100.0 * found as f64 / all as f64 };
         let Some(view) = &self.view else { return Difference { found, coverage_percent, wrong: Vec::new() } };
         if self.exact.is_empty() {
-            self.exact = shade(self.truth.image(), &**self.scene, view, BACKGROUND);
+            self.exact = shade(self.truth.image(), &*self.scene, view, BACKGROUND);
         }
-        draw(&mut self.target, self.scene, view, drawn, self.surfaces);
-        let image = shade(&self.target, &**self.scene, view, BACKGROUND);
+        draw(&mut self.target, &self.scene, view, drawn, self.surfaces);
+        let image = shade(&self.target, &*self.scene, view, BACKGROUND);
         let wrong = self.exact.chunks_exact(4).zip(image.chunks_exact(4)).map(|(a, b)| a != b).collect();
         Difference { found, coverage_percent, wrong }
     }

@@ -33,6 +33,15 @@ pub(super) fn sized<S: World>(mut path: ViewPath<S>, setup: &Setup) -> ViewPath<
     path
 }
 
+/// As [`about`], of what is measured with all that moves where it was loaded.
+pub fn at_rest<S: World>(scene: &Scene<S>, path: &ViewPath<S>) -> Measured {
+    let mut about = about(scene, path);
+    if !scene.moving().is_empty() {
+        about.path += ", what moves at rest";
+    }
+    about
+}
+
 /// The scene and the path that were measured.
 pub fn about<S: World>(scene: &Scene<S>, path: &ViewPath<S>) -> Measured {
     Measured {

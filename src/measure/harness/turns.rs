@@ -7,7 +7,9 @@ use crate::measure::experiment::{ExperimentError, World};
 use crate::measure::timing::{median, timed};
 use crate::method::{Run, surfaces_of};
 use crate::raster::Target;
-use crate::scene::{Progress, Scene};
+use std::sync::Arc;
+
+use crate::scene::{Motion, Progress, Quiet, Scene};
 
 /// Rounds whose median is the time of a frame.
 pub const ROUNDS: usize = 3;
@@ -28,15 +30,18 @@ pub struct Turn<'a, S: World> {
     pub run: usize,
     /// The view of the frame.
     pub view: &'a View<S>,
+    /// What it sees: where objects move, the scene of the frame of this number.
+    pub scene: &'a Arc<Scene<S>>,
 }
 
-/// Runs take turns at each view, in rounds; in each the next run begins, so that none always finds the
-/// triangles where another has just read them. `take` does one turn, which is `what` is done, and returns `N`
-/// times of it. For each frame and run the medians of its rounds.
+/// Runs on a scene take turns at each view, in rounds; in each the next run begins, so that none always finds
+/// the triangles where another has just read them. `take` does one turn, which is `what` is done, and returns
+/// `N` times of it. For each frame and run the medians of its rounds.
 ///
 /// # Errors
 /// It was cancelled.
 pub fn in_turns<S: World, const N: usize>(
+    scene: &Arc<Scene<S>>,
     runs: &mut [Box<dyn Run<S>>],
     views: &[View<S>],
     progress: &dyn Progress,
@@ -44,15 +49,20 @@ pub fn in_turns<S: World, const N: usize>(
     mut take: impl FnMut(&mut dyn Run<S>, Turn<'_, S>) -> [f64; N],
 ) -> Result<Vec<Vec<[f64; N]>>, ExperimentError> {
     let (n, count) = (views.len(), runs.len());
+    let mut motion = Motion::new(scene);
     let mut rounds = vec![vec![[const { Vec::new() }; N]; count]; n];
     for round in 0..ROUNDS {
         runs.iter_mut().for_each(|run| run.forget());
         for (frame, view) in views.iter().enumerate() {
             checkpoint(progress, (round * n + frame) as f32 / (ROUNDS * n) as f32, what)?;
+            let scene = motion.at(frame);
             for at in 0..count {
                 let run = (at + frame + round) % count;
+                if !runs[run].pose(&scene, &Quiet) {
+                    return Err(ExperimentError::Cancelled);
+                }
                 let (is_first_round, is_first_run) = (round == 0, at == 0);
-                let turn = Turn { is_first_round, is_first_run, frame, run, view };
+                let turn = Turn { is_first_round, is_first_run, frame, run, view, scene: &scene };
                 let times = take(&mut *runs[run], turn);
                 (0..N).for_each(|i| rounds[frame][run][i].push(times[i]));
             }

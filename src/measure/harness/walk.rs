@@ -1,7 +1,7 @@
 //! A walk at a constant speed: views spread along a path, stretches of frames one step apart, and the timing
 //! of those.
 
-use super::path::{about, sized};
+use super::path::{at_rest, sized};
 use super::ready::checkpoint;
 use super::turns::ROUNDS;
 use crate::geometry::{Vector, View, ViewPath};
@@ -50,7 +50,7 @@ impl<S: World> Walk<S> {
         let n = path.views.len();
         let position = |k: usize| path.views[k % n].eye.position;
         let length = (0..n).map(|k| (position(k + 1) - position(k)).length()).sum();
-        Self { about: about(scene, &path), path, length, frames: setup.frames }
+        Self { about: at_rest(scene, &path), path, length, frames: setup.frames }
     }
 
     /// As many views as are to be measured, evenly spaced along the whole path.

@@ -10,21 +10,21 @@ use crate::papers::keys::{FRUSTUM, LARGE_OCCLUDERS};
 use crate::scene::{Progress, Scene};
 
 /// A walk with both methods ready on its scene.
-pub struct Both<'a, S: World> {
+pub struct Both<S: World> {
     /// The walk.
     pub walk: Walk<S>,
     /// Who judges the answers.
-    pub judge: Judge<'a, S>,
+    pub judge: Judge<S>,
     /// View-frustum culling.
     pub frustum: Box<dyn Run<S>>,
     /// Occlusion culling.
     pub occlusion: Box<dyn Run<S>>,
 }
 
-impl<'a, S: World> Both<'a, S> {
+impl<S: World> Both<S> {
     /// Builds what both need; it is `done` of `progress` then.
     pub fn new(
-        scene: &'a Arc<Scene<S>>,
+        scene: &Arc<Scene<S>>,
         setup: &Setup,
         progress: &dyn Progress,
         done: f32,

@@ -43,10 +43,11 @@ pub fn fly<S: World>(
     let mut drawn = vec![[0; WAYS.len()]; path.views.len()];
     let mut checked = Checked::default();
     let rest = part(progress, 0.15, 1.0);
-    let times = in_turns(&mut runs, &path.views, &rest, "flying", |run, turn| {
-        let (list, [cull, draw]) = frame(scene, run, turn.view, &mut targets[turn.run]);
+    let times = in_turns(scene, &mut runs, &path.views, &rest, "flying", |run, turn| {
+        let (list, [cull, draw]) = frame(turn.scene, run, turn.view, &mut targets[turn.run]);
         drawn[turn.frame][turn.run] = list.len();
         if turn.run == CULLED && turn.is_first_round {
+            judge.pose(turn.scene);
             checked.join(judge.check(turn.frame, turn.view, &list));
         }
         [cull + draw]

@@ -55,11 +55,12 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     }
     let (mut judge, mut target) = (Judge::new(scene, setup), Target::default());
     let mut all: Vec<[Numbers; COUNT]> = vec![Default::default(); path.views.len()];
-    let times = in_turns(&mut runs, &path.views, &part(progress, 0.2, 1.0), "flying", |run, turn| {
+    let times = in_turns(scene, &mut runs, &path.views, &part(progress, 0.2, 1.0), "flying", |run, turn| {
         if turn.is_first_round && turn.is_first_run {
+            judge.pose(turn.scene);
             judge.look(turn.view);
         }
-        let (list, times) = frame(scene, run, turn.view, &mut target);
+        let (list, times) = frame(turn.scene, run, turn.view, &mut target);
         if turn.is_first_round {
             let difference = judge.compare(&list);
             let to = &mut all[turn.frame][turn.run];

@@ -10,7 +10,7 @@ use crate::geometry::View;
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
 use crate::measure::deadline::frame_within;
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, path};
+use crate::measure::harness::path::{at_rest, path};
 use crate::measure::harness::{Judge, checkpoint, part, ready, under_load};
 use crate::measure::timing::{median, quantile};
 use crate::measure::{Cell, ExperimentError, Setup, Table};
@@ -53,7 +53,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
         let mut run = ready(scene, LAYERED_PROJECTION, setup, &on_top, &part(&whole, 0.0, 0.2))?;
         rows.extend(rows_of(scene, setup, &mut *run, rules, &path.views, &whole)?);
     }
-    Ok((rows, about(scene, &path)))
+    Ok((rows, at_rest(scene, &path)))
 }
 
 /// The rows of one set of rules: each machine at each deadline.

@@ -7,7 +7,7 @@ use super::ways::BUDGET;
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured};
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, path};
+use crate::measure::harness::path::{at_rest, path};
 use crate::measure::harness::{Judge, checkpoint, frame, part, ready, restore_or_build, settings};
 use crate::measure::{Setup, Table};
 use crate::papers::keys::LAYERED_PROJECTION;
@@ -80,7 +80,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             sum[3] = sum[3].max(wrong);
         }
     }
-    let about = about(scene, &path);
+    let about = at_rest(scene, &path);
     let row = |at: usize| {
         let form = FORMS[at % FORMS.len()].0.into();
         measured(&about.name, [form, STARTS[at / FORMS.len()].into()], sums[at])

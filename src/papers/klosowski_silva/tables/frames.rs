@@ -12,7 +12,7 @@ use crate::measure::harness::{self, Judge, frame, in_turns, mean, part};
 use crate::measure::{Cell, ExperimentError, Setup, Table};
 use crate::papers::keys::FRUSTUM;
 use crate::raster::Target;
-use crate::scene::{Progress, Scene};
+use crate::scene::{Progress, Quiet, Scene};
 
 pub const SWEEP: Sweep = Sweep {
     columns: &[
@@ -80,18 +80,20 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let path = path(scene, setup);
     let mut runs = runs(scene, setup, &part(progress, 0.0, 0.19))?;
     // The centroid order is not timed, as in the paper.
-    let mut centroid = ready(scene, setup, BY_CENTROID, &[Most::Percent(10.0)], &part(progress, 0.19, 0.2))?;
+    let mut order = ready(scene, setup, BY_CENTROID, &[Most::Percent(10.0)], &part(progress, 0.19, 0.2))?;
     let (mut judge, mut target) = (Judge::new(scene, setup), Target::default());
     // Of each frame by each of the rules what is visible, what each budget finds, what the centroid order
     // finds.
     let mut found = vec![[[0.0; 6]; 2]; path.views.len()];
-    let times = in_turns(&mut runs, &path.views, &part(progress, 0.2, 1.0), "flying", |run, turn| {
+    let times = in_turns(scene, &mut runs, &path.views, &part(progress, 0.2, 1.0), "flying", |run, turn| {
         if turn.is_first_round && turn.is_first_run {
+            judge.pose(turn.scene);
             let visible = judge.look(turn.view).len() as f64;
-            let by_centroid = judge.compare(&centroid[0].cull(turn.view).prims).found as f64;
-            found[turn.frame].iter_mut().for_each(|to| (to[0], to[5]) = (visible, by_centroid));
+            order[0].pose(turn.scene, &Quiet);
+            let nearest = judge.compare(&order[0].cull(turn.view).prims).found as f64;
+            found[turn.frame].iter_mut().for_each(|to| (to[0], to[5]) = (visible, nearest));
         }
-        let (list, times) = frame(scene, run, turn.view, &mut target);
+        let (list, times) = frame(turn.scene, run, turn.view, &mut target);
         // The first run is that of view-frustum culling, which finds everything.
         if let Some(run) = turn.run.checked_sub(1).filter(|_| turn.is_first_round) {
             let (rules, budget) = (run / BUDGETS.len(), run % BUDGETS.len());

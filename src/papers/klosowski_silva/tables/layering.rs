@@ -9,7 +9,7 @@ use super::ways::{
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured};
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, path};
+use crate::measure::harness::path::{at_rest, path};
 use crate::measure::harness::{checkpoint, mean, part};
 use crate::measure::{Setup, Table};
 use crate::scene::{Progress, Scene};
@@ -62,7 +62,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             found.push([layer_correlation(&order), first, tenth, all]);
         }
     }
-    let about = about(scene, &path);
+    let about = at_rest(scene, &path);
     let row = |w: usize| {
         let of = |c: usize| found[w].iter().map(move |n| n[c]);
         let worst = of(0).fold(f64::INFINITY, f64::min);

@@ -57,11 +57,12 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     }
     let (mut target, n, ways) = (Target::default(), path.views.len(), runs.len());
     let mut drawn = vec![0; ways];
-    let frames = in_turns(&mut runs, &path.views, &part(progress, 0.2, 1.0), "timing", |run, turn| {
-        let (list, times) = frame(scene, run, turn.view, &mut target);
-        drawn[turn.run] += usize::from(turn.is_first_round) * list.len();
-        times
-    })?;
+    let frames =
+        in_turns(scene, &mut runs, &path.views, &part(progress, 0.2, 1.0), "timing", |run, turn| {
+            let (list, times) = frame(turn.scene, run, turn.view, &mut target);
+            drawn[turn.run] += usize::from(turn.is_first_round) * list.len();
+            times
+        })?;
     // The means over the frames of the times to cull and to draw.
     let times: Vec<[f64; 2]> =
         (0..ways).map(|way| [0, 1].map(|i| mean(frames.iter().map(|f| f[way][i])))).collect();

@@ -8,7 +8,7 @@ use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::NodeId;
 use crate::measure::columns::{SCENE, SOURCE, column, measured, quoted};
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, path};
+use crate::measure::harness::path::{at_rest, path};
 use crate::measure::harness::{ROUNDS, part, ready};
 use crate::measure::timing::median;
 use crate::measure::{Cell, Setup, Stopwatch, Table};
@@ -84,7 +84,7 @@ impl Progress for Stages<'_> {
 }
 
 fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Rows {
-    let about = about(scene, &path(scene, setup));
+    let about = at_rest(scene, &path(scene, setup));
     let all = (WAYS.len() * ROUNDS) as f32;
     let mut times = [const { [const { Vec::new() }; 4] }; WAYS.len()];
     let mut runs: Vec<Option<Box<dyn Run<S>>>> = WAYS.map(|_| None).into();

@@ -13,7 +13,7 @@ use crate::drawing::{Plot, Series, Shape};
 use crate::geometry::{PrimId, Vector, View, ViewPath, WALKING_STEP_M};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, whole_path};
+use crate::measure::harness::path::{at_rest, whole_path};
 use crate::measure::harness::{Judge, checkpoint, part};
 use crate::measure::{Setup, Table};
 use crate::method::Run;
@@ -164,7 +164,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             before = Some(known);
         }
     }
-    let about = about(scene, &path);
+    let about = at_rest(scene, &path);
     let row = |r: usize| {
         let (way, budget) = (WAYS[r / BUDGETS.len()], BUDGETS[r % BUDGETS.len()]);
         measured(&about.name, way.cells().into_iter().chain([budget.into()]), sums[r].means())

@@ -10,7 +10,7 @@ use super::ways::{
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, quoted};
 use crate::measure::experiment::{Rows, Sweep, World};
-use crate::measure::harness::path::{about, path};
+use crate::measure::harness::path::{at_rest, path};
 use crate::measure::harness::{Judge, checkpoint, part};
 use crate::measure::{Cell, Setup, Table};
 use crate::scene::{Progress, Scene};
@@ -71,7 +71,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             }
         }
     }
-    let about = about(scene, &path);
+    let about = at_rest(scene, &path);
     let row = |w: usize| {
         let mut row = measured(&about.name, WAYS[w].cells(), found[w]);
         row.extend(worst[w].map(Cell::from));
