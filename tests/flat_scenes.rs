@@ -141,7 +141,7 @@ fn what_a_scene_is_for_is_in_its_facts() {
     let swarm = find("swarm.json");
     assert_eq!(swarm.frame_count(), 24);
     assert!(swarm.objects().iter().all(|o| o.motion.is_some()) && swarm.prim_count() < 400);
-    let seen = |frame| look(&swarm.posed(frame), &swarm.paths()[0].views[0]);
+    let seen = |frame| look(&Motion::new(&swarm).at(frame), &swarm.paths()[0].views[0]);
     let (first, later) = (seen(0), seen(7));
     assert!(first.visible != later.visible && first.hidden.len() > 2 * first.visible.len());
     assert!(later.hidden.len() > 2 * later.visible.len());

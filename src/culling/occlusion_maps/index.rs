@@ -40,6 +40,7 @@ pub struct Counts {
 }
 
 /// The model's hierarchy, and its leaves that may be occluders.
+#[derive(Clone)]
 pub struct Databases<S: Space> {
     tree: KdTree<S::Vector>,
     clusters: Arc<Clusters>,
@@ -61,17 +62,19 @@ impl<S: Drawable> Databases<S> {
         progress.report(0.0, "building the kD-tree");
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         let height = height(scene.live().len(), params.leaf_prims::<S>());
-        let tree = KdTree::build(boxes, height, || progress.cancelled())?;
+        let mut tree = KdTree::build(boxes, height, || progress.cancelled())?;
+        tree.refit(scene);
         progress.report(0.4, "building the occluder database");
         let (occluders, counts) = database(scene, &tree, params.occluder_size, progress)?;
         progress.report(0.7, "making clusters");
-        // Tiles are given two groups a node, of which the second is for what nodes share: none does here.
-        let groups = tree.nodes().iter().enumerate().flat_map(|(at, node)| {
-            let own = if node.is_leaf() { tree.prims_below(NodeId(at as u32)) } else { &[] };
-            [own, &[]]
-        });
-        let clusters = Arc::new(Clusters::new(scene, params.surfaces, groups));
+        let clusters = clusters(scene, params, &tree);
         (!progress.cancelled()).then_some(Self { tree, clusters, occluders, counts })
+    }
+    /// Goes over to another frame of the scene (Section 5.5): nodes keep what they hold, with new bounds, and
+    /// leaves of the occluder database stay in it. What leaves hold is made ready anew, all of it.
+    pub fn follow(&mut self, scene: &Scene<S>, params: &Params) {
+        self.tree.refit(scene);
+        self.clusters = clusters(scene, params, &self.tree);
     }
     /// The model's hierarchy.
     pub fn tree(&self) -> &KdTree<S::Vector> {
@@ -89,6 +92,16 @@ impl<S: Drawable> Databases<S> {
     pub fn counts(&self) -> Counts {
         self.counts
     }
+}
+
+/// What leaves hold, made ready for tiles. These are given two groups a node, of which the second is for what
+/// nodes share: none does here.
+fn clusters<S: Drawable>(scene: &Scene<S>, params: &Params, tree: &KdTree<S::Vector>) -> Arc<Clusters> {
+    let groups = tree.nodes().iter().enumerate().flat_map(|(at, node)| {
+        let own = if node.is_leaf() { tree.prims_below(NodeId(at as u32)) } else { &[] };
+        [own, &[]]
+    });
+    Arc::new(Clusters::new(scene, params.surfaces, groups))
 }
 
 /// Levels of a tree whose leaves hold at most so many of `count` primitives.

@@ -188,6 +188,17 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         keeps_nothing(saved)?;
         Ok(Databases::build(scene, params, progress))
     }
+    fn moved(
+        index: &mut Arc<Self::Index>,
+        _: &mut Memory,
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        _: &dyn Progress,
+    ) -> Option<()> {
+        // The nodes stay, and with them what was chosen and drawn last.
+        Arc::make_mut(index).follow(scene, params);
+        Some(())
+    }
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         memory: &mut Memory,
