@@ -345,7 +345,7 @@ pub fn label(role: Role) -> Option<&'static str> {
         Role::Outside => "outside: culled",
         Role::FacesAway => "faces away: culled",
         Role::Occluder => "occluder",
-        Role::Approximated => "approximated, over budget",
+        Role::Approximated => "approximated, presumed hidden, over budget",
         Role::Wrong => "visible, yet culled",
         Role::Current => "current",
         Role::Selected => "selected",

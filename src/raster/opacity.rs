@@ -5,8 +5,8 @@
 //!
 //! 1. A pixel of the finest map, level 0, stands for a square of samples (in flatland a piece of their line),
 //!    those of an image of the occluders.
-//! 2. Two by two pixels of a level (two in flatland) are averaged to one of the next, down to a map of at most
-//!    4×4.
+//! 2. Two by two pixels of a level (two in flatland) are averaged to one of the next, down to a map of at
+//!    most 4×4.
 //!
 //! Kept are counts of *black* samples, those that nothing covers: whole numbers, which only add up, so that
 //! no level is rounded. Opacity is `1 − black / present`; samples beyond the image's edge are neither black

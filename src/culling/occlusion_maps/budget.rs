@@ -86,8 +86,8 @@ impl Budget {
         let drawn = work.in_view - work.culled;
         let culled = work.culled as f32 / work.in_view.max(1) as f32;
         let share = work.occluders as f32 / work.in_view.max(1) as f32;
-        // "If the percentage of the model culled is low, it increases the count. If the percentage is high and
-        // the frame rate is low, it decreases the count."
+        // "If the percentage of the model culled is low, it increases the count. If the percentage is high
+        // and the frame rate is low, it decreases the count."
         let factor = match (culled < FEW, share > MOST) {
             (true, false) if share < MOST => GROW,
             (false, true) => SHRINK,

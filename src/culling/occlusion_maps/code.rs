@@ -188,15 +188,16 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "5.2.2",
-        what: "with depth=samples the occluders' own depths are compared, at the samples that they cover: the \
-               no-background z-buffer of Zhang's dissertation (1998)",
+        what: "with depth=samples the occluders' own depths are compared, at the samples that they cover: \
+               the no-background z-buffer of Zhang's dissertation (1998)",
         why: "they are at hand, and much nearer to the truth than corners of boxes",
         when: When::With("depth", "samples"),
     },
     Departure {
         section: "5.3.1",
         what: "small is below 5 ‰ of the scene (occluder-size); redundant, closer than 2 % before one of the \
-               1,000 largest faces and within it; complex, above 8 times the median of primitives for its size",
+               1,000 largest faces and within it; complex, above 8 times the median of primitives for its \
+               size",
         why: "the paper gives no numbers",
         when: When::Always,
     },
@@ -208,15 +209,15 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "6.2",
-        what: "L and the distance limit change by a quarter, by counts of polygons and not by the clock; below \
-               500 polygons (2 in flatland) or above 5 % of the scene (20 %) L does not go",
+        what: "L and the distance limit change by a quarter, by counts of polygons and not by the clock; \
+               below 500 polygons (2 in flatland) or above 5 % of the scene (20 %) L does not go",
         why: "a frame can then be played again; the paper gives no numbers",
         when: When::With("adapt", "true"),
     },
     Departure {
         section: "7",
-        what: "culling is turned off after three frames that cull fewer polygons than occluders and tests cost, \
-               and tried again after 30, or when a quarter more or less is drawn",
+        what: "culling is turned off after three frames that cull fewer polygons than occluders and tests \
+               cost, and tried again after 30, or when a quarter more or less is drawn",
         why: "the paper says that it should be turned off, not when",
         when: When::With("adapt", "true"),
     },

@@ -1,5 +1,5 @@
-//! The depth estimation buffer (Zhang et al. 1997, Section 5.2.2): for each part of the screen a depth that no
-//! occluder there is farther than.
+//! The depth estimation buffer (Zhang et al. 1997, Section 5.2.2): for each part of the screen a depth that
+//! no occluder there is farther than.
 //!
 //! An entry bounds all occluders whose rectangles touch it: each is taken as deep as the farthest corner of
 //! its box. Depths are `1/w`, larger is nearer, so the farthest is the least. An entry that no occluder

@@ -310,8 +310,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Facing(n) => n.sentence(context),
             Self::Depth(n) => n.sentence(context),
             Self::Gathered(n, c) => format!(
-                "The occluder database has {} in view of {}; {} are left out as small, {} as redundant, {} as \
-                 complex.",
+                "The occluder database has {} in view of {}; {} are left out as small, {} as redundant, {} \
+                 as complex.",
                 leaves(*n),
                 c.kept,
                 c.small,
@@ -320,8 +320,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
             ),
             Self::Chosen(n) => n.sentence(S::PRIM),
             Self::Plane(z) => format!(
-                "The Z plane lies {} units before the eye: occluders are drawn as far as it, and only what is \
-                 wholly beyond it can be culled.",
+                "The Z plane lies {} units before the eye: occluders are drawn as far as it, and only what \
+                 is wholly beyond it can be culled.",
                 short(*z)
             ),
             Self::Covered(n, one_sided) => format!(
@@ -329,8 +329,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 if *one_sided { ", as far as it faces the eye" } else { "" }
             ),
             Self::Written(n, r, farthest) => format!(
-                "Occluder {n} touches {} of the depth estimation buffer: none of these may be nearer than its \
-                 farthest corner, {} units.",
+                "Occluder {n} touches {} of the depth estimation buffer: none of these may be nearer than \
+                 its farthest corner, {} units.",
                 if r.area() == 1 { "1 entry".into() } else { format!("{} entries", r.area()) },
                 short(1.0 / farthest)
             ),
@@ -343,7 +343,8 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Answered(n) => n.sentence(),
             Self::Adapted(n) => n.sentence(S::PRIM),
             Self::Paused(n) => format!(
-                "Culling did not pay lately, so this frame draws what is in view; it is tried again after {}.",
+                "Culling did not pay lately, so this frame draws what is in view; it is tried again after \
+                 {}.",
                 count(*n, "frame")
             ),
         }
@@ -379,7 +380,8 @@ impl Choice {
         let kept = if c.is_kept { ", and was of use in the last frame" } else { "" };
         if self.is_taken {
             format!(
-                "Node {node}, {distance} units away{kept}, is an occluder: its {holds} make {} of at most {}.",
+                "Node {node}, {distance} units away{kept}, is an occluder: its {holds} make {} of at most \
+                 {}.",
                 self.sum, self.limit
             )
         } else if c.distance > self.reach {
@@ -407,8 +409,8 @@ impl Built {
             format!("a pixel counts as opaque with up to {}", count(self.ignored, "black sample"))
         };
         format!(
-            "The occluders cover {covered:.1} % of the samples. Averaged, they make {} of occlusion maps, the \
-             finest of {columns} × {rows}; {threshold}.",
+            "The occluders cover {covered:.1} % of the samples. Averaged, they make {} of occlusion maps, \
+             the finest of {columns} × {rows}; {threshold}.",
             count(self.levels, "level")
         )
     }
@@ -493,8 +495,8 @@ impl MapRead {
     fn sentence(&self, node: NodeId, ignored: u32) -> String {
         let PyramidCell { level, x, y } = self.cell;
         format!(
-            "Pixel ({x}, {y}) of level {level} under node {node} has opacity {:.3}: {} of {} are black, where \
-             {ignored} may be. {}.",
+            "Pixel ({x}, {y}) of level {level} under node {node} has opacity {:.3}: {} of {} are black, \
+             where {ignored} may be. {}.",
             self.opacity(),
             self.black,
             count(self.present, "sample"),
@@ -556,8 +558,9 @@ impl<S: Faces> Answered<S> {
                          what they cover. {reads}."
                     ),
                     (true, false, 0) => format!(
-                        "Node {node} is culled: it is behind the occluders, and its rectangle lies within what \
-                         they cover at the samples of the maps, which are not those of the image. {reads}."
+                        "Node {node} is culled: it is behind the occluders, and its rectangle lies within \
+                         what they cover at the samples of the maps, which are not those of the image. \
+                         {reads}."
                     ),
                     (true, false, n) => format!(
                         "Node {node} is culled, though not proven hidden: {} in the map pixels under it are \

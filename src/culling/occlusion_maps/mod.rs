@@ -5,14 +5,14 @@
 //! A frame ([`walk`], Section 3):
 //!
 //! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]);
-//! 2. they are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image is
-//!    averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
+//! 2. they are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
+//!    is averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
 //! 3. the hierarchy of the model is visited: a node that is outside the frustum, or behind the occluders
 //!    (Section 5.2) and within what they cover ([`overlap`], Section 5.1), is culled with all below it.
 //!
-//! With an opacity threshold below 1 small holes are ignored (Section 5.4), and what is culled because of that
-//! is [`crate::method::Verdict::Presumed`]. Where this differs from the paper, and why: [`DEPARTURES`]. Cost:
-//! O(occluders drawn + map pixels + nodes visited).
+//! With an opacity threshold below 1 small holes are ignored (Section 5.4), and what is culled because of
+//! that is [`crate::method::Verdict::Presumed`]. Where this differs from the paper, and why: [`DEPARTURES`].
+//! Cost: O(occluders drawn + map pixels + nodes visited).
 
 mod budget;
 mod code;
@@ -222,8 +222,8 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let resolution = Knob::new(
         "map-resolution",
         "pixels",
-        "pixels of the finest occlusion map along its longer side, at most: each is a square of image pixels, a \
-         power of two a side",
+        "pixels of the finest occlusion map along its longer side, at most: each is a square of image \
+         pixels, a power of two a side",
         "Zhang et al. 1997, Sections 4.1 and 6.1",
     );
     // Below 8 there would be one map only for images of any size.
@@ -231,9 +231,9 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let samples = Knob::new(
         "samples",
         "",
-        "where the maps are sampled: image, at every pixel center of the image, so that they are exact for it; \
-         1, 4 or 16 times a map pixel, as the paper's smaller image without and with antialiasing, which may \
-         cull what is visible",
+        "where the maps are sampled: image, at every pixel center of the image, so that they are exact for \
+         it; 1, 4 or 16 times a map pixel, as the paper's smaller image without and with antialiasing, \
+         which may cull what is visible",
         "Zhang et al. 1997, Section 4.1",
     );
     knobs.words(samples, &mut params.samples);
@@ -249,9 +249,9 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let depth = Knob::new(
         "depth",
         "",
-        "what is known of the occluders' depths: estimation, for parts of the screen the farthest corner of any \
-         of their boxes; plane, a single Z plane before which all occluders lie; samples, their own depths at \
-         the samples that they cover",
+        "what is known of the occluders' depths: estimation, for parts of the screen the farthest corner of \
+         any of their boxes; plane, a single Z plane before which all occluders lie; samples, their own \
+         depths at the samples that they cover",
         "Zhang et al. 1997, Section 5.2",
     );
     knobs.words(depth, &mut params.depth);
@@ -271,8 +271,8 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         "selection",
         "",
         "by what occluders are chosen: distance, the nearest; size, those that look largest; visible, the \
-         nearest of those that could be seen in the last frame. With depth=plane it is the nearest point that \
-         counts",
+         nearest of those that could be seen in the last frame. With depth=plane it is the nearest point \
+         that counts",
         source,
     );
     knobs.words(selection, &mut params.selection);

@@ -3,10 +3,10 @@
 
 use glam::{Vec2, vec2};
 
-use super::OcclusionMaps;
 use super::evidence::{Choice, Evidence, draw_choice};
 use super::maps::Maps;
 use super::overlap::Outcome;
+use super::{DepthKind, OcclusionMaps};
 use crate::culling::depth::picture::{Levels, Lit, Reads, WIDTH_PT, finished, last_reads, levels, stacked};
 use crate::culling::depth::{DepthNote, Faces, place_in_view};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject};
@@ -52,7 +52,7 @@ fn draw_buffer<S: Faces>(maps: &Maps<S>, view: &View<S>, to: &mut Drawing<S::Vec
         if held.is_finite() {
             let pixels = buffer.pixels([x, 0], [view.width, view.height]);
             let ends = [pixels.x0, pixels.x1].map(|at| place_in_view(view, [at, 0], 1.0 / held));
-            to.line(Layer::Evidence, Role::Occluder, Subject::None, ends);
+            to.line(Layer::Evidence, Role::Evidence, Subject::None, ends);
         }
     }
 }
@@ -65,7 +65,7 @@ pub(super) fn picture<S: Faces>(moment: At<'_, '_, S>, which: usize, scale: Dept
     match which {
         0 => levels(&of, view, &reads(moment), scale),
         1 => stacked(&of, view, &reads(moment), scale),
-        2 => buffer(moment, scale),
+        2 => depths(moment, scale),
         _ => choice(moment),
     }
 }
@@ -157,59 +157,51 @@ pub(super) fn probe<S: Faces>(moment: At<'_, '_, S>, at: Vec2) -> Option<String>
     crate::culling::depth::picture::probe(&of, moment.frame.view, at)
 }
 
-/// The depth estimation buffer as a relief: the nearer an entry, the lighter.
-fn buffer<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
-    let (maps, view) = (moment.state, moment.frame.view);
-    let mut to = Drawing::default();
-    let say = |to: &mut Drawing, y: f32, text: &str| {
-        to.text(Layer::Labels, Role::Faint, vec2(0.0, y), 8.5, Anchor::Start, text.to_owned());
-    };
+/// What is known of the occluders' depths.
+fn depths<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
+    let mut notes = moment.notes.iter().rev();
     match moment.frame.params.depth {
-        super::DepthKind::Estimation => {}
-        super::DepthKind::Plane => {
-            let z = moment
-                .notes
-                .iter()
-                .rev()
-                .find_map(|n| if let Evidence::Plane(z) = n { Some(z) } else { None });
+        DepthKind::Estimation => buffer(moment, scale),
+        DepthKind::Plane => {
+            let z = notes.find_map(|n| if let Evidence::Plane(z) = n { Some(z) } else { None });
             let text = z.map_or("No plane is set yet.".into(), |z| {
                 format!("A single Z plane, {} units before the eye, stands for all depths.", short(*z))
             });
-            say(&mut to, 12.0, &text);
-            return finished(to, 20.0, "The Z plane");
+            let mut to = Drawing::default();
+            to.text(Layer::Labels, Role::Ink, vec2(0.0, 12.0), 8.5, Anchor::Start, text);
+            finished(to, 20.0, "The Z plane")
         }
-        super::DepthKind::Samples => {
-            let notes = moment
-                .notes
-                .iter()
-                .rev()
-                .map(|n| if let Evidence::Depth(note) = n { Some(note) } else { None::<&DepthNote<S>> });
-            let of = maps.levels();
-            return levels(&of, view, &last_reads(notes), scale);
+        DepthKind::Samples => {
+            let notes =
+                notes.map(|n| if let Evidence::Depth(note) = n { Some(note) } else { None::<&DepthNote<S>> });
+            levels(&moment.state.levels(), moment.frame.view, &last_reads(notes), scale)
         }
     }
-    let size = maps.buffer().size();
-    let [columns, rows] = size;
-    let depths: Vec<f32> =
-        (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y])).map(|at| maps.buffer().held(at)).collect();
+}
+
+/// The depth estimation buffer as a relief: the nearer an entry, the darker.
+fn buffer<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
+    let (buffer, view) = (moment.state.buffer(), moment.frame.view);
+    let mut to = Drawing::default();
+    let [columns, rows] = buffer.size();
+    let all = (0..rows).flat_map(|y| (0..columns).map(move |x| [x, y]));
+    let held: Vec<f32> = all.map(|at| buffer.held(at)).collect();
     // What no occluder touches is as empty as the sky.
     let far = 1.0 / view.eye.far;
-    let shown: Vec<f32> = depths.iter().map(|d| if d.is_finite() { *d } else { far }).collect();
+    let shown: Vec<f32> = held.iter().map(|d| if d.is_finite() { *d } else { far }).collect();
     let height = if rows == 1 { 13.0 } else { WIDTH_PT * rows as f32 / columns as f32 };
-    let corners = [vec2(0.0, 12.0), vec2(WIDTH_PT, 12.0 + height)];
-    let rgba = shade_depth(&shown, &shown, far, scale).into();
+    let [a, b] = [vec2(0.0, 12.0), vec2(WIDTH_PT, 12.0 + height)];
     let title = format!("{columns} × {rows} entries: the farthest depth of the occluders that touch each");
     to.text(Layer::Labels, Role::Ink, vec2(0.0, 9.0), 7.5, Anchor::Start, title);
+    let rgba = shade_depth(&shown, &shown, far, scale).into();
     let pixels = Pixels { width: columns, height: rows, rgba };
-    to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners, pixels });
-    let [a, b] = corners;
+    to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners: [a, b], pixels });
     to.outline(Layer::Scene, Role::Faint, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
-    let cell = vec2(WIDTH_PT / columns as f32, height / rows as f32);
-    light_entry(moment, cell, corners[0], &mut to);
-    let bottom = corners[1].y;
-    let empty = depths.iter().filter(|d| !d.is_finite()).count();
-    say(&mut to, bottom + 11.0, &format!("{empty} of {} entries are touched by no occluder.", depths.len()));
-    finished(to, bottom + 18.0, "The depth estimation buffer")
+    light_entry(moment, (b - a) / vec2(columns as f32, rows as f32), a, &mut to);
+    let empty = held.iter().filter(|d| !d.is_finite()).count();
+    let text = format!("{empty} of {} entries are touched by no occluder.", held.len());
+    to.text(Layer::Labels, Role::Faint, vec2(0.0, b.y + 11.0), 8.5, Anchor::Start, text);
+    finished(to, b.y + 18.0, "The depth estimation buffer")
 }
 
 /// The entries that the step wrote, or the one that decided.

@@ -31,7 +31,8 @@ impl Hears for Heard {
     }
 }
 
-/// Maps of an image of samples, `false` where nothing covers them, with pixels of `1 << shift` samples a side.
+/// Maps of an image of samples, `false` where nothing covers them, with pixels of `1 << shift` samples a
+/// side.
 fn maps(width: u32, height: u32, shift: u32, covered: impl Fn(u32, u32) -> bool) -> Opacity {
     let depths: Vec<f32> = (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
@@ -350,8 +351,8 @@ fn a_flat_occluder_does_not_cull_itself() {
     }
 }
 
-/// Section 5.3.2 makes an occluder of a wall that crosses the Z plane: what of it lies beyond must not hide what
-/// stands before it there.
+/// Section 5.3.2 makes an occluder of a wall that crosses the Z plane: what of it lies beyond must not hide
+/// what stands before it there.
 #[test]
 fn occluders_end_at_the_z_plane() {
     // The wall stands at depths 9.8 to 11.1 where the segment at 6.4 is seen, which is beyond Z = 6.

@@ -119,8 +119,8 @@ fn behind_is_behind_all_that_covers_a_pixel() {
     assert!(all.iter().all(|&n| n > 500), "hidden, behind but not covered, not behind: {all:?}");
 }
 
-/// Zhang et al. 1997, Section 4.1: the triangle (0,0) (8,0) (0,8) covers 28 of 64 pixel centers, the other half
-/// of the square 36, and both all of them: no crack, and no sample twice.
+/// Zhang et al. 1997, Section 4.1: the triangle (0,0) (8,0) (0,8) covers 28 of 64 pixel centers, the other
+/// half of the square 36, and both all of them: no crack, and no sample twice.
 #[test]
 fn two_triangles_of_a_square_cover_28_and_36_of_64_samples() {
     let place = |x: f32, y: f32| Vec3::new(x - 4.0, 4.0 - y, -4.0);

@@ -1,5 +1,5 @@
-//! Whether something lies behind all that covers it, whatever nothing covers: the depth test of occlusion maps
-//! by the depths of the occluders' own samples (Zhang, "Effective Occlusion Culling for the Interactive
+//! Whether something lies behind all that covers it, whatever nothing covers: the depth test of occlusion
+//! maps by the depths of the occluders' own samples (Zhang, "Effective Occlusion Culling for the Interactive
 //! Display of Arbitrary Models", UNC 1998: the *no-background* z-buffer).
 //!
 //! A tile's depths bound what covers it; where they do not decide, its exact depths do (`resolve`).
@@ -34,7 +34,8 @@ impl<H: Hears> Work for Behind<'_, H> {
         for row in top..bottom {
             for strip in left..right {
                 let nearest = self.tiles.block_near[row * self.tiles.stride() + strip];
-                let is_inside = asked.tiles_inside(strip, row) == 0xffff;
+                let all = if self.tiles.is_flat { 0xf } else { 0xffff };
+                let is_inside = asked.tiles_inside(strip, row, self.tiles.is_flat) == all;
                 if is_inside && nearest > self.tiles.camera.depth_far && self.nearest >= nearest {
                     let cell = PyramidCell { level: PyramidCell::BLOCK, x: strip as u16, y: row as u16 };
                     self.read(cell, nearest, Outcome::Shows);

@@ -211,16 +211,16 @@ impl Asked {
         let across = ((1u64 << x1) - (1 << x0)) * 0x0101_0101;
         (across & ((1u64 << (8 * y1)) - (1 << (8 * y0)))) as u32
     }
-    /// The tiles of a block that lie in its rectangle as wholes.
+    /// The tiles of a block that lie in its rectangle as wholes; those of a line are one row high.
     #[inline(always)]
-    pub fn tiles_inside(&self, strip: usize, row: usize) -> u32 {
+    pub fn tiles_inside(&self, strip: usize, row: usize, is_flat: bool) -> u32 {
         let (left, top) = (32 * strip as i32, 16 * row as i32);
         let range = |from: i32, past: i32, side: u32| {
             let first = ((from + (1 << side) - 1) >> side).clamp(0, 4);
             (first, (past >> side).clamp(first, 4))
         };
-        let ((x0, x1), (y0, y1)) =
-            (range(self.x0 - left, self.x1 - left, 3), range(self.y0 - top, self.y1 - top, 2));
+        let (x0, x1) = range(self.x0 - left, self.x1 - left, 3);
+        let (y0, y1) = if is_flat { (0, 1) } else { range(self.y0 - top, self.y1 - top, 2) };
         let across = ((1u32 << x1) - (1 << x0)) * 0x1111;
         across & ((1u32 << (4 * y1)) - (1 << (4 * y0)))
     }

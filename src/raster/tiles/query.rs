@@ -325,7 +325,7 @@ fn sure_tiles<L: Wide>(l: L, tiles: &Tiles, spans: &Spans, a: &Asked, strip: usi
     }
     // What is asked for by its rectangle alone lies everywhere, but for what the rectangle leaves out, and
     // beyond the image nothing is seen.
-    sure & a.tiles_inside(strip, row)
+    sure & a.tiles_inside(strip, row, tiles.is_flat)
 }
 
 /// A box, and the box of all that is drawn with what it holds, where that is another one: it says how near

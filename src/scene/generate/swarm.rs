@@ -304,7 +304,7 @@ mod tests {
         // Machines must agree, so the bits are written down.
         assert_eq!(
             hash("swarm?polygons=10000&seed=4"),
-            "76797af01a280713f2e594debfd238719565bb2342eb93596891d4f2c5a4ebb4"
+            "4ea7b0f1e9c5a02636aa05925a948e2e467aa0a1e022c7df7c755ceadc2ba475"
         );
     }
 

@@ -4,7 +4,7 @@ mod notes;
 
 use std::sync::Arc;
 
-use self::notes::{culled_node, maps_built, occluder_prims};
+use self::notes::{culled_node, occluder_prims};
 use crate::drawing::{Drawing, Role};
 use crate::figure::page::{below, legend};
 use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
@@ -73,14 +73,15 @@ pub fn level(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let film = flat_film(maker, &scene, "60", 1024, &[]);
     let [drawn, hidden, _, outside] = counts(&*film);
     let label = format!("{drawn} drawn, {hidden} hidden, {outside} outside");
-    let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
+    let look = Look { nodes: false, ..Look::default() };
+    let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &look, label)]);
     let in_view = drawn + hidden;
     let caption = format!(
-        "A game level from above. Of its {} segments {} are occluders, those nearest to the eye. They and the \
-         rest of what is kept are {drawn} of {in_view} in view: {:.1} % of these are culled. The broken line \
-         is the depth estimation buffer: what lies beyond it, within what the occluders cover, is hidden. In \
-         the paper's Figure 1 82.7 % of a machine room are culled, outside the frustum or hidden; here that \
-         is {:.1} %.",
+        "A game level from above. Of its {} segments {} are occluders, those nearest to the eye. They and \
+         the rest of what is kept are {drawn} of {in_view} in view: {:.1} % of these are culled. The lines \
+         across the view are the depth estimation buffer: what lies beyond them, within what the \
+         occluders cover, is hidden. In the paper's Figure 1 82.7 % of a machine room are culled, outside \
+         the frustum or hidden; here that is {:.1} %.",
         scene.live().len(),
         occluder_prims(&*film),
         100.0 * hidden as f64 / in_view as f64,
@@ -95,13 +96,13 @@ pub fn level(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     ))
 }
 
-fn office_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Solid>>, SceneError> {
+fn city_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Solid>>, SceneError> {
     let options = LoadOptions::default();
-    let AnyScene::Solid(scene) = load("generate:building?polygons=6000&seed=7", &options, &Quiet)? else {
-        unreachable!("a building is in space")
+    let AnyScene::Solid(scene) = load("generate:city?polygons=6000&seed=7", &options, &Quiet)? else {
+        unreachable!("a city is in space")
     };
     let view = View { width: 256, height: 192, ..scene.paths()[0].views[0] };
-    let pairs = [("adapt", "false"), ("occluder-budget", "1500"), ("map-resolution", "64")];
+    let pairs = [("adapt", "false"), ("occluder-budget", "300"), ("map-resolution", "64")];
     Ok(maker.film(&scene, &view, OCCLUSION_MAPS, &pairs))
 }
 
@@ -117,19 +118,19 @@ fn pixels() -> Vec<Entry> {
 }
 
 pub fn hierarchy(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    let film = office_film(maker)?;
-    let built = film.picture(maps_built(&*film), STACKED, DepthScale::Linear);
-    let read = film.picture(culled_node(&*film, 12), MAPS, DepthScale::Linear);
-    let caption = "The occluders of an office in white, at the bottom, and above them the levels that come of \
-                   averaging 2 × 2 pixels, down to 4 × 4: a pixel's gray is the share of it that is covered. \
-                   Below the levels beside each other, at the step at which a node of the model has been \
-                   found within what is covered, with the pixels that were read.";
+    let film = city_film(maker)?;
+    let step = culled_node(&*film, 12);
+    let picture = |which| film.picture(step, which, DepthScale::Linear);
+    let caption = "The occluders of a street in white, at the bottom, and above them the levels that come \
+                   of averaging 2 × 2 pixels, down to 4 × 4: a pixel's gray is the share of it that is \
+                   covered. Below the levels beside each other. At this step a node of the model has been \
+                   found within what is covered; the pixels that were read for it are lit and numbered.";
     Ok(maker.page(
         Paper::TwoColumns,
         "Zhang et al. 1997, Figure 3: a hierarchy of occlusion maps",
         pixels(),
         caption,
-        &below(vec![built, read]),
+        &below(vec![picture(STACKED), picture(MAPS)]),
     ))
 }
 
@@ -137,13 +138,18 @@ pub fn thresholds(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("forest")?;
     let panel = |threshold: &str| {
         let more = [("opacity-threshold", threshold), ("map-resolution", "64")];
-        let film = flat_film(maker, &scene, "120", 1024, &more);
+        let film = flat_film(maker, &scene, "60", 1024, &more);
         let [drawn, hidden, presumed, _] = counts(&*film);
         let label =
             format!("threshold {threshold}: {drawn} drawn, {hidden} hidden, {presumed} presumed hidden");
-        flat_panel(&*film, film.events().len(), &Look { evidence: false, ..Look::default() }, label)
+        flat_panel(
+            &*film,
+            film.events().len(),
+            &Look { evidence: false, nodes: false, ..Look::default() },
+            label,
+        )
     };
-    let content = panels(WIDTH_PT, 2, &[panel("1"), panel("0.75")]);
+    let content = panels(WIDTH_PT, 2, &[panel("1"), panel("0.7")]);
     let caption = "A forest from above. Left a map pixel of 16 samples is opaque only if the occluders cover \
                    all of it. Right it is opaque with up to 4 samples black, so that what shows through \
                    small gaps is left out as well: presumed hidden, not proven. The paper's Figure 7 uses \
@@ -169,9 +175,9 @@ pub fn overlap(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let strips = film.picture(step, MAPS, DepthScale::Linear);
     let caption = "Flatland: the image is a line of 64 samples, and its maps are strips, white where the \
                    occluders cover them. A node of the hierarchy (yellow) lies behind the depth estimation \
-                   buffer, the broken line; its pixels are looked up from the level on which they are about \
-                   as large as it, and where one is not opaque, those below it. All are opaque, so the node \
-                   is hidden.";
+                   buffer, the line across the view; its pixels are looked up from the level on which they \
+                   are about as large as it, and where one is not opaque, those below it. All are opaque, \
+                   so the node is hidden.";
     Ok(maker.page(
         Paper::TwoColumns,
         "Zhang et al. 1997, Figure 8: the overlap test, in flatland",
@@ -192,9 +198,9 @@ mod tests {
         let scene = example("forest").expect("an example");
         let of = |threshold: &str| {
             let more = [("opacity-threshold", threshold), ("map-resolution", "64")];
-            counts(&*flat_film(&maker, &scene, "120", 1024, &more))
+            counts(&*flat_film(&maker, &scene, "60", 1024, &more))
         };
-        let ([exact, hidden, none, _], [fewer, _, presumed, _]) = (of("1"), of("0.75"));
+        let ([exact, hidden, none, _], [fewer, _, presumed, _]) = (of("1"), of("0.7"));
         assert!(none == 0 && hidden > 0 && presumed > 0 && fewer < exact, "{exact} and {fewer} drawn");
     }
 
@@ -204,6 +210,8 @@ mod tests {
         let film = street_film(&maker).expect("made");
         let step = culled_node(&*film, 12);
         assert!(step < film.events().len(), "some node is culled");
+        let city = city_film(&maker).expect("made");
+        assert!(culled_node(&*city, 12) < city.events().len(), "in space too");
         let next = film.events()[step..].iter().find_map(Event::verdict);
         assert_eq!(next, Some(Verdict::Hidden));
     }

@@ -19,12 +19,6 @@ pub fn culled_node<S: Faces>(film: &dyn Film<S>, most: u32) -> usize {
     best.map_or(film.events().len(), |(_, at)| at)
 }
 
-/// The step after the maps were built.
-pub fn maps_built<S: Faces>(film: &dyn Film<S>) -> usize {
-    let built = notes::<S, OcclusionMaps>(film).find(|(_, note)| matches!(note, Evidence::Built(_)));
-    built.map_or(film.events().len(), |(at, _)| at + 1)
-}
-
 /// How many primitives were drawn as occluders.
 pub fn occluder_prims<S: Faces>(film: &dyn Film<S>) -> u32 {
     let polygons = |note: &Evidence<S>| match note {
