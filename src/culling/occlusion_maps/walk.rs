@@ -317,12 +317,13 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             Ground::BesideImage | Ground::NoPixel => true,
             Ground::Overlap(found) => found.is_covered,
         };
-        let is_proven = match ground {
-            // Samples of the maps' own say nothing about those of the image, and a hole that is ignored may
-            // show something.
+        // Samples of the maps' own say nothing about those of the image, and a hole that is ignored may show
+        // something.
+        let is_sure = match ground {
             Ground::Overlap(found) => self.params.samples == Samples::Image && found.ignored == 0,
             _ => true,
         };
+        let is_proven = is_culled && is_sure;
         let bounds = self.index.tree().nodes()[node.at()].bounds;
         self.watch.note(move || {
             Evidence::Answered(Answered { node, bounds, pixels, ground, is_culled, is_proven })
