@@ -99,10 +99,9 @@ impl Budget {
         // Flatland is there to be looked at: of its few segments none costs more than a test.
         let overhead = if S::CORNERS == 2 { 0 } else { TEST * work.tests + MAPS };
         let is_losing = work.occluders + overhead > work.culled;
-        // One more loss after a pause is enough.
-        let was_off = self.losing >= LOSING;
         self.losing = if is_losing { self.losing + 1 } else { 0 };
-        if is_losing && (was_off || self.losing >= LOSING) {
+        // Losses before a pause count on, so that one more after it is enough.
+        if self.losing >= LOSING {
             (self.off, self.drawn) = (PAUSE, drawn);
         }
         self.adapted(before, work)

@@ -219,6 +219,8 @@ fn the_depth_estimation_buffer_keeps_the_farthest() {
     };
     write(&mut buffer, rect([0, 40], [0, 20]), 10.0);
     write(&mut buffer, rect([30, 64], [10, 64]), 20.0);
+    // A nearer one makes no entry nearer.
+    write(&mut buffer, rect([0, 64], [0, 32]), 5.0);
     let row = |y: u32| [0, 1, 2, 3].map(|x| (1.0 / buffer.held([x, y])).round());
     assert_eq!([row(0), row(1)], [[10.0, 20.0, 20.0, 20.0]; 2]);
     // Nothing touches the first column below: nothing is nearer than anything there.
@@ -368,6 +370,18 @@ fn occluders_end_at_the_z_plane() {
     assert_eq!(covered, 341);
 }
 
+/// Section 5.2.2: an occluder is as deep as its farthest corner, whatever of it is near.
+#[test]
+fn what_stands_before_the_far_end_of_a_wall_is_drawn() {
+    let (scene, view) = segments(&[[-2.0, 2.0, 8.0, 12.0], [3.9, 6.4, 4.1, 6.4]]);
+    for depth in [DepthKind::Estimation, DepthKind::Samples] {
+        // The wall, which looks larger, and not the segment.
+        let params = Params { selection: Selection::Size, ..flat_params(1, depth) };
+        let (drawn, ..) = Tried::new(scene.clone(), params).cull(&view);
+        assert_eq!(drawn, ids(&[0, 1]), "{depth:?}");
+    }
+}
+
 /// One box a wall makes one depth for all of it; pieces are known better.
 #[test]
 fn a_wall_in_pieces_hides_more() {
@@ -444,22 +458,26 @@ fn small_holes_are_presumed_not_proven() {
 /// Section 5.3.1: a clock on the wall is no occluder, nor is what is small.
 #[test]
 fn the_database_leaves_out_what_is_small_and_what_is_redundant() {
-    // A wall, a clock before it, something beside it, before it by more than 2 %, behind it, and small.
+    // Half a wall, a clock before it, something beside it, before it by more than 2 %, behind it, something
+    // small, and the other half.
     let (scene, _) = segments(&[
-        [-5.0, 0.0, 5.0, 0.0],
+        [-5.0, 0.0, 0.0, 0.0],
         [0.0, 0.05, 1.0, 0.05],
         [6.5, 0.05, 7.5, 0.05],
         [-2.0, 2.0, -1.0, 2.0],
         [2.0, -0.05, 3.0, -0.05],
         [20.0, 20.0, 20.01, 20.0],
+        [0.0, 0.0, 5.0, 0.0],
     ]);
     let mut parts = (*scene).clone().into_parts();
-    parts.faces = (0..6).map(|k| Face { corners: vec![2 * k, 2 * k + 1], prims: vec![PrimId(k)] }).collect();
+    parts.faces = (1..6).map(|k| Face { corners: vec![2 * k, 2 * k + 1], prims: vec![PrimId(k)] }).collect();
+    // The wall is in two pieces, neither of which is redundant for being on it.
+    parts.faces.push(Face { corners: vec![0, 13], prims: ids(&[0, 6]) });
     let scene = Arc::new(Scene::new(parts).expect("valid"));
     let params = Params { occluder_size: 5, ..flat_params(10, DepthKind::Estimation) };
     let tried = Tried::new(scene, params);
     let counts = tried.index.counts();
-    assert_eq!((counts.kept, counts.small, counts.redundant, counts.complex), (4, 1, 1, 0), "{counts:?}");
+    assert_eq!((counts.kept, counts.small, counts.redundant, counts.complex), (5, 1, 1, 0), "{counts:?}");
     let dropped = |p: u32| {
         let tree = tried.index.tree();
         let leaf = (0..tree.nodes().len() as u32)
@@ -467,7 +485,8 @@ fn the_database_leaves_out_what_is_small_and_what_is_redundant() {
             .find(|&n| tree.nodes()[n.at()].is_leaf() && tree.prims_below(n) == [PrimId(p)]);
         !tried.index.has_occluders(leaf.expect("a leaf a segment"))
     };
-    assert_eq!([0, 1, 2, 3, 4, 5].map(dropped), [false, true, false, false, false, true]);
+    let all = [0, 1, 2, 3, 4, 5, 6].map(dropped);
+    assert_eq!(all, [false, true, false, false, false, true, false]);
 }
 
 /// The exact forms over all of a building's path: nothing that is seen is left out, with any depth or choice.
