@@ -17,17 +17,6 @@ use crate::index::{Hierarchy, KdTree};
 use crate::raster::{Clusters, Drawable};
 use crate::scene::{Face, Progress, Scene};
 
-/// Why a leaf is no occluder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drop {
-    /// Its box is small beside the scene.
-    Small,
-    /// It lies on a larger face, as a clock on a wall.
-    Redundant,
-    /// It has many primitives for its size.
-    Complex,
-}
-
 /// How many leaves the database has, and how many it dropped, each by the first reason that held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -135,22 +124,16 @@ fn database<S: Drawable>(
         let prims = tree.prims_below(leaf);
         let bounds = &tree.nodes()[leaf.at()].bounds;
         // Section 5.3.1, its three criteria in its order. What holds nothing hides nothing either.
-        let drop = if prims.is_empty() || bounds.diagonal() < least {
-            Some(Drop::Small)
+        if prims.is_empty() || bounds.diagonal() < least {
+            counts.small += 1;
         } else if faces.iter().any(|face| face.covers(scene, bounds, prims)) {
-            Some(Drop::Redundant)
+            counts.redundant += 1;
+        } else if density(leaf) > COMPLEX * median {
+            counts.complex += 1;
         } else {
-            (density(leaf) > COMPLEX * median).then_some(Drop::Complex)
-        };
-        match drop {
-            Some(Drop::Small) => counts.small += 1,
-            Some(Drop::Redundant) => counts.redundant += 1,
-            Some(Drop::Complex) => counts.complex += 1,
-            None => {
-                counts.kept += 1;
-                counts.kept_prims += prims.len() as u32;
-                occluders[leaf.at()] = true;
-            }
+            counts.kept += 1;
+            counts.kept_prims += prims.len() as u32;
+            occluders[leaf.at()] = true;
         }
     }
     // Children follow their parents.
