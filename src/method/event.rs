@@ -122,6 +122,9 @@ pub trait Observer<Note> {
     /// Whether anyone is listening. Use it to skip work that only reports or fixes an order of work; never to
     /// change a decision.
     const LISTENS: bool = true;
+    /// Whether what notes hold is kept. Where it is only counted what they are, what takes long to find out
+    /// for them need not be.
+    const KEEPS: bool = Self::LISTENS;
     /// A fact in the shared vocabulary.
     fn event(&mut self, event: Event);
     /// A piece of evidence. The closure runs only if someone is listening.
@@ -220,6 +223,7 @@ pub trait Tallied {
 }
 
 impl<N: Tallied> Observer<N> for Tally {
+    const KEEPS: bool = false;
     #[inline]
     fn event(&mut self, event: Event) {
         match event {

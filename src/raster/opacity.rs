@@ -85,56 +85,62 @@ impl Opacity {
     }
     /// Makes the maps of what is drawn into tiles of the same size.
     pub fn build(&mut self, tiles: &Tiles) {
-        self.build_from(|x, y| tiles.covered_pixels(PyramidCell { level: PyramidCell::TILE, x, y }));
+        self.build_from(|strip, row| tiles.covered_line(strip, row));
     }
     /// The same from the depths of the samples, row by row: those nearer than `depth_far` are covered.
     pub fn build_from_depths(&mut self, depths: &[f32], depth_far: f32) {
-        let [width, height] = self.size;
-        self.build_from(|tile_x, tile_y| {
-            let mut mask = 0;
-            for bit in 0..32 {
-                let (x, y) = (u32::from(tile_x) * 8 + bit % 8, u32::from(tile_y) * 4 + bit / 8);
-                let is_covered = x < width && y < height && depths[(y * width + x) as usize] > depth_far;
-                mask |= u32::from(is_covered) << bit;
-            }
-            mask
+        let [width, height] = self.size.map(|n| n as usize);
+        self.build_from(|strip, row| {
+            [0, 1, 2, 3].map(|k| {
+                let at = |bit: usize| (32 * strip + 8 * k + bit % 8, 4 * row + bit / 8);
+                let is_covered = |(x, y)| x < width && y < height && depths[y * width + x] > depth_far;
+                (0..32).fold(0, |mask, bit| mask | u32::from(is_covered(at(bit))) << bit)
+            })
         });
     }
-    /// Counts the black samples of level 0 from masks of tiles of 8×4 samples, bit `8 y + x`, given by column
-    /// and row; then adds up.
-    fn build_from(&mut self, mask: impl Fn(u16, u16) -> u32) {
-        let ([width, height], shift, is_flat) = (self.size, self.shift, self.is_flat);
-        let map = &mut self.levels[0];
-        map.black.fill(0);
-        // A tile holds several pixels, or lies in one.
-        let (wide, high) = (8 >> shift.min(3), if is_flat { 1 } else { 4 >> shift.min(2) });
-        let (across, down) = (8 / wide, if is_flat { 1 } else { 4 / high });
-        let row = 0xff >> (8 - across);
-        let square = (0..down).fold(0, |bits, y| bits | row << (8 * y));
-        for x in 0..width.div_ceil(8) {
-            for y in 0..height.div_ceil(4) {
-                let is_whole = 8 * x + 8 <= width && 4 * y + 4 <= height;
-                let present = if is_whole { u32::MAX } else { present_of_tile([width, height], [x, y]) };
-                let black = !mask(x as u16, y as u16) & present;
-                // Most tiles are covered as wholes.
-                if black == 0 {
-                    continue;
-                }
-                for cell in 0..wide * high {
-                    let (i, j) = (cell % wide, cell / wide);
-                    let bits = black & square << (8 * down * j + across * i);
-                    let (to_x, to_y) = ((8 * x + i * across) >> shift, (4 * y + j * down) >> shift);
-                    if to_x < map.columns && to_y < map.rows {
-                        // All or nothing of it is black as a rule, which needs no counting.
-                        let count = if black == u32::MAX { across * down } else { bits.count_ones() };
-                        map.black[(to_y * map.columns + to_x) as usize] += count;
-                    }
+    /// Counts the black samples of level 0 from masks of four tiles of 8×4 samples side by side, bit
+    /// `8 y + x`, given by strip of 32 samples and row; then adds up.
+    fn build_from(&mut self, masks: impl Fn(usize, usize) -> [u32; 4]) {
+        self.blacken(0);
+        for strip in 0..self.size[0].div_ceil(32) as usize {
+            for row in 0..self.size[1].div_ceil(4) as usize {
+                let masks = masks(strip, row);
+                let is_inside =
+                    32 * strip + 32 <= self.size[0] as usize && 4 * row + 4 <= self.size[1] as usize;
+                // Most is covered as a whole, or not at all.
+                if self.shift == 2 && !self.is_flat && is_inside && masks == [u32::MAX; 4] {
+                    let map = &mut self.levels[0];
+                    map.black[row * map.columns as usize + 8 * strip..][..8].fill(0);
+                } else if masks != [0; 4] {
+                    (0..4).for_each(|k| self.whiten([(4 * strip + k) as u32, row as u32], masks[k]));
                 }
             }
         }
         for level in 1..self.levels.len() {
             let (below, above) = self.levels.split_at_mut(level);
             add_up(&below[level - 1], &mut above[0]);
+        }
+    }
+    /// Takes what is covered of a tile off the black samples of level 0.
+    fn whiten(&mut self, [x, y]: [u32; 2], mask: u32) {
+        let ([width, height], shift, is_flat) = (self.size, self.shift, self.is_flat);
+        if mask == 0 || 8 * x >= width {
+            return;
+        }
+        let map = &mut self.levels[0];
+        // A tile holds several pixels, or lies in one.
+        let (across, down) = (1 << shift.min(3), if is_flat { 1 } else { 1 << shift.min(2) });
+        let (wide, high) = (8 / across, if is_flat { 1 } else { 4 / down });
+        let row = 0xff >> (8 - across);
+        let square = (0..down).fold(0, |bits, y| bits | row << (8 * y));
+        let covered = mask & present_of_tile([width, height], [x, y]);
+        for cell in 0..wide * high {
+            let (i, j) = (cell % wide, cell / wide);
+            let bits = covered & square << (8 * down * j + across * i);
+            let (to_x, to_y) = ((8 * x + i * across) >> shift, (4 * y + j * down) >> shift);
+            if to_x < map.columns && to_y < map.rows {
+                map.black[(to_y * map.columns + to_x) as usize] -= bits.count_ones();
+            }
         }
     }
 
@@ -225,12 +231,15 @@ fn add_up(below: &Map, to: &mut Map) {
     let (wide, columns) = (below.columns as usize, to.columns as usize);
     for (y, to) in to.black.chunks_exact_mut(columns).enumerate() {
         let first = &below.black[2 * y * wide..][..wide];
-        // The last row may have one below it only.
-        let second =
-            if 2 * y + 1 < below.rows as usize { &below.black[(2 * y + 1) * wide..][..wide] } else { &[] };
-        let pairs = first.chunks(2).zip(second.chunks(2).map(Some).chain(std::iter::repeat(None)));
-        for (to, (a, b)) in to.iter_mut().zip(pairs) {
-            *to = a.iter().sum::<u32>() + b.map_or(0, |b| b.iter().sum());
+        // The last row may have one below it only, and the last column one beside it.
+        let has_second = 2 * y + 1 < below.rows as usize;
+        let second = if has_second { &below.black[(2 * y + 1) * wide..][..wide] } else { first };
+        let half = u32::from(!has_second);
+        for ((to, a), b) in to.iter_mut().zip(first.chunks_exact(2)).zip(second.chunks_exact(2)) {
+            *to = (a[0] + a[1] + b[0] + b[1]) >> half;
+        }
+        if wide % 2 == 1 {
+            to[columns - 1] = (first[wide - 1] + second[wide - 1]) >> half;
         }
     }
 }

@@ -93,16 +93,16 @@ impl<S: Faces> Levels for Buffer<S> {
 }
 
 /// Tiles as levels: pixels, tiles of 8×4 and blocks of 32×16.
-pub struct TileLevels<'a> {
-    tiles: &'a Tiles,
+pub struct TileLevels {
+    tiles: Tiles,
     depths: Vec<f32>,
     begun: Vec<f32>,
 }
 
 impl<S: Faces> Tiled<S> {
     /// For pictures: all pixels are worked out, in a copy.
-    pub fn levels(&self) -> TileLevels<'_> {
-        let tiles = self.tiles();
+    pub fn levels(&self) -> TileLevels {
+        let tiles = self.settled();
         let depths = if self.projected().is_some() { tiles.clone().depths(Isa::best()) } else { Vec::new() };
         let far = self.projected().map_or(0.0, |p| 1.0 / p.view.eye.far);
         let [columns, rows] = tiles.size(0);
@@ -112,11 +112,12 @@ impl<S: Faces> Tiled<S> {
             let (mask, near) = tiles.begun(cell);
             if mask >> (y % 4 * 8 + x % 8) & 1 == 1 { near } else { far }
         };
-        TileLevels { tiles, depths, begun: (0..columns * rows).map(begun).collect() }
+        let begun = (0..columns * rows).map(begun).collect();
+        TileLevels { tiles, depths, begun }
     }
 }
 
-impl TileLevels<'_> {
+impl TileLevels {
     /// The farthest depth that is held for a cell, `1/w`.
     fn farthest(&self, cell: PyramidCell) -> f32 {
         if cell.level == 0 {
@@ -126,7 +127,7 @@ impl TileLevels<'_> {
     }
 }
 
-impl Levels for TileLevels<'_> {
+impl Levels for TileLevels {
     fn levels(&self) -> Vec<u8> {
         vec![0, PyramidCell::TILE, PyramidCell::BLOCK]
     }

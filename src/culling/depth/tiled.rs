@@ -97,6 +97,25 @@ impl<S: Faces> Tiled<S> {
         self.draw(node, one_sided, true);
         &self.fates
     }
+    /// Draws all that is a node's own and faces the eye, with fronts only or from both sides. What fills no
+    /// vector waits: nothing may be asked before [`Tiled::settle`].
+    pub fn gather(&mut self, node: NodeId, one_sided: bool) {
+        self.tiles.gather(&self.clusters, Self::groups(node)[0], one_sided, Isa::best());
+    }
+    /// The primitives that [`Tiled::gather`] draws of a node.
+    pub fn gathered_of(&self, node: NodeId) -> impl Iterator<Item = PrimId> {
+        self.clusters.prims_of(Self::groups(node)[0])
+    }
+    /// Draws what waits. The primitives, of all that were gathered, that may show; one may be told twice.
+    pub fn settle(&mut self) -> impl Iterator<Item = PrimId> {
+        self.tiles.settle(&self.clusters, Isa::best())
+    }
+    /// A copy of the tiles in which nothing waits.
+    pub fn settled(&self) -> Tiles {
+        let mut tiles = self.tiles.clone();
+        drop(tiles.settle(&self.clusters, Isa::best()));
+        tiles
+    }
     fn draw(&mut self, node: NodeId, one_sided: bool, tested: bool) {
         let [own, shared] = Self::groups(node);
         for (group, skipped) in [(own, &[][..]), (shared, &self.drawn[..])] {

@@ -282,7 +282,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         let tiles = self.tiled.tiles();
         self.watch.note(move || {
-            let tile = is_tested.then(|| deciding(tiles, scene, view, prim)).flatten();
+            let tile = (is_tested && O::KEEPS).then(|| deciding(tiles, scene, view, prim)).flatten();
             let drawn = Rasterized { prim, tile, is_hidden, is_tested, surfaces, window: None };
             Evidence::Depth(DepthNote::Rasterized(drawn))
         });

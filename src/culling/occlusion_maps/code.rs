@@ -40,15 +40,28 @@ pub(super) const CODE: &[CodeLine] = &[
     CodeLine::new("Cull:6", "  if R covers no pixel: T is culled, return"),
     CodeLine::new("Cull:7", "  if z is not beyond the plane Z: T may be seen"),
     CodeLine::new("Cull:8", "  if some entry that R touches is as far as z: T may be seen"),
-    CodeLine::new("Cull:9", "  if some sample under R that is covered is as far as z: T may be seen"),
-    CodeLine::new("Cull:10", "  if OverlapTest(R): T is culled, return"),
-    CodeLine::new("Cull:11", "  if T is a leaf: Draw(T)"),
-    CodeLine::new("Cull:12", "  else for each child T' of T: Cull(T')"),
+    CodeLine::new("Cull:9", "  if OverlapTest(R): T is culled, return"),
+    CodeLine::departing(
+        "Cull:10",
+        "  if not OverlapTest(R): T may be seen",
+        "depth is compared before overlap is tested (3)",
+    ),
+    CodeLine::new(
+        "Cull:11",
+        "  if every sample under R that is covered is nearer than z: T is culled, return",
+    ),
+    CodeLine::new("Cull:12", "  if T is a leaf: Draw(T)"),
+    CodeLine::new("Cull:13", "  else for each child T' of T: Cull(T')"),
     CodeLine::new("Draw:1", "Draw(leaf T)"),
     CodeLine::new("Draw:2", "  draw all of T"),
     CodeLine::new("Draw:3", "  for each polygon p of T"),
     CodeLine::new("Draw:4", "    if p faces away from the eye: next p"),
-    CodeLine::new("Draw:5", "    draw p"),
+    CodeLine::departing(
+        "Draw:5",
+        "    if p was drawn in white, and was nowhere nearer than what was drawn before it: next p",
+        "occluders are drawn again as they are",
+    ),
+    CodeLine::new("Draw:6", "    draw p"),
     CodeLine::departing(
         "Overlap:1",
         "OverlapTest(R): for each map pixel P under R, where P is about as large",
@@ -100,15 +113,17 @@ pub(super) mod line {
     pub const NO_PIXEL: u8 = line(CODE, "Cull:6");
     pub const BEHIND_PLANE: u8 = line(CODE, "Cull:7");
     pub const BEHIND_ENTRIES: u8 = line(CODE, "Cull:8");
-    pub const BEHIND_SAMPLES: u8 = line(CODE, "Cull:9");
-    pub const OVERLAP: u8 = line(CODE, "Cull:10");
-    pub const LEAF: u8 = line(CODE, "Cull:11");
-    pub const CHILDREN: u8 = line(CODE, "Cull:12");
+    pub const OVERLAP: u8 = line(CODE, "Cull:9");
+    pub const NOT_COVERED: u8 = line(CODE, "Cull:10");
+    pub const BEHIND_SAMPLES: u8 = line(CODE, "Cull:11");
+    pub const LEAF: u8 = line(CODE, "Cull:12");
+    pub const CHILDREN: u8 = line(CODE, "Cull:13");
     pub const DRAW: u8 = line(CODE, "Draw:1");
     pub const DRAW_ALL: u8 = line(CODE, "Draw:2");
     pub const EACH_PRIM: u8 = line(CODE, "Draw:3");
     pub const FACES_AWAY: u8 = line(CODE, "Draw:4");
-    pub const DRAW_PRIM: u8 = line(CODE, "Draw:5");
+    pub const SHOWS_NOWHERE: u8 = line(CODE, "Draw:5");
+    pub const DRAW_PRIM: u8 = line(CODE, "Draw:6");
     pub const TEST_EACH: u8 = line(CODE, "Overlap:1");
     pub const TEST_CHECK: u8 = line(CODE, "Overlap:2");
     pub const COVERED: u8 = line(CODE, "Overlap:3");
@@ -135,23 +150,38 @@ pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("BudgetAdapted", &["Frame:15"]),
     ("CullingPaused", &["Frame:2"]),
     ("OccluderHeld", &["Cull:3"]),
-    ("DepthCompared", &["Cull:7", "Cull:8", "Cull:9"]),
-    ("CellRead", &["Cull:9"]),
-    ("TileRefreshed", &["Cull:9"]),
+    ("DepthCompared", &["Cull:7", "Cull:8", "Cull:11"]),
+    ("CellRead", &["Cull:11"]),
+    ("TileRefreshed", &["Cull:11"]),
     ("MapRead", &["Check:2", "Check:4", "Check:6"]),
-    ("OcclusionTested", &["Cull:5", "Cull:6", "Cull:7", "Cull:8", "Cull:9", "Cull:10"]),
+    ("OcclusionTested", &["Cull:5", "Cull:6", "Cull:7", "Cull:8", "Cull:9", "Cull:10", "Cull:11"]),
     ("OrientationTested", &["Draw:4"]),
+    ("PrimitiveBehind", &["Draw:5"]),
     ("NodeDecided outside", &["Cull:2"]),
-    ("NodeDecided hidden", &["Cull:6", "Cull:10"]),
-    ("NodeDecided presumed", &["Cull:6", "Cull:10"]),
-    ("NodeDecided partial", &["Cull:12"]),
-    ("NodeDecided visible", &["Cull:11"]),
+    ("NodeDecided hidden", &["Cull:6", "Cull:9", "Cull:11"]),
+    ("NodeDecided presumed", &["Cull:6", "Cull:9", "Cull:11"]),
+    ("NodeDecided partial", &["Cull:13"]),
+    ("NodeDecided visible", &["Cull:12"]),
     ("PrimDecided faces-away", &["Draw:4"]),
-    ("PrimDecided visible", &["Draw:5"]),
+    ("PrimDecided hidden", &["Draw:5"]),
+    ("PrimDecided visible", &["Draw:6"]),
 ];
 
 /// Where it differs from the paper.
 pub(super) const DEPARTURES: &[Departure] = &[
+    Departure {
+        section: "3",
+        what: "overlap is tested before depths are compared",
+        why: "to compare the depths of samples takes longer, and most of what may be seen is not covered",
+        when: When::With("depth", "samples"),
+    },
+    Departure {
+        section: "3",
+        what: "of an occluder those polygons are left out that were nowhere nearer than what had been drawn \
+               in white before them; not with depth=plane, nor with samples of the maps' own",
+        why: "drawing them in white has shown that they are hidden",
+        when: When::Always,
+    },
     Departure {
         section: "4.1",
         what: "the maps are made of the image's own samples, and a map pixel is a square of them; \
@@ -195,7 +225,7 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "5.3.1",
-        what: "small is below 5 ‰ of the scene (occluder-size); redundant, closer than 2 % before one of the \
+        what: "small is below 2 ‰ of the scene (occluder-size); redundant, closer than 2 % before one of the \
                1,000 largest faces and within it; complex, above 8 times the median of primitives for its \
                size",
         why: "the paper gives no numbers",
@@ -230,10 +260,12 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::OFF | line::ADAPT | line::BEYOND => params.adapts,
         line::PLANE | line::BEHIND_PLANE => is_plane,
         line::WRITE | line::BEHIND_ENTRIES => params.depth == DepthKind::Estimation,
-        line::BEHIND_SAMPLES => params.depth == DepthKind::Samples,
-        line::HOLDS => params.depth != DepthKind::Samples,
+        line::NOT_COVERED | line::BEHIND_SAMPLES => params.depth == DepthKind::Samples,
+        line::HOLDS | line::OVERLAP => params.depth != DepthKind::Samples,
         line::DRAW_ALL => !params.surfaces.one_sided,
-        line::EACH_PRIM | line::FACES_AWAY | line::DRAW_PRIM => params.surfaces.one_sided,
+        line::EACH_PRIM | line::DRAW_PRIM => params.surfaces.one_sided || params.knows_what_shows(),
+        line::FACES_AWAY => params.surfaces.one_sided,
+        line::SHOWS_NOWHERE => params.knows_what_shows(),
         _ => true,
     }
 }

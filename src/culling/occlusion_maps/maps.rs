@@ -5,7 +5,7 @@ use super::depth::DepthBuffer;
 use super::index::Databases;
 use super::{Params, Samples};
 use crate::culling::depth::{Faces, TileLevels, TileStep, Tiled};
-use crate::geometry::{NodeId, PixelRect, Space, View};
+use crate::geometry::{NodeId, PixelRect, PrimId, Space, View};
 use crate::raster::{Opacity, PyramidCell};
 use crate::scene::Scene;
 
@@ -37,6 +37,10 @@ pub(crate) struct Maps<S: Faces> {
     pixel: u32,
     /// Whether a plane cuts occluders off.
     has_plane: bool,
+    /// Of each primitive whether it may show; all but those that are drawn and do not.
+    shows: Vec<bool>,
+    /// What is drawn.
+    drawn: Vec<PrimId>,
 }
 
 impl<S: Faces> Default for Maps<S> {
@@ -48,6 +52,8 @@ impl<S: Faces> Default for Maps<S> {
             view: None,
             pixel: 0,
             has_plane: false,
+            shows: Vec::new(),
+            drawn: Vec::new(),
         }
     }
 }
@@ -86,6 +92,11 @@ impl<S: Faces> Maps<S> {
         self.opacity.clear(size, shift, is_flat);
         self.buffer.clear([view.width, view.height], params.depth_resolution);
         (self.view, self.pixel, self.has_plane) = (Some(samples), pixel, false);
+        // Of many primitives few are drawn.
+        for prim in self.drawn.drain(..) {
+            self.shows[prim.at()] = true;
+        }
+        self.shows.resize(scene.prim_count(), true);
     }
     /// Makes a change.
     pub fn step(&mut self, step: MapStep) {
@@ -98,17 +109,27 @@ impl<S: Faces> Maps<S> {
                 self.has_plane = true;
             }
             MapStep::Cover(node, one_sided) => {
-                self.tiled.step(TileStep::Draw(node, one_sided));
+                self.tiled.gather(node, one_sided);
+                for prim in self.tiled.gathered_of(node) {
+                    self.shows[prim.at()] = false;
+                    self.drawn.push(prim);
+                }
             }
             MapStep::Write(touched, farthest) => self.buffer.write(touched, farthest),
             // A polygon that crosses the plane sets the bits of all its pixels: only depths tell those before
             // it from those beyond.
             MapStep::Build if self.has_plane => {
+                drop(self.tiled.settle());
                 let far = self.tiled.projected().map_or(0.0, |p| 1.0 / p.view.eye.far);
                 let depths = self.tiled.depths();
                 self.opacity.build_from_depths(&depths, far);
             }
-            MapStep::Build => self.opacity.build(self.tiled.tiles()),
+            MapStep::Build => {
+                for prim in self.tiled.settle() {
+                    self.shows[prim.at()] = true;
+                }
+                self.opacity.build(self.tiled.tiles());
+            }
             MapStep::Refresh(cell) => {
                 self.tiled.step(TileStep::Refresh(cell));
             }
@@ -117,6 +138,11 @@ impl<S: Faces> Maps<S> {
     /// The levels of opacity.
     pub fn opacity(&self) -> &Opacity {
         &self.opacity
+    }
+    /// Whether a primitive may show: it is no occluder, or one that was nearer in some tile than what was
+    /// drawn before it.
+    pub fn shows(&self, prim: PrimId) -> bool {
+        self.shows[prim.at()]
     }
     /// The depth estimation buffer.
     pub fn buffer(&self) -> &DepthBuffer {
@@ -127,7 +153,7 @@ impl<S: Faces> Maps<S> {
         self.pixel
     }
     /// The tiles that occluders are drawn into, for pictures.
-    pub fn levels(&self) -> TileLevels<'_> {
+    pub fn levels(&self) -> TileLevels {
         self.tiled.levels()
     }
     /// The same, for questions.

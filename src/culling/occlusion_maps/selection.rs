@@ -51,7 +51,8 @@ pub(crate) struct Last<'a> {
 /// A set that was chosen in the last frame stays while it ranks within so many times the limit.
 const KEEPS: f32 = 1.25;
 
-/// The leaves of the occluder database in the frustum, in the order in which they are taken.
+/// The leaves of the occluder database in the frustum, in the order in which they are taken, as far as they
+/// can be within the limit; and how many there are.
 pub(crate) fn candidates<S: Drawable>(
     index: &Databases<S>,
     view: &View<S>,
@@ -59,7 +60,7 @@ pub(crate) fn candidates<S: Drawable>(
     order: Order,
     limit: u32,
     last: &Last<'_>,
-) -> Vec<Candidate> {
+) -> (Vec<Candidate>, u32) {
     let mut found = Vec::new();
     gather(index, view, frustum, projection, (NodeId(0), Frustum::<S::Vector>::ALL), &mut found);
     let key = |c: &Candidate| match order {
@@ -68,20 +69,55 @@ pub(crate) fn candidates<S: Drawable>(
         // Larger depths are nearer.
         Order::Nearest => -c.nearest,
     };
+    let comes_first = |c: &Candidate| match order {
+        Order::By(Selection::Visible) => last.drawn[c.node.at()],
+        _ => false,
+    };
     // Equal ones by number, so that every run takes the same.
-    found.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.node.cmp(&b.node)));
-    let mut sum = 0.0;
+    let in_order = |a: &Candidate, b: &Candidate| {
+        let first = comes_first(b).cmp(&comes_first(a));
+        first.then(key(a).total_cmp(&key(b))).then(a.node.cmp(&b.node))
+    };
+    let in_view = found.len() as u32;
+    let ranked = sort_first(&mut found, KEEPS * limit as f32, in_order);
+    found.truncate(ranked);
     for c in &mut found {
-        sum += c.polygons as f32;
         c.is_kept = match order {
             // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
-            Order::By(Selection::Distance) => last.occluders[c.node.at()] && sum <= KEEPS * limit as f32,
-            Order::By(Selection::Visible) => last.drawn[c.node.at()],
-            _ => false,
+            Order::By(Selection::Distance) => last.occluders[c.node.at()],
+            _ => comes_first(c),
         };
     }
     found.sort_by_key(|c| !c.is_kept);
-    found
+    (found, in_view)
+}
+
+/// Puts those first, in order, that hold more than `most` primitives together, or all. How many they are.
+fn sort_first(
+    found: &mut [Candidate],
+    most: f32,
+    in_order: impl Fn(&Candidate, &Candidate) -> std::cmp::Ordering,
+) -> usize {
+    // About as many as that takes, and twice as many as long as they do not do.
+    let mut count = 64;
+    loop {
+        count = count.min(found.len());
+        if count < found.len() {
+            found.select_nth_unstable_by(count, &in_order);
+        }
+        found[..count].sort_unstable_by(&in_order);
+        let mut sum = 0.0;
+        for (at, c) in found[..count].iter().enumerate() {
+            sum += c.polygons as f32;
+            if sum > most {
+                return at + 1;
+            }
+        }
+        if count == found.len() {
+            return count;
+        }
+        count *= 4;
+    }
 }
 
 /// Frustum culling of the occluder database (Section 3, phase 1).

@@ -9,10 +9,10 @@ use super::maps::{MapStep, Maps};
 use super::overlap::{self, MapRead, Overlap, overlap_test};
 use super::selection::{Candidate, Last, Order, candidates};
 use super::{DepthKind, Memory, Params, Samples};
-use crate::culling::depth::{Asking, Faces, Stage, footprint};
+use crate::culling::depth::{Asking, DepthNote, Faces, Rasterized, Stage, deciding, footprint};
 use crate::drawing::Subject;
 use crate::geometry::{
-    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, Projection, View, farthest_depth,
+    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View, farthest_depth,
 };
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
@@ -115,9 +115,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         };
         let last = Last { occluders: &self.memory.occluders, drawn: &self.memory.drawn };
         let cameras = (&self.frustum, &self.projection);
-        let all = candidates(self.index, self.view, cameras, order, limit, &last);
+        let (all, count) = candidates(self.index, self.view, cameras, order, limit, &last);
         self.line(line::SORT);
-        let (count, counts) = (all.len() as u32, self.index.counts());
+        let counts = self.index.counts();
         self.watch.note(move || Evidence::Gathered(count, counts));
         self.memory.occluders.fill(false);
         self.memory.scratch.occluders.clear();
@@ -225,9 +225,9 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         });
     }
 
-    /// Culls a node and all below it. `is_behind`: whether a node above is behind the occluders, and so this
-    /// one is.
-    fn cull(&mut self, id: NodeId, planes: u8, is_behind: bool) {
+    /// Culls a node and all below it. `is_known`: whether a node above passed the first of both tests, and so
+    /// this one does: it is behind the occluders, or, where depths of samples are compared, covered.
+    fn cull(&mut self, id: NodeId, planes: u8, is_known: bool) {
         let node = &self.index.tree().nodes()[id.at()];
         let bounds = &node.bounds;
         self.watch.event(Event::Entered(id));
@@ -244,14 +244,14 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
-        let found = if self.memory.budget.is_on() { self.test(id, is_behind) } else { Found::Open(false) };
-        let is_behind = match found {
+        let found = if self.memory.budget.is_on() { self.test(id, is_known) } else { Found::Open(false) };
+        let is_known = match found {
             Found::Culled { is_proven } => {
                 self.work.culled += self.index.tree().prims_below(id).len() as u32;
                 self.memory.drawn[id.at()] = false;
                 return self.leave(id, if is_proven { Verdict::Hidden } else { Verdict::Presumed });
             }
-            Found::Open(is_behind) => is_behind,
+            Found::Open(is_known) => is_known,
         };
         self.line(line::LEAF);
         match node.children() {
@@ -265,7 +265,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 self.watch.event(Event::DecidedNode(id, Verdict::Partial));
                 for child in children {
                     self.line(line::CHILDREN);
-                    self.cull(child, cutting, is_behind);
+                    self.cull(child, cutting, is_known);
                 }
                 self.watch.event(Event::Left(id));
             }
@@ -277,7 +277,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// Section 3, phase 2: "only objects that fail one of the latter two tests (depth or overlap) are
     /// rendered".
-    fn test(&mut self, id: NodeId, is_behind: bool) -> Found {
+    fn test(&mut self, id: NodeId, is_known: bool) -> Found {
         if self.params.depth != DepthKind::Samples {
             self.line(line::HOLDS);
             // Neither in the buffer nor before the plane could it be behind itself.
@@ -303,13 +303,35 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if image.pixels.is_empty() {
             return self.answer(id, image.pixels, Ground::NoPixel);
         }
-        if !is_behind && !self.is_behind(id, image) {
+        if self.params.depth == DepthKind::Samples {
+            return self.test_samples(id, image, is_known);
+        }
+        if !is_known && !self.is_behind(id, image) {
             return self.answer(id, image.pixels, Ground::NotBehind);
         }
         self.line(line::OVERLAP);
         let found = self.overlaps(id, image.pixels);
         self.line(line::OVERLAP);
         self.answer(id, image.pixels, Ground::Overlap(found))
+    }
+    /// The same where depths of samples are compared, which takes longer than to test overlap.
+    fn test_samples(&mut self, id: NodeId, image: BoxImage, is_covered: bool) -> Found {
+        let mut found = Overlap { is_covered, ..Overlap::default() };
+        if !is_covered {
+            self.line(line::NOT_COVERED);
+            found = self.overlaps(id, image.pixels);
+            self.line(line::NOT_COVERED);
+            if !found.is_covered {
+                return self.answer(id, image.pixels, Ground::Overlap(found));
+            }
+        }
+        let ground = if self.is_behind(id, image) { Ground::Overlap(found) } else { Ground::NotBehind };
+        let answer = self.answer(id, image.pixels, ground);
+        match answer {
+            // What was ignored for it is asked for anew below.
+            Found::Open(_) => Found::Open(found.ignored == 0),
+            culled => culled,
+        }
     }
     fn answer(&mut self, node: NodeId, pixels: PixelRect, ground: Ground) -> Found {
         let is_culled = match ground {
@@ -379,24 +401,46 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.memory.drawn[leaf.at()] = true;
         self.line(line::DRAW);
         let prims = self.index.tree().prims_below(leaf);
-        if !self.params.surfaces.one_sided {
+        let one_sided = self.params.surfaces.one_sided;
+        let is_occluder = self.memory.scratch.holds[leaf.at()] && self.params.knows_what_shows();
+        if !one_sided && !is_occluder {
             self.line(line::DRAW_ALL);
             return self.out.prims.extend_from_slice(prims);
         }
-        let (scene, view) = (self.scene, self.view);
         for &prim in prims {
             self.line(line::EACH_PRIM);
-            self.line(line::FACES_AWAY);
-            // Facing is a matter of each primitive and says nothing of the leaf.
-            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-            if scene.faces_away(prim, view.eye.position) {
-                self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
-            } else {
-                self.line(line::DRAW_PRIM);
-                self.out.prims.push(prim);
-                self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+            if one_sided {
+                self.line(line::FACES_AWAY);
+                // Facing is a matter of each primitive and says nothing of the leaf.
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+                if self.scene.faces_away(prim, self.view.eye.position) {
+                    self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
+                    continue;
+                }
             }
+            if is_occluder {
+                self.line(line::SHOWS_NOWHERE);
+                if !self.maps.shows(prim) {
+                    self.leave_out(prim);
+                    continue;
+                }
+            }
+            self.line(line::DRAW_PRIM);
+            self.out.prims.push(prim);
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
         }
+    }
+    /// Leaves out a primitive of an occluder that is known to show nowhere.
+    fn leave_out(&mut self, prim: PrimId) {
+        let (scene, view, surfaces) = (self.scene, self.view, self.params.surfaces);
+        let tiles = self.maps.tiled().tiles();
+        self.watch.note(move || {
+            let tile = O::KEEPS.then(|| deciding(tiles, scene, view, prim)).flatten();
+            let drawn = Rasterized { prim, tile, is_hidden: true, is_tested: true, surfaces, window: None };
+            Evidence::Depth(DepthNote::Rasterized(drawn))
+        });
+        self.watch.event(Event::DecidedPrim(prim, Verdict::Hidden));
+        self.work.culled += 1;
     }
 }
 
@@ -405,7 +449,7 @@ enum Found {
     Culled {
         is_proven: bool,
     },
-    /// It may be seen; whether all of it is behind the occluders.
+    /// It may be seen; whether all of it passes the first of both tests.
     Open(bool),
 }
 

@@ -247,6 +247,19 @@ impl Clusters {
             }
         }
     }
+    /// The scene's primitives of some tags.
+    pub(super) fn named(&self, tags: &[i32]) -> impl Iterator<Item = PrimId> {
+        let ids = |tag: i32| {
+            let [a, b] = self.ids[(tag >> 2) as usize];
+            // A triangle is both of its parts.
+            [(tag & 1 != 0).then_some(a), (tag & 2 != 0).then_some(b)]
+        };
+        tags.iter().flat_map(move |&tag| ids(tag)).flatten()
+    }
+    /// The scene's primitives of a group that are in clusters.
+    pub fn prims_of(&self, group: usize) -> impl Iterator<Item = PrimId> {
+        self.of_group(group).iter().flat_map(|c| self.ids[c.prims.clone()].as_flattened().iter().copied())
+    }
     /// Bytes that they take.
     pub fn bytes(&self) -> usize {
         let columns = self.points.iter().chain(&self.planes).map(|v| size_of_val(&v[..])).sum::<usize>();

@@ -5,7 +5,7 @@
 //! A tile's depths bound what covers it; where they do not decide, its exact depths do (`resolve`).
 
 use super::look::Asked;
-use super::query::{first_pixel, look_closer, tile_at};
+use super::query::{cell_at, first_pixel, look_closer, reached, tile_at};
 use super::wide::{Wide, Work};
 use super::{Hears, Outcome, Read, Resolved, Tiles};
 use crate::geometry::PixelRect;
@@ -32,31 +32,29 @@ impl<H: Hears> Work for Behind<'_, H> {
         let [left, right, top, bottom] = asked.blocks();
         // What is large mostly begins before something that is drawn.
         for row in top..bottom {
-            for strip in left..right {
-                let nearest = self.tiles.block_near[row * self.tiles.stride() + strip];
-                let all = if self.tiles.is_flat { 0xf } else { 0xffff };
-                let is_inside = asked.tiles_inside(strip, row, self.tiles.is_flat) == all;
-                if is_inside && nearest > self.tiles.camera.depth_far && self.nearest >= nearest {
-                    let cell = PyramidCell { level: PyramidCell::BLOCK, x: strip as u16, y: row as u16 };
-                    self.read(cell, nearest, Outcome::Shows);
-                    return false;
+            for begin in (left..right).step_by(L::N) {
+                let mut before = l.bits(self.begins_before(l, begin, row, right));
+                while before != 0 {
+                    let strip = begin + before.trailing_zeros() as usize;
+                    before &= before - 1;
+                    let all = if self.tiles.is_flat { 0xf } else { 0xffff };
+                    if asked.tiles_inside(strip, row, self.tiles.is_flat) == all {
+                        let nearest = self.tiles.block_near[row * self.tiles.stride() + strip];
+                        self.read(cell_at(PyramidCell::BLOCK, [strip, row]), nearest, Outcome::Shows);
+                        return false;
+                    }
                 }
             }
         }
         for row in top..bottom {
-            for strip in left..right {
-                // A block that is full, and all of it nearer.
-                let held = self.tiles.block_far[row * self.tiles.stride() + strip];
-                if self.nearest < held {
-                    let cell = PyramidCell { level: PyramidCell::BLOCK, x: strip as u16, y: row as u16 };
-                    self.read(cell, held, Outcome::Behind);
-                    continue;
-                }
-                let mut bits = asked.tiles(strip, row);
-                while bits != 0 {
-                    let tile = bits.trailing_zeros() as usize;
-                    bits &= bits - 1;
-                    if !self.is_behind(l, &asked, row * self.tiles.strips + strip, tile) {
+            for begin in (left..right).step_by(L::N) {
+                // Blocks that are full, and all of them nearer, need no more.
+                let mut open = l.bits(reached(l, self.tiles, &asked, begin, row, right));
+                self.tell_blocks(begin, right.min(begin + L::N), row, open);
+                while open != 0 {
+                    let strip = begin + open.trailing_zeros() as usize;
+                    open &= open - 1;
+                    if !self.is_behind_block(l, &asked, strip, row) {
                         return false;
                     }
                 }
@@ -67,6 +65,56 @@ impl<H: Hears> Work for Behind<'_, H> {
 }
 
 impl<H: Hears> Behind<'_, H> {
+    /// Of the blocks of a row from one on, up to another, those in which something is drawn and it is no
+    /// farther than all of that.
+    #[inline(always)]
+    fn begins_before<L: Wide>(&self, l: L, begin: usize, row: usize, past: usize) -> L::M {
+        let near = l.load(&self.tiles.block_near[row * self.tiles.stride() + begin..]);
+        let drawn = l.gt(near, l.splat(self.tiles.camera.depth_far));
+        l.both(l.first(past - begin), l.both(drawn, l.ge(l.splat(self.nearest), near)))
+    }
+    /// Whether it lies behind all that covers it in a block.
+    #[inline(always)]
+    fn is_behind_block<L: Wide>(&mut self, l: L, asked: &Asked, strip: usize, row: usize) -> bool {
+        let mut open = 0;
+        for part in 0..16 / L::N {
+            let first = self.tiles.first_line(strip, row) + part * (L::N / 4);
+            let far = l.load_farthest(&self.tiles.lines[first..]);
+            open |= l.bits(l.ge(l.splat(self.nearest), far)) << (part * L::N);
+        }
+        let among = asked.tiles(strip, row);
+        open &= among;
+        self.tell_tiles(strip, row, among & !open);
+        while open != 0 {
+            let tile = open.trailing_zeros() as usize;
+            open &= open - 1;
+            if !self.is_behind(l, asked, row * self.tiles.strips + strip, tile) {
+                return false;
+            }
+        }
+        true
+    }
+    /// Tells of blocks that are nearer: all of a row but those that are open.
+    #[inline(always)]
+    fn tell_blocks(&mut self, begin: usize, past: usize, row: usize, open: u32) {
+        if H::LISTENS {
+            for strip in (begin..past).filter(|strip| open >> (strip - begin) & 1 == 0) {
+                let held = self.tiles.block_far[row * self.tiles.stride() + strip];
+                self.read(cell_at(PyramidCell::BLOCK, [strip, row]), held, Outcome::Behind);
+            }
+        }
+    }
+    /// Tells of tiles that are nearer.
+    #[inline(always)]
+    fn tell_tiles(&mut self, strip: usize, row: usize, tiles: u32) {
+        if H::LISTENS {
+            for k in (0..16).filter(|k| tiles >> k & 1 == 1) {
+                let cell = tile_at(first_pixel(self.tiles, row * self.tiles.strips + strip, k));
+                let held = self.tiles.held(cell);
+                self.read(cell, held, Outcome::Behind);
+            }
+        }
+    }
     #[inline(always)]
     fn read(&mut self, cell: PyramidCell, held: f32, outcome: Outcome) {
         let nearest = self.nearest;

@@ -200,6 +200,7 @@ impl Tiles {
             return;
         }
         self.scratch.told.begin();
+        self.scratch.told.is_asked = true;
         if how.tested {
             // What becomes of a cluster is not looked for primitive by primitive.
             let prims = clusters.of_group(group).iter().flat_map(|c| c.prims.clone());
@@ -208,6 +209,21 @@ impl Tiles {
         query::draw_group(self, clusters, group, how, isa);
         self.scratch.told.is_asked = false;
         clusters.fates(group, how.skipped, &self.scratch.told, fates);
+    }
+    /// Draws all of a group of occluders that faces the eye. What fills no vector waits for what comes next:
+    /// nothing may be asked before [`Tiles::settle`].
+    pub fn gather(&mut self, clusters: &Clusters, group: usize, one_sided: bool, isa: Isa) {
+        self.scratch.told.is_asked = true;
+        query::gather(self, clusters, group, one_sided, isa);
+        self.scratch.told.is_asked = false;
+    }
+    /// Draws what waits. The primitives, of all that were gathered since the tiles were emptied, that may
+    /// show; one may be told twice.
+    pub fn settle(&mut self, clusters: &Clusters, isa: Isa) -> impl Iterator<Item = PrimId> {
+        self.scratch.told.is_asked = true;
+        query::settle(self, clusters, isa);
+        self.scratch.told.is_asked = false;
+        clusters.named(&self.scratch.told.shown)
     }
     /// Whether something is hidden by what is drawn. What is read goes to `hears`; what changes is what
     /// [`Tiles::refresh`] of the cells changes that it hears of.
@@ -269,6 +285,10 @@ impl Tiles {
     /// The pixels of a tile that anything covers, bit `8 y + x`.
     pub fn covered_pixels(&self, cell: PyramidCell) -> u32 {
         self.lines[usize::from(cell.x) / 4 * self.rows + usize::from(cell.y)].ever[usize::from(cell.x % 4)]
+    }
+    /// The same of four tiles side by side, of a strip of 32 pixels.
+    pub(super) fn covered_line(&self, strip: usize, row: usize) -> [u32; 4] {
+        self.lines[strip * self.rows + row].ever
     }
     /// The farthest depth that any tile in the image holds.
     pub fn farthest(&self) -> f32 {

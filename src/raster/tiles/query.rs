@@ -44,7 +44,16 @@ pub(super) fn hides_all(tiles: &mut Tiles, boxes: &Boxes, exact: bool, isa: Isa,
 
 /// See [`Tiles::draw_group`].
 pub(super) fn draw_group(tiles: &mut Tiles, clusters: &Clusters, group: usize, how: How<'_>, isa: Isa) {
-    wide::run(isa, DrawGroup { tiles, clusters, group, how });
+    wide::run(isa, DrawGroup { tiles, clusters, group, how, waits: false });
+}
+/// See [`Tiles::gather`].
+pub(super) fn gather(tiles: &mut Tiles, clusters: &Clusters, group: usize, one_sided: bool, isa: Isa) {
+    let how = How { one_sided, skipped: &[], tested: false };
+    wide::run(isa, DrawGroup { tiles, clusters, group, how, waits: true });
+}
+/// See [`Tiles::settle`].
+pub(super) fn settle(tiles: &mut Tiles, clusters: &Clusters, isa: Isa) {
+    wide::run(isa, Settle { tiles, clusters });
 }
 /// See [`Tiles::hides`].
 pub(super) fn hides<H: Hears>(tiles: &mut Tiles, question: Question, isa: Isa, hears: &mut H) -> bool {
@@ -131,13 +140,15 @@ struct DrawGroup<'a> {
     clusters: &'a Clusters,
     group: usize,
     how: How<'a>,
+    /// What fills no vector waits for the next group.
+    waits: bool,
 }
 
 impl Work for DrawGroup<'_> {
     type Output = ();
     #[inline(always)]
     fn run<L: Wide>(self, l: L) {
-        let Self { tiles, clusters, group, how } = self;
+        let Self { tiles, clusters, group, how, waits } = self;
         tiles.forget();
         if how.tested {
             return draw_unhidden(l, tiles, clusters, clusters.range_of(group), how);
@@ -145,8 +156,26 @@ impl Work for DrawGroup<'_> {
         for cluster in clusters.of_group(group) {
             l.apart(DrawCluster { tiles, clusters, how, cluster });
         }
-        // Whoever asks next is to see all of it.
-        Draw { l, tiles, clusters, one_sided: how.one_sided, skipped: how.skipped }.flush();
+        if !waits {
+            // Whoever asks next is to see all of it.
+            Draw { l, tiles, clusters, one_sided: how.one_sided, skipped: how.skipped }.flush();
+        }
+    }
+}
+
+/// What waits.
+struct Settle<'a> {
+    tiles: &'a mut Tiles,
+    clusters: &'a Clusters,
+}
+
+impl Work for Settle<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Wide>(self, l: L) {
+        let Self { tiles, clusters } = self;
+        Draw { l, tiles, clusters, one_sided: false, skipped: &[] }.flush();
+        finish(l, tiles);
     }
 }
 
@@ -257,7 +286,14 @@ fn behind_blocks<L: Wide>(l: L, tiles: &Tiles, a: &Asked) -> bool {
 }
 /// Of the blocks of a row from one on, up to another, those that the nearest depth is not behind.
 #[inline(always)]
-fn reached<L: Wide>(l: L, tiles: &Tiles, a: &Asked, begin: usize, row: usize, past: usize) -> L::M {
+pub(super) fn reached<L: Wide>(
+    l: L,
+    tiles: &Tiles,
+    a: &Asked,
+    begin: usize,
+    row: usize,
+    past: usize,
+) -> L::M {
     let far = l.load(&tiles.block_far[row * tiles.stride() + begin..]);
     l.both(l.first(past - begin), l.ge(l.splat(a.nearest), far))
 }
@@ -602,7 +638,7 @@ impl<H: Hears> Fine<'_, H> {
 }
 
 /// A cell by its column and row.
-fn cell_at(level: u8, [x, y]: [usize; 2]) -> PyramidCell {
+pub(super) fn cell_at(level: u8, [x, y]: [usize; 2]) -> PyramidCell {
     PyramidCell { level, x: x as u16, y: y as u16 }
 }
 /// The tile at its first pixel.

@@ -100,7 +100,6 @@ pub(super) struct Told {
 
 impl Told {
     pub fn begin(&mut self) {
-        self.is_asked = true;
         self.faced.clear();
         self.shown.clear();
     }

@@ -58,6 +58,8 @@ const BOTH: i32 = 3;
 impl Scratch {
     pub fn clear(&mut self, strips: usize) {
         self.rings.iter_mut().for_each(|r| r.count = 0);
+        self.turned.clear();
+        self.told.begin();
         self.segments = 0;
         self.hits.resize(strips, (0, 0, 0.0));
     }
