@@ -146,6 +146,9 @@ pub trait State<S: Space, M: Method<S>>: Clone + Default + PartialEq + Send + Sy
     const KEYFRAME_NOTES: usize;
     /// Brings it to the beginning of a frame; memory is reused.
     fn begin(&mut self, frame: &Frame<'_, S, M>);
+    /// Lets go of what the index lends it: the index is about to follow a motion, and is not to copy itself
+    /// for the sake of the last frame.
+    fn release(&mut self) {}
     /// Does again what the run did when it recorded the note.
     fn apply(&mut self, scene: &Scene<S>, note: &M::Note);
 }

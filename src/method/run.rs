@@ -232,6 +232,7 @@ impl<S: Space, M: Shown<S>> Run<S> for Bound<S, M> {
         if Arc::ptr_eq(&self.scene, scene) {
             return true;
         }
+        self.state.release();
         if M::moved(&mut self.index, &mut self.memory, scene, &self.params, progress).is_none() {
             return false;
         }

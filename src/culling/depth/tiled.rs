@@ -66,6 +66,10 @@ impl<S: Faces> Tiled<S> {
         self.drawn.clear();
         self.drawn.resize(prims, false);
     }
+    /// Lets go of the clusters, until they are emptied for a view.
+    pub fn release(&mut self) {
+        self.clusters = Arc::default();
+    }
     /// Empties them for another view of the same.
     pub fn empty(&mut self, view: &View<S>) {
         let (clusters, prims) = (self.clusters.clone(), self.drawn.len());

@@ -25,11 +25,10 @@ impl<S: Drawable> CubeIndex<S> {
         let clusters = clusters(scene, params, &octree);
         (!progress.cancelled()).then_some(Self { octree, clusters })
     }
-    /// Goes over to another frame of the scene: the cubes stay, with the bounds of what they hold now. The
-    /// clusters are made anew, all of them.
-    pub fn follow(&mut self, scene: &Scene<S>, params: &Params) {
+    /// Goes over to another frame of the scene: the cubes stay, with the bounds of what they hold now.
+    pub fn follow(&mut self, scene: &Scene<S>) {
         self.octree.refit(scene);
-        self.clusters = clusters(scene, params, &self.octree);
+        Arc::make_mut(&mut self.clusters).follow(scene);
     }
     /// The tree.
     pub fn octree(&self) -> &Octree<S::Vector> {

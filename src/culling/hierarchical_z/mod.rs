@@ -183,11 +183,11 @@ impl<S: Faces> Method<S> for HierarchicalZ {
         index: &mut Arc<Self::Index>,
         _: &mut Memory,
         scene: &Arc<Scene<S>>,
-        params: &Params,
+        _: &Params,
         _: &dyn Progress,
     ) -> Option<()> {
         // The cubes stay, and with them the visible list.
-        Arc::make_mut(index).follow(scene, params);
+        Arc::make_mut(index).follow(scene);
         Some(())
     }
     fn cull<O: Observer<Evidence<S>>>(
@@ -223,6 +223,9 @@ impl<S: Faces> State<S, HierarchicalZ> for Tiled<S> {
     const KEYFRAME_NOTES: usize = 1 << 13;
     fn begin(&mut self, frame: &Frame<'_, S, HierarchicalZ>) {
         self.clear(frame.view, frame.index.clusters(), frame.scene.prim_count());
+    }
+    fn release(&mut self) {
+        Self::release(self);
     }
     fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
         // Everything else that is recorded leaves the tiles as they are.

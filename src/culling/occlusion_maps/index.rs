@@ -60,10 +60,10 @@ impl<S: Drawable> Databases<S> {
         (!progress.cancelled()).then_some(Self { tree, clusters, occluders, counts })
     }
     /// Goes over to another frame of the scene (Section 5.5): nodes keep what they hold, with new bounds, and
-    /// leaves of the occluder database stay in it. What leaves hold is made ready anew, all of it.
-    pub fn follow(&mut self, scene: &Scene<S>, params: &Params) {
+    /// leaves of the occluder database stay in it.
+    pub fn follow(&mut self, scene: &Scene<S>) {
         self.tree.refit(scene);
-        self.clusters = clusters(scene, params, &self.tree);
+        Arc::make_mut(&mut self.clusters).follow(scene);
     }
     /// The model's hierarchy.
     pub fn tree(&self) -> &KdTree<S::Vector> {

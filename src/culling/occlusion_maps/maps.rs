@@ -98,6 +98,10 @@ impl<S: Faces> Maps<S> {
         }
         self.shows.resize(scene.prim_count(), true);
     }
+    /// Lets go of the clusters, until they are emptied for a view.
+    pub fn release(&mut self) {
+        self.tiled.release();
+    }
     /// Makes a change.
     pub fn step(&mut self, step: MapStep) {
         // A run and its film both come through here, so that the same operands make the same change.

@@ -137,8 +137,8 @@ impl Params {
             n => n,
         }
     }
-    /// Whether it is known of occluders what of them shows: the maps have the samples of the image, and nothing
-    /// is cut off.
+    /// Whether it is known of occluders what of them shows: the maps have the samples of the image, and
+    /// nothing is cut off.
     fn knows_what_shows(&self) -> bool {
         self.samples == Samples::Image && self.depth != DepthKind::Plane
     }
@@ -198,11 +198,11 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         index: &mut Arc<Self::Index>,
         _: &mut Memory,
         scene: &Arc<Scene<S>>,
-        params: &Params,
+        _: &Params,
         _: &dyn Progress,
     ) -> Option<()> {
         // The nodes stay, and with them what was chosen and drawn last.
-        Arc::make_mut(index).follow(scene, params);
+        Arc::make_mut(index).follow(scene);
         Some(())
     }
     fn cull<O: Observer<Evidence<S>>>(
@@ -315,6 +315,9 @@ impl<S: Faces> State<S, OcclusionMaps> for Maps<S> {
     const KEYFRAME_NOTES: usize = 1 << 13;
     fn begin(&mut self, frame: &Frame<'_, S, OcclusionMaps>) {
         self.clear(frame.scene, frame.view, frame.params, frame.index);
+    }
+    fn release(&mut self) {
+        Maps::release(self);
     }
     fn apply(&mut self, _: &Scene<S>, note: &Evidence<S>) {
         if let Some(step) = note.step() {

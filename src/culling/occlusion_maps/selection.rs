@@ -1,7 +1,7 @@
 //! Which leaves of the occluder database are drawn as occluders (Zhang et al. 1997, Section 5.3.2).
 
 use super::index::Databases;
-use crate::geometry::{Frustum, FrustumTest, NodeId, Projection, Vector, View, nearest_depth};
+use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, Projection, Space, Vector, View, nearest_depth};
 use crate::index::Hierarchy;
 use crate::method::words;
 use crate::raster::Drawable;
@@ -51,6 +51,15 @@ pub(crate) struct Last<'a> {
 /// A set that was chosen in the last frame stays while it ranks within so many times the limit.
 const KEEPS: f32 = 1.25;
 
+/// A leaf by what puts it in order.
+struct Ranked {
+    /// Whether it comes before all that does not.
+    is_first: bool,
+    /// Less is earlier.
+    key: f32,
+    node: NodeId,
+}
+
 /// The leaves of the occluder database in the frustum, in the order in which they are taken, as far as they
 /// can be within the limit; and how many there are.
 pub(crate) fn candidates<S: Drawable>(
@@ -61,61 +70,53 @@ pub(crate) fn candidates<S: Drawable>(
     limit: u32,
     last: &Last<'_>,
 ) -> (Vec<Candidate>, u32) {
-    let mut found = Vec::new();
-    gather(index, view, frustum, projection, (NodeId(0), Frustum::<S::Vector>::ALL), &mut found);
-    let key = |c: &Candidate| match order {
-        Order::By(Selection::Size) => -c.size,
-        Order::By(Selection::Distance | Selection::Visible) => c.distance,
+    let mut ranked = Vec::new();
+    let is_first = |node: NodeId| order == Order::By(Selection::Visible) && last.drawn[node.at()];
+    let key = |bounds: &Aabb<S::Vector>| match order {
+        Order::By(Selection::Size) => -size_of(bounds, view),
+        Order::By(Selection::Distance | Selection::Visible) => distance_of(bounds, view),
         // Larger depths are nearer.
-        Order::Nearest => -c.nearest,
+        Order::Nearest => -nearest_depth(projection, bounds, view.eye.near),
     };
-    let comes_first = |c: &Candidate| match order {
-        Order::By(Selection::Visible) => last.drawn[c.node.at()],
-        _ => false,
-    };
-    // Equal ones by number, so that every run takes the same.
-    let in_order = |a: &Candidate, b: &Candidate| {
-        let first = comes_first(b).cmp(&comes_first(a));
-        first.then(key(a).total_cmp(&key(b))).then(a.node.cmp(&b.node))
-    };
-    let in_view = found.len() as u32;
-    let ranked = sort_first(&mut found, KEEPS * limit as f32, in_order);
-    found.truncate(ranked);
-    for c in &mut found {
-        c.is_kept = match order {
+    gather(index, frustum, (NodeId(0), Frustum::<S::Vector>::ALL), &mut |node, bounds| {
+        ranked.push(Ranked { is_first: is_first(node), key: key(bounds), node });
+    });
+    let in_view = ranked.len() as u32;
+    sort_first(&mut ranked, KEEPS * limit as f32, |node| index.tree().prims_below(node).len());
+    let found = ranked.iter().map(|r| {
+        let is_kept = match order {
             // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
-            Order::By(Selection::Distance) => last.occluders[c.node.at()],
-            _ => comes_first(c),
+            Order::By(Selection::Distance) => last.occluders[r.node.at()],
+            _ => r.is_first,
         };
-    }
+        candidate(index, view, projection, r.node, is_kept)
+    });
+    let mut found: Vec<Candidate> = found.collect();
     found.sort_by_key(|c| !c.is_kept);
     (found, in_view)
 }
 
-/// Puts those first, in order, that hold more than `most` primitives together, or all. How many they are.
-fn sort_first(
-    found: &mut [Candidate],
-    most: f32,
-    in_order: impl Fn(&Candidate, &Candidate) -> std::cmp::Ordering,
-) -> usize {
-    // About as many as that takes, and twice as many as long as they do not do.
-    let mut count = 64;
-    loop {
-        count = count.min(found.len());
-        if count < found.len() {
-            found.select_nth_unstable_by(count, &in_order);
+/// Leaves those that come first, in order, and hold more than `most` primitives together, or all.
+fn sort_first(ranked: &mut Vec<Ranked>, most: f32, polygons: impl Fn(NodeId) -> usize) {
+    // Equal ones by number, so that every run takes the same.
+    let in_order = |a: &Ranked, b: &Ranked| {
+        b.is_first.cmp(&a.is_first).then(a.key.total_cmp(&b.key)).then(a.node.cmp(&b.node))
+    };
+    // To put all in order would take longer than to draw what is chosen of them.
+    let (mut count, mut sorted, mut sum) = (64, 0, 0.0);
+    while sorted < ranked.len() {
+        count = count.min(ranked.len());
+        if count < ranked.len() {
+            ranked[sorted..].select_nth_unstable_by(count - sorted, in_order);
         }
-        found[..count].sort_unstable_by(&in_order);
-        let mut sum = 0.0;
-        for (at, c) in found[..count].iter().enumerate() {
-            sum += c.polygons as f32;
+        ranked[sorted..count].sort_unstable_by(in_order);
+        for at in sorted..count {
+            sum += polygons(ranked[at].node) as f32;
             if sum > most {
-                return at + 1;
+                return ranked.truncate(at + 1);
             }
         }
-        if count == found.len() {
-            return count;
-        }
+        sorted = count;
         count *= 4;
     }
 }
@@ -123,11 +124,9 @@ fn sort_first(
 /// Frustum culling of the occluder database (Section 3, phase 1).
 fn gather<S: Drawable>(
     index: &Databases<S>,
-    view: &View<S>,
     frustum: &Frustum<S::Vector>,
-    projection: &Projection<S::Vector>,
     (id, planes): (NodeId, u8),
-    to: &mut Vec<Candidate>,
+    to: &mut impl FnMut(NodeId, &Aabb<S::Vector>),
 ) {
     if !index.has_occluders(id) {
         return;
@@ -141,11 +140,21 @@ fn gather<S: Drawable>(
     match node.children() {
         Some(children) => {
             for child in children {
-                gather(index, view, frustum, projection, (child, cutting), to);
+                gather(index, frustum, (child, cutting), to);
             }
         }
-        None => to.push(candidate(index, view, projection, id)),
+        None => to(id, &node.bounds),
     }
+}
+
+/// "The distance between the viewer and the center of an object's bounding volume."
+fn distance_of<S: Space>(bounds: &Aabb<S::Vector>, view: &View<S>) -> f32 {
+    (bounds.center() - view.eye.position).length()
+}
+/// About its solid angle.
+fn size_of<S: Space>(bounds: &Aabb<S::Vector>, view: &View<S>) -> f32 {
+    let across = bounds.diagonal() / distance_of(bounds, view).max(f32::MIN_POSITIVE);
+    across * across
 }
 
 fn candidate<S: Drawable>(
@@ -153,17 +162,15 @@ fn candidate<S: Drawable>(
     view: &View<S>,
     projection: &Projection<S::Vector>,
     node: NodeId,
+    is_kept: bool,
 ) -> Candidate {
     let bounds = Hierarchy::<S>::bounds(index, node);
-    // "The distance between the viewer and the center of an object's bounding volume."
-    let distance = (bounds.center() - view.eye.position).length();
-    let across = bounds.diagonal() / distance.max(f32::MIN_POSITIVE);
     Candidate {
         node,
-        distance,
-        size: across * across,
+        distance: distance_of(&bounds, view),
+        size: size_of(&bounds, view),
         nearest: nearest_depth(projection, &bounds, view.eye.near),
         polygons: index.tree().prims_below(node).len() as u32,
-        is_kept: false,
+        is_kept,
     }
 }

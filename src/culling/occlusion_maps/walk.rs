@@ -321,15 +321,12 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.line(line::NOT_COVERED);
             found = self.overlaps(id, image.pixels);
             self.line(line::NOT_COVERED);
-            if !found.is_covered {
-                return self.answer(id, image.pixels, Ground::Overlap(found));
-            }
         }
-        let ground = if self.is_behind(id, image) { Ground::Overlap(found) } else { Ground::NotBehind };
-        let answer = self.answer(id, image.pixels, ground);
-        match answer {
+        let is_behind = found.is_covered && self.is_behind(id, image);
+        let ground = if found.is_covered && !is_behind { Ground::NotBehind } else { Ground::Overlap(found) };
+        match self.answer(id, image.pixels, ground) {
             // What was ignored for it is asked for anew below.
-            Found::Open(_) => Found::Open(found.ignored == 0),
+            Found::Open(_) => Found::Open(found.is_covered && found.ignored == 0),
             culled => culled,
         }
     }

@@ -1,9 +1,13 @@
 //! Questions one by one: what is heard of them, and groups that are drawn one after the other.
 
+use std::sync::Arc;
+
 use super::tiles::{ROUNDS, drawn, flat_box, flat_mixed, flat_view, image, mixed, owns_nothing, random_box};
 use super::tiles::{flat_size, random_view, sizes, straight_line};
 use super::*;
+use crate::geometry::ObjectId;
 use crate::geometry::{Aabb, Footprint, Vector, project_box};
+use crate::scene::{Motion, Pose};
 
 /// Keeps what it hears.
 #[derive(Default)]
@@ -193,6 +197,106 @@ fn questions_of_flatland_are_heard_whole() {
     }
     let Counted { visible, hidden, closer, .. } = counted;
     assert!(visible > 500 && hidden > 500 && closer > 100, "{counted:?}");
+}
+
+/// Small groups, some of them, with what fills no vector left waiting in between. Returns how many were told
+/// not to show.
+fn gathered<S: Drawable>(scene: &Scene<S>, view: &View<S>, dice: &mut Dice) -> usize {
+    let groups: Vec<&[PrimId]> = scene.live().chunks(7).collect();
+    let clusters = Clusters::new(scene, ONE_SIDED, groups.iter().copied());
+    let some: Vec<usize> = (0..groups.len()).filter(|_| dice.below(3) > 0).collect();
+    let of = |isa: Isa| {
+        let mut tiles = Tiles::default();
+        tiles.clear(view, true);
+        some.iter().for_each(|&group| tiles.gather(&clusters, group, true, isa));
+        let mut shown: Vec<PrimId> = tiles.settle(&clusters, isa).collect();
+        shown.sort_unstable();
+        shown.dedup();
+        (tiles, shown)
+    };
+    let (mut tiles, shown) = of(Isa::best());
+    assert!(of(Isa::Portable) == (tiles.clone(), shown.clone()), "on every instruction set");
+    let mut target = Target::new(view);
+    let options = Options { surfaces: ONE_SIDED, ..Options::default() };
+    some.iter().for_each(|&group| {
+        let drawn: Vec<PrimId> = clusters.prims_of(group).collect();
+        S::draw(&mut target, scene, view, &drawn, &options);
+    });
+    tiles.assert_claims(&target.depth);
+    assert_eq!(tiles.depths(Isa::best()), target.depth, "as the image");
+    let seen = visible(&target);
+    assert!(seen.iter().all(|p| shown.binary_search(p).is_ok()), "{seen:?} are seen, {shown:?} may show");
+    some.iter().flat_map(|&g| clusters.prims_of(g)).filter(|p| shown.binary_search(p).is_err()).count()
+}
+
+#[test]
+fn what_waits_is_drawn_in_the_end() {
+    let (mut dice, mut hidden) = (Dice::new(84), 0);
+    for round in 0..ROUNDS {
+        let scene = mixed(&mut dice, 150);
+        let (width, height) = sizes(round);
+        let view = random_view(&mut dice, width, height);
+        hidden += gathered(&scene, &view, &mut dice);
+    }
+    assert!(hidden > 500, "{hidden} do not show");
+    for round in 0..2 * ROUNDS {
+        let (width, _) = flat_size(round);
+        let scene = flat_mixed(&mut dice, 100, 1.0);
+        let view = flat_view(&mut dice, width, 1.0);
+        gathered(&scene, &view, &mut dice);
+    }
+}
+
+/// The same with a third of it still, and the rest in two objects that turn and go.
+fn moving<S: Space>(dice: &mut Dice, scene: Scene<S>) -> Scene<S> {
+    let mut parts = scene.into_parts();
+    let pose = |dice: &mut Dice| {
+        let (angle, axis) = (dice.between(-3.0, 3.0), glam::Vec3::new(0.0, 0.0, 1.0));
+        let axis =
+            if S::CORNERS == 2 { axis } else { (axis + Vec3::Y * dice.between(-1.0, 1.0)).normalize() };
+        let translation = [dice.between(-2.0, 2.0), dice.between(-2.0, 2.0), 0.0];
+        Pose { rotation: glam::Quat::from_axis_angle(axis, angle).to_array(), translation }
+    };
+    parts.objects.resize(3, parts.objects[0].clone());
+    for object in &mut parts.objects[1..] {
+        object.motion = Some((0..4).map(|_| pose(dice)).collect());
+    }
+    for object in &mut parts.prim_object {
+        *object = ObjectId(dice.below(3));
+    }
+    Scene::new(parts).expect("valid")
+}
+
+fn follows<S: Drawable>(scene: Scene<S>, view: &View<S>) {
+    let mut motion = Motion::new(&Arc::new(scene));
+    let rest = motion.at(0);
+    // Groups that hold some of each object.
+    let groups: Vec<&[PrimId]> = rest.live().chunks(40).collect();
+    let mut clusters = Clusters::new(&rest, BOTH_SIDES, groups);
+    for frame in [2, 1, 3] {
+        let scene = motion.at(frame);
+        clusters.follow(&scene);
+        let (mut tiles, truth) = (Tiles::default(), image(&scene, view, BOTH_SIDES));
+        tiles.clear(view, true);
+        tiles.draw(&clusters, false, Isa::best());
+        tiles.assert_claims(&truth.depth);
+        assert_eq!(tiles.depths(Isa::best()), truth.depth, "frame {frame}");
+    }
+}
+
+/// Clusters that follow a motion draw the image of the scene as it is then.
+#[test]
+fn clusters_follow_what_moves() {
+    let mut dice = Dice::new(85);
+    for round in 0..ROUNDS {
+        let scene = mixed(&mut dice, 150);
+        let scene = moving(&mut dice, scene);
+        let (width, height) = sizes(round);
+        follows(scene, &random_view(&mut dice, width, height));
+        let scene = flat_mixed(&mut dice, 60, 1.0);
+        let scene = moving(&mut dice, scene);
+        follows(scene, &flat_view(&mut dice, flat_size(round).0, 1.0));
+    }
 }
 
 /// A group of what is drawn already: nothing is drawn again, and nothing more is said of it.

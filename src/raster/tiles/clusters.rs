@@ -36,11 +36,20 @@ impl Boxes {
             all.push(Aabb { min: widened(bounds.min), max: widened(bounds.max) });
             all.count += 1;
         }
-        let most = |v: &[f32]| v.iter().fold(0.0, |m: f32, x| m.max(x.abs()));
-        all.reach = (0..3).map(|a| most(&all.low[a]).max(most(&all.high[a]))).sum();
+        all.measure();
         // A vector reads up to 15 boxes past the last one; what it finds there is left out.
         (0..16).for_each(|_| all.push(Aabb { min: Vec3::ZERO, max: Vec3::ZERO }));
         all
+    }
+    /// Sums up their greatest coordinates.
+    fn measure(&mut self) {
+        let most = |v: &[f32]| v.iter().fold(0.0, |m: f32, x| m.max(x.abs()));
+        self.reach = (0..3).map(|a| most(&self.low[a]).max(most(&self.high[a]))).sum();
+    }
+    fn put(&mut self, at: usize, bounds: Aabb<Vec3>) {
+        for a in 0..3 {
+            (self.low[a][at], self.high[a][at]) = (bounds.min[a], bounds.max[a]);
+        }
     }
     fn push(&mut self, bounds: Aabb<Vec3>) {
         for a in 0..3 {
@@ -100,6 +109,8 @@ pub struct Clusters {
     groups: Vec<Group>,
     /// Primitives that are in no cluster, group by group.
     apart: Vec<PrimId>,
+    /// Clusters that hold something that moves, each with the scene's points that are its own.
+    moving: Vec<(u32, Box<[u32]>)>,
 }
 
 /// What became of a group: its clusters, and its primitives that are in none.
@@ -171,7 +182,7 @@ impl Clusters {
     ) -> Self {
         let points: Vec<Vec3> = scene.points().iter().map(|&p| widened(p)).collect();
         let (points, is_flat) = (&points[..], S::CORNERS == 2);
-        let place = welded(points);
+        let place = welded(points, &movers(scene));
         let mut all = Self::default();
         let mut boxes = Vec::new();
         let mut own = vec![u32::MAX; points.len()];
@@ -204,7 +215,12 @@ impl Clusters {
             let mut parts = Vec::new();
             split(points, &mut prims, 0, &mut parts);
             for part in parts {
-                boxes.push(all.add(points, &prims[part], &mut own));
+                let moves = prims[part.clone()].iter().any(|p| p.ids.iter().any(|&id| scene.is_moving(id)));
+                let (bounds, used) = all.add(points, &prims[part], &mut own);
+                if moves {
+                    all.moving.push((boxes.len() as u32, used.into()));
+                }
+                boxes.push(bounds);
             }
             let (clusters, apart) = (first_cluster..boxes.len(), first_apart..all.apart.len());
             all.groups.push(Group { clusters, apart });
@@ -267,8 +283,9 @@ impl Clusters {
         let prims = size_of_val(&self.words[..]) + size_of_val(&self.ids[..]) + size_of_val(&self.apart[..]);
         columns + boxes + prims + size_of_val(&self.clusters[..]) + size_of_val(&self.groups[..])
     }
-    /// Appends a cluster and returns its bounds. `own`: scratch, a number for each point, all unset.
-    fn add(&mut self, points: &[Vec3], prims: &[Prim], own: &mut [u32]) -> Aabb<Vec3> {
+    /// Appends a cluster and returns its bounds and its points. `own`: scratch, a number for each point, all
+    /// unset.
+    fn add(&mut self, points: &[Vec3], prims: &[Prim], own: &mut [u32]) -> (Aabb<Vec3>, Vec<u32>) {
         let (first_point, first_prim) = (self.points[0].len(), self.words.len());
         let mut used = Vec::new();
         for &Prim { corners, is_two_sided, ids } in prims {
@@ -286,28 +303,52 @@ impl Clusters {
             }
             self.words.push(word);
         }
-        let bounds = Aabb::of(used.iter().map(|&c| points[c as usize]));
+        used.iter().for_each(|&c| own[c as usize] = u32::MAX);
+        let (points_of, prims_of) = (first_point..self.points[0].len(), first_prim..self.words.len());
+        self.pad();
+        let at = self.clusters.len();
+        self.clusters.push(Cluster { middle: [0.0; 3], reach: 0.0, points: points_of, prims: prims_of });
+        (self.lay(at, points, &used), used)
+    }
+    /// Goes over to another frame of the scene: the same primitives in the same clusters, and points that
+    /// have moved. Quadrangles may bend by what is rounded; set-up takes those apart that are not convex.
+    pub fn follow<S: Space>(&mut self, scene: &Scene<S>) {
+        let points: Vec<Vec3> = scene.points().iter().map(|&p| widened(p)).collect();
+        let moving = std::mem::take(&mut self.moving);
+        for (at, used) in &moving {
+            let bounds = self.lay(*at as usize, &points, used);
+            self.boxes.put(*at as usize, bounds);
+        }
+        self.boxes.measure();
+        self.moving = moving;
+    }
+    /// Puts the points of a cluster, which are some of the scene's, and what follows from them. Its bounds.
+    fn lay(&mut self, at: usize, points: &[Vec3], used: &[u32]) -> Aabb<Vec3> {
+        let own: Vec<Vec3> = used.iter().map(|&c| points[c as usize]).collect();
+        let Cluster { points: place, prims, .. } = self.clusters[at].clone();
+        for k in 0..own.len().next_multiple_of(16) {
+            // A vector is filled up with the last one.
+            let p = own[k.min(own.len() - 1)].to_array();
+            self.points.iter_mut().zip(p).for_each(|(to, v)| to[place.start + k] = v);
+        }
+        let bounds = Aabb::of(own.iter().copied());
         let middle = bounds.center();
-        let from_middle = |c: u32| points[c as usize].as_dvec3() - middle.as_dvec3();
-        for &Prim { corners: [a, b, c, d], .. } in prims {
-            let second = if c == d { [a, b, c] } else { [a, c, d] };
-            for (k, [a, b, c]) in [[a, b, c], second].into_iter().enumerate() {
+        let from_middle = |p: Vec3| p.as_dvec3() - middle.as_dvec3();
+        for prim in prims {
+            let word = self.words[prim];
+            for (k, half) in [half(word, false), half(word, is_quadrangle(word))].into_iter().enumerate() {
+                let [a, b, c] = [0, 1, 2].map(|j| corner(half, j) as u32);
                 // Corners run clockwise on the screen: the other way round about the normal.
-                let n = normal(points, [a, c, b]);
-                let plane = [n.x, n.y, n.z, n.dot(from_middle(a))];
-                self.planes[4 * k..].iter_mut().zip(plane).for_each(|(to, v)| to.push(v as f32));
+                let n = normal(&own, [a, c, b]);
+                let plane = [n.x, n.y, n.z, n.dot(from_middle(own[a as usize]))];
+                self.planes[4 * k..].iter_mut().zip(plane).for_each(|(to, v)| to[prim] = v as f32);
             }
         }
-        let reach = used.iter().map(|&c| from_middle(c).length()).fold(0.0, f64::max);
-        used.iter().for_each(|&c| own[c as usize] = u32::MAX);
-        self.clusters.push(Cluster {
-            middle: middle.to_array(),
-            // More than rounding to f32 takes away.
-            reach: reach as f32 * 1.00001,
-            points: first_point..self.points[0].len(),
-            prims: first_prim..self.words.len(),
-        });
-        self.pad();
+        let reach = own.iter().map(|&p| from_middle(p).length()).fold(0.0, f64::max);
+        let cluster = &mut self.clusters[at];
+        cluster.middle = middle.to_array();
+        // More than rounding to f32 takes away.
+        cluster.reach = reach as f32 * 1.00001;
         bounds
     }
     /// Fills up the last vectors: the last point again, and primitives that no eye sees from the front.
@@ -320,7 +361,7 @@ impl Clusters {
         self.ids.resize(self.words.len(), [PrimId(0); 2]);
         for (k, plane) in self.planes.iter_mut().enumerate() {
             let beyond = if k % 4 == 3 { f32::MAX } else { 0.0 };
-            plane.resize(plane.len().next_multiple_of(16), beyond);
+            plane.resize(self.words.len(), beyond);
         }
     }
 }
@@ -330,11 +371,22 @@ fn widened<V: Vector>(p: V) -> Vec3 {
     Vec3::from_array(std::array::from_fn(|a| if a < V::AXES { p.get(a) } else { 0.0 }))
 }
 
-/// For each point the first one at its place.
-fn welded(points: &[Vec3]) -> Vec<u32> {
+/// For each point the object that moves it; none of them if nothing moves.
+fn movers<S: Space>(scene: &Scene<S>) -> Vec<u32> {
+    let mut movers = vec![u32::MAX; if scene.moving().is_empty() { 0 } else { scene.points().len() }];
+    for &prim in scene.moving() {
+        for &point in scene.corners(prim).iter().flat_map(|c| c.as_ref()) {
+            movers[point as usize] = scene.object_of(prim).0;
+        }
+    }
+    movers
+}
+
+/// For each point the first one at its place that moves with it.
+fn welded(points: &[Vec3], movers: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     // Zeros of either sign are one place.
-    let key = |i: u32| points[i as usize].to_array().map(|x| (x + 0.0).to_bits());
+    let key = |i: u32| (points[i as usize].to_array().map(|x| (x + 0.0).to_bits()), movers.get(i as usize));
     order.sort_unstable_by_key(|&i| (key(i), i));
     let mut first = vec![0; points.len()];
     for same in order.chunk_by(|&a, &b| key(a) == key(b)) {

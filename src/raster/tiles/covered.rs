@@ -30,15 +30,14 @@ impl<H: Hears> Work for Behind<'_, H> {
         let (x0, x1, y0, y1) = (p.x0 as i32, p.x1 as i32, p.y0 as i32, p.y1 as i32);
         let asked = Asked { id: 0, x0, x1, y0, y1, nearest: self.nearest, crosses_near: false };
         let [left, right, top, bottom] = asked.blocks();
-        // What is large mostly begins before something that is drawn.
+        // What may be seen mostly begins before all that is drawn in some block.
         for row in top..bottom {
             for begin in (left..right).step_by(L::N) {
                 let mut before = l.bits(self.begins_before(l, begin, row, right));
                 while before != 0 {
                     let strip = begin + before.trailing_zeros() as usize;
                     before &= before - 1;
-                    let all = if self.tiles.is_flat { 0xf } else { 0xffff };
-                    if asked.tiles_inside(strip, row, self.tiles.is_flat) == all {
+                    if self.is_covered(&asked, strip, row) {
                         let nearest = self.tiles.block_near[row * self.tiles.stride() + strip];
                         self.read(cell_at(PyramidCell::BLOCK, [strip, row]), nearest, Outcome::Shows);
                         return false;
@@ -72,6 +71,21 @@ impl<H: Hears> Behind<'_, H> {
         let near = l.load(&self.tiles.block_near[row * self.tiles.stride() + begin..]);
         let drawn = l.gt(near, l.splat(self.tiles.camera.depth_far));
         l.both(l.first(past - begin), l.both(drawn, l.ge(l.splat(self.nearest), near)))
+    }
+    /// Whether anything covers one of its pixels in a block.
+    #[inline(always)]
+    fn is_covered(&self, asked: &Asked, strip: usize, row: usize) -> bool {
+        let mut bits = asked.tiles(strip, row);
+        while bits != 0 {
+            let tile = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let at = first_pixel(self.tiles, row * self.tiles.strips + strip, tile);
+            let line = &self.tiles.lines[self.tiles.first_line(strip, row) + (tile >> 2)];
+            if line.ever[tile & 3] & asked.pixels(at) != 0 {
+                return true;
+            }
+        }
+        false
     }
     /// Whether it lies behind all that covers it in a block.
     #[inline(always)]

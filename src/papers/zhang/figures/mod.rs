@@ -64,7 +64,8 @@ fn flat_film(
     more: &[(&str, &str)],
 ) -> Arc<dyn Film<Flat>> {
     let view = View { width, ..eye(scene, 0) };
-    let pairs = [&[("adapt", "false"), ("occluder-budget", budget)], more].concat();
+    let fixed = [("adapt", "false"), ("occluder-budget", budget), ("depth", "estimation")];
+    let pairs = [&fixed, more].concat();
     maker.film(scene, &view, OCCLUSION_MAPS, &pairs)
 }
 
@@ -105,7 +106,8 @@ fn city_film(maker: &Maker<'_>) -> Result<Arc<dyn Film<Solid>>, SceneError> {
     let path = scene.paths().iter().find(|p| p.name == "figure 8");
     let view = path.and_then(|p| p.views.get(24)).copied();
     let view = View { width: 256, height: 192, ..view.unwrap_or(scene.paths()[0].views[0]) };
-    let pairs = [("adapt", "false"), ("occluder-budget", "300"), ("map-resolution", "64")];
+    let pairs =
+        [("adapt", "false"), ("occluder-budget", "300"), ("map-resolution", "64"), ("depth", "estimation")];
     Ok(maker.film(&scene, &view, OCCLUSION_MAPS, &pairs))
 }
 
