@@ -24,6 +24,8 @@ pub(crate) enum Evidence<S: Faces> {
     Facing(Facing),
     /// Leaves of the occluder database in view, and what the database is.
     Gathered(u32, Counts),
+    /// So many grid points about the eye, and how many leaves they see.
+    LookedUp(u32, u32),
     /// A leaf became an occluder, or not.
     Chosen(Choice),
     /// The single Z plane, by its view depth, world units.
@@ -190,6 +192,7 @@ impl<S: Faces> Tallied for Evidence<S> {
                     tally.add("overlap_tests", 1);
                 }
             }
+            Self::LookedUp(_, leaves) => tally.add("leaves_listed", (*leaves).into()),
             Self::Chosen(_) | Self::Plane(_) | Self::Built(_) | Self::Holds(_) => {}
             Self::Adapted(_) | Self::Paused(_) => {}
         }
@@ -207,6 +210,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Tested(n) => n.kind(),
             Self::Facing(_) => "OrientationTested",
             Self::Gathered(..) => "OccludersGathered",
+            Self::LookedUp(..) => "GridLookedUp",
             Self::Chosen(n) if n.is_taken => "OccluderChosen",
             Self::Chosen(_) => "OccluderRefused",
             Self::Plane(_) => "PlaneSet",
@@ -232,7 +236,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Depth(n) => n.subject(),
             Self::Read(n, ..) => Subject::Node(*n),
             Self::Answered(n) => Subject::Node(n.node),
-            Self::Gathered(..) | Self::Plane(_) | Self::Built(_) => Subject::None,
+            Self::Gathered(..) | Self::LookedUp(..) | Self::Plane(_) | Self::Built(_) => Subject::None,
             Self::Adapted(_) | Self::Paused(_) => Subject::None,
         }
     }
@@ -277,6 +281,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 integer("redundant", c.redundant),
                 integer("complex", c.complex),
             ],
+            Self::LookedUp(points, leaves) => vec![integer("points", *points), integer("leaves", *leaves)],
             Self::Chosen(n) => n.fields(),
             Self::Plane(z) => vec![number("depth_units", (*z).into())],
             Self::Covered(n, one_sided) => {
@@ -318,7 +323,12 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 c.redundant,
                 c.complex
             ),
-            Self::Chosen(n) => n.sentence(S::PRIM),
+            Self::LookedUp(points, listed) => format!(
+                "{} about the eye saw {}: these come first, the larger they looked.",
+                if *points == 1 { "One grid point".into() } else { format!("{points} grid points") },
+                if *listed == 0 { "no occluder".into() } else { leaves(*listed) }
+            ),
+            Self::Chosen(n) => n.sentence::<S>(),
             Self::Plane(z) => format!(
                 "The Z plane lies {} units before the eye: occluders are drawn as far as it, and only what \
                  is wholly beyond it can be culled.",
@@ -365,6 +375,7 @@ impl Choice {
             integer("node", c.node.0),
             number("distance_units", c.distance.into()),
             number("size", c.size.into()),
+            number("grid_angle", c.angle.into()),
             integer("polygons", c.polygons),
             integer("sum", self.sum),
             integer("limit", self.limit),
@@ -373,11 +384,15 @@ impl Choice {
             Field { name: "kept", value: Value::Switch(c.is_kept) },
         ]
     }
-    fn sentence(&self, prim: &str) -> String {
-        let c = &self.candidate;
+    fn sentence<S: Space>(&self) -> String {
+        let (c, prim) = (&self.candidate, S::PRIM);
         let (node, distance) = (c.node, short(c.distance));
         let holds = count(c.polygons, prim);
-        let kept = if c.is_kept { ", and was of use in the last frame" } else { "" };
+        let kept = match (c.is_kept, c.angle > 0.0) {
+            (true, _) => ", and was of use in the last frame".to_owned(),
+            (_, true) => format!(", and seen from the grid under {} {}", short(c.angle), if S::CORNERS == 2 { "rad" } else { "sr" }),
+            _ => String::new(),
+        };
         if self.is_taken {
             format!(
                 "Node {node}, {distance} units away{kept}, is an occluder: its {holds} make {} of at most \

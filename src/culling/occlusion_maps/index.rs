@@ -5,6 +5,7 @@
 //!    bounding box hierarchy").
 //! 2. A leaf is no occluder if it is *small*, *redundant* or *complex*. It stays an occludee.
 //! 3. What the leaves hold is made ready for tiles, in which occluders are drawn.
+//! 4. With `selection=grid` it is looked at from the points of a grid ([`super::grid`], Section 5.3.2).
 //!
 //! Cost: O(n log n) time, and leaves × [`MOST_FACES`] for redundancy.
 
@@ -12,10 +13,12 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::Params;
+use super::grid::{Grid, Seen};
+use super::saved::{self, Key};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::{Hierarchy, KdTree};
 use crate::raster::{Clusters, Drawable};
-use crate::scene::{Face, Progress, Scene};
+use crate::scene::{Face, Part, Progress, Scene};
 
 /// How many leaves the database has, and how many it dropped, each by the first reason that held.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +39,8 @@ pub struct Databases<S: Space> {
     /// For each node whether it, or some leaf below it, is in the occluder database.
     occluders: Vec<bool>,
     counts: Counts,
+    /// What is seen from the points of a grid, and what it was made for.
+    grid: Option<Arc<(Grid<S::Vector>, Key)>>,
 }
 
 /// By what share of a face's diagonal something that it makes redundant stands before it at most.
@@ -46,8 +51,39 @@ pub const MOST_FACES: usize = 1000;
 const COMPLEX: f32 = 8.0;
 
 impl<S: Drawable> Databases<S> {
-    /// Builds both; `None` when cancelled.
-    pub fn build(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
+    /// Builds both, around saved lists if there are any; `Ok(None)` when cancelled.
+    ///
+    /// # Errors
+    /// Why what was saved does not fit.
+    pub fn build(
+        scene: &Scene<S>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self>, String> {
+        if saved.is_some() && !params.uses_grid() {
+            return Err("only what selection=grid looks up is kept".into());
+        }
+        // Looking from many points takes the larger part of the time, so it gets that of the bar.
+        let length = if params.uses_grid() { 0.2 } else { 1.0 };
+        let Some(mut made) = Self::without_grid(scene, params, &Part { whole: progress, start: 0.0, length })
+        else {
+            return Ok(None);
+        };
+        if params.uses_grid() {
+            let seen = Seen { scene, tree: &made.tree, occluders: &made.occluders };
+            let (grid, key) = (Grid::new(&scene.bounds(), params.grid), saved::key(scene, params));
+            let rest = Part { whole: progress, start: length, length: 1.0 - length };
+            let grid = match saved {
+                Some(bytes) => Some(saved::read(bytes, &key, grid, &seen)?),
+                None => grid.fill(&seen, params.surfaces, &rest),
+            };
+            let Some(grid) = grid else { return Ok(None) };
+            made.grid = Some(Arc::new((grid, key)));
+        }
+        Ok(Some(made))
+    }
+    fn without_grid(scene: &Scene<S>, params: &Params, progress: &dyn Progress) -> Option<Self> {
         progress.report(0.0, "building the kD-tree");
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         let height = height(scene.live().len(), params.leaf_prims::<S>());
@@ -57,10 +93,11 @@ impl<S: Drawable> Databases<S> {
         let (occluders, counts) = database(scene, &tree, params.occluder_size, progress)?;
         progress.report(0.7, "making clusters");
         let clusters = clusters(scene, params, &tree);
-        (!progress.cancelled()).then_some(Self { tree, clusters, occluders, counts })
+        (!progress.cancelled()).then_some(Self { tree, clusters, occluders, counts, grid: None })
     }
     /// Goes over to another frame of the scene (Section 5.5): nodes keep what they hold, with new bounds, and
-    /// leaves of the occluder database stay in it. What leaves hold is made ready anew, all of it.
+    /// leaves of the occluder database stay in it. What leaves hold is made ready anew, all of it. The lists
+    /// of a grid are of what stands still.
     pub fn follow(&mut self, scene: &Scene<S>, params: &Params) {
         self.tree.refit(scene);
         self.clusters = clusters(scene, params, &self.tree);
@@ -76,6 +113,10 @@ impl<S: Drawable> Databases<S> {
     /// Whether a node is a leaf of the occluder database, or has one below it.
     pub fn has_occluders(&self, node: NodeId) -> bool {
         self.occluders[node.at()]
+    }
+    /// What is seen from the points of a grid, if there is one.
+    pub fn grid(&self) -> Option<&Grid<S::Vector>> {
+        self.grid.as_ref().map(|made| &made.0)
     }
     /// What the database holds.
     pub fn counts(&self) -> Counts {
@@ -242,6 +283,10 @@ impl<S: Space> Hierarchy<S> for Databases<S> {
         Hierarchy::<S>::prims(&self.tree, node)
     }
     fn bytes(&self) -> usize {
-        Hierarchy::<S>::bytes(&self.tree) + self.clusters.bytes() + self.occluders.len()
+        let grid = self.grid.as_ref().map_or(0, |made| made.0.bytes());
+        Hierarchy::<S>::bytes(&self.tree) + self.clusters.bytes() + self.occluders.len() + grid
+    }
+    fn save(&self) -> Option<Vec<u8>> {
+        self.grid.as_ref().map(|made| saved::write(&made.1, &made.0))
     }
 }

@@ -4,7 +4,8 @@
 //! <https://doi.org/10.1145/258734.258781>. Once, the occluder database is made ([`index`], Section 5.3.1).
 //! A frame ([`walk`], Section 3):
 //!
-//! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]);
+//! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]), by
+//!    lists of what a grid's points see if one is made ([`grid`]);
 //! 2. they are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
 //!    is averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
 //! 3. the hierarchy of the model is visited: a node that is outside the frustum, or behind the occluders
@@ -18,10 +19,12 @@ mod budget;
 mod code;
 mod depth;
 mod evidence;
+mod grid;
 mod index;
 mod maps;
 mod overlap;
 mod picture;
+mod saved;
 mod selection;
 #[cfg(test)]
 mod tests;
@@ -40,8 +43,7 @@ use super::depth::Faces;
 use crate::drawing::Drawing;
 use crate::geometry::Space;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
-    surface_knobs, words,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, surface_knobs, words,
 };
 use crate::raster::{DepthScale, Opacity};
 use crate::scene::{Progress, Scene, Surfaces};
@@ -58,6 +60,8 @@ pub(crate) struct Params {
     depth: DepthKind,
     depth_resolution: u32,
     selection: Selection,
+    /// Points of the grid along the longest side.
+    grid: u32,
     /// 0: by the scene.
     occluder_budget: u32,
     occluder_size: u32,
@@ -79,6 +83,7 @@ impl Default for Params {
             // Section 5.2.2: "a coarse resolution (e.g. 64×64)".
             depth_resolution: 64,
             selection: Selection::default(),
+            grid: 16,
             occluder_budget: 0,
             occluder_size: 5,
             adapts: true,
@@ -127,6 +132,10 @@ words! {
 }
 
 impl Params {
+    /// Whether it is looked from the points of a grid: a single Z plane is a choice of its own.
+    fn uses_grid(&self) -> bool {
+        self.selection == Selection::Grid && self.depth != DepthKind::Plane
+    }
     /// Primitives of a leaf, at most.
     fn leaf_prims<S: Space>(&self) -> u32 {
         // A test costs about as much as a few dozen triangles; flatland is there to be looked at.
@@ -185,8 +194,7 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Self::Index>, String> {
-        keeps_nothing(saved)?;
-        Ok(Databases::build(scene, params, progress))
+        Databases::build(scene, params, saved, progress)
     }
     fn moved(
         index: &mut Arc<Self::Index>,
@@ -271,11 +279,20 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         "selection",
         "",
         "by what occluders are chosen: distance, the nearest; size, those that look largest; visible, the \
-         nearest of those that could be seen in the last frame. With depth=plane it is the nearest point \
+         nearest of those that could be seen in the last frame; grid, those that look largest from the grid \
+         points about the eye (grid=), and after these the nearest. With depth=plane it is the nearest point \
          that counts",
         source,
     );
     knobs.words(selection, &mut params.selection);
+    let grid = Knob::new(
+        "grid",
+        "points",
+        "points along the longest side of the scene from which it is looked at once, for selection=grid; \
+         what moves is not seen from them",
+        source,
+    );
+    knobs.integer(grid, 1..=64, &mut params.grid);
     let budget = Knob::new(
         "occluder-budget",
         "polygons",

@@ -15,6 +15,9 @@ words! {
         Size = "size",
         /// The nearest of those that could be seen in the last frame.
         Visible = "visible",
+        /// Those that look largest from the grid points about the eye, as far as they are seen from there;
+        /// then the nearest of the others.
+        Grid = "grid",
     }
 }
 
@@ -26,6 +29,8 @@ pub(crate) struct Candidate {
     pub distance: f32,
     /// About the solid angle of its box: the square of its diagonal over that of its distance.
     pub size: f32,
+    /// The angle under which the grid points about the eye see it, weighted; 0 where they do not.
+    pub angle: f32,
     /// The depth (`1/w`) of its nearest point.
     pub nearest: f32,
     /// Primitives that it holds.
@@ -42,10 +47,12 @@ pub(crate) enum Order {
     Nearest,
 }
 
-/// What was an occluder in the last frame, and what was drawn, by node.
-pub(crate) struct Last<'a> {
+/// What is known beforehand, by node: what was an occluder in the last frame, and what was drawn.
+pub(crate) struct Known<'a> {
     pub occluders: &'a [bool],
     pub drawn: &'a [bool],
+    /// By node the angles of the grid points about the eye; empty where none is asked.
+    pub angles: &'a [f32],
 }
 
 /// A set that was chosen in the last frame stays while it ranks within so many times the limit.
@@ -58,25 +65,32 @@ pub(crate) fn candidates<S: Drawable>(
     (frustum, projection): (&Frustum<S::Vector>, &Projection<S::Vector>),
     order: Order,
     limit: u32,
-    last: &Last<'_>,
+    known: &Known<'_>,
 ) -> Vec<Candidate> {
     let mut found = Vec::new();
     gather(index, view, frustum, projection, (NodeId(0), Frustum::<S::Vector>::ALL), &mut found);
     let key = |c: &Candidate| match order {
         Order::By(Selection::Size) => -c.size,
-        Order::By(Selection::Distance | Selection::Visible) => c.distance,
+        Order::By(Selection::Distance | Selection::Visible | Selection::Grid) => c.distance,
         // Larger depths are nearer.
         Order::Nearest => -c.nearest,
     };
-    // Equal ones by number, so that every run takes the same.
-    found.sort_by(|a, b| key(a).total_cmp(&key(b)).then(a.node.cmp(&b.node)));
+    for c in &mut found {
+        c.angle = known.angles.get(c.node.at()).copied().unwrap_or(0.0);
+    }
+    // Equal ones by number, so that every run takes the same. What moves is in no list (Section 5.5: "no
+    // pre-processing"): it follows by its distance, as does all else that the grid points do not see.
+    found.sort_by(|a, b| {
+        let seen = b.angle.total_cmp(&a.angle);
+        seen.then(key(a).total_cmp(&key(b))).then(a.node.cmp(&b.node))
+    });
     let mut sum = 0.0;
     for c in &mut found {
         sum += c.polygons as f32;
         c.is_kept = match order {
             // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
-            Order::By(Selection::Distance) => last.occluders[c.node.at()] && sum <= KEEPS * limit as f32,
-            Order::By(Selection::Visible) => last.drawn[c.node.at()],
+            Order::By(Selection::Distance) => known.occluders[c.node.at()] && sum <= KEEPS * limit as f32,
+            Order::By(Selection::Visible) => known.drawn[c.node.at()],
             _ => false,
         };
     }
@@ -126,6 +140,7 @@ fn candidate<S: Drawable>(
         node,
         distance,
         size: across * across,
+        angle: 0.0,
         nearest: nearest_depth(projection, &bounds, view.eye.near),
         polygons: index.tree().prims_below(node).len() as u32,
         is_kept: false,

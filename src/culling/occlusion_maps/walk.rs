@@ -7,7 +7,7 @@ use super::evidence::{Answered, Built, Choice, DepthCompared, Evidence, Ground};
 use super::index::Databases;
 use super::maps::{MapStep, Maps};
 use super::overlap::{self, MapRead, Overlap, overlap_test};
-use super::selection::{Candidate, Last, Order, candidates};
+use super::selection::{Candidate, Known, Order, candidates};
 use super::{DepthKind, Memory, Params, Samples};
 use crate::culling::depth::{Asking, Faces, Stage, footprint};
 use crate::drawing::Subject;
@@ -24,6 +24,8 @@ pub(super) struct Scratch {
     /// Nodes that hold an occluder of this frame.
     holds: Vec<bool>,
     occluders: Vec<NodeId>,
+    /// Of each node the angle under which the grid points about the eye see it.
+    angles: Vec<f32>,
 }
 
 impl Clone for Scratch {
@@ -113,9 +115,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             DepthKind::Plane => Order::Nearest,
             _ => Order::By(self.params.selection),
         };
-        let last = Last { occluders: &self.memory.occluders, drawn: &self.memory.drawn };
+        self.look_up();
+        let Memory { occluders, drawn, scratch, .. } = &*self.memory;
+        let known = Known { occluders, drawn, angles: &scratch.angles };
         let cameras = (&self.frustum, &self.projection);
-        let all = candidates(self.index, self.view, cameras, order, limit, &last);
+        let all = candidates(self.index, self.view, cameras, order, limit, &known);
         self.line(line::SORT);
         let (count, counts) = (all.len() as u32, self.index.counts());
         self.watch.note(move || Evidence::Gathered(count, counts));
@@ -154,6 +158,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.plane = 1.0 / z;
             self.watch.note(move || Evidence::Plane(z));
             self.maps.step(MapStep::Plane(z));
+        }
+    }
+    /// What the grid points about the eye see (Section 5.3.2).
+    fn look_up(&mut self) {
+        let angles = &mut self.memory.scratch.angles;
+        angles.clear();
+        if let Some(grid) = self.index.grid() {
+            let nodes = self.index.tree().nodes().len();
+            let points = grid.angles_about(self.view.eye.position, nodes, angles);
+            let leaves = angles.iter().filter(|a| **a > 0.0).count() as u32;
+            self.line(line::LOOK_UP);
+            self.watch.note(move || Evidence::LookedUp(points, leaves));
         }
     }
     fn refuse(&mut self, candidate: Candidate, sum: u32, reach: f32) {

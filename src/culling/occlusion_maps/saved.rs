@@ -1,0 +1,61 @@
+//! The lists of a grid as bytes, so that the preprocess is done once: where they begin, their leaves, and the
+//! angles of these.
+
+use super::Params;
+use super::grid::{Grid, Seen};
+use crate::culling::saved::{self, Format, damaged};
+use crate::geometry::{NodeId, Space, Vector};
+use crate::scene::Scene;
+
+const FORMAT: Format = Format { magic: b"cullscope-z1", method: "occlusion-maps", has_bytes: false };
+
+/// What lists were made for: points along the longest side, primitives of a leaf, what is too small for the
+/// occluder database, and how surfaces are taken.
+pub type Key = saved::Key<4>;
+
+/// The key of a scene and parameters.
+pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
+    // Only what lists depend on: all else is a matter of the frame.
+    let surfaces = u32::from(params.surfaces.one_sided) | u32::from(params.surfaces.solid) << 1;
+    let params = [params.grid, params.leaf_prims::<S>(), params.occluder_size, surfaces];
+    Key { scene: scene.hash_hex(), params }
+}
+
+fn describe([grid, leaf, size, surfaces]: [u32; 4]) -> String {
+    format!(
+        "grid={grid} leaf-primitives={leaf} occluder-size={size} backface-culling={} see-through={}",
+        surfaces & 1 == 1,
+        if surfaces & 2 == 2 { "solid" } else { "clear" }
+    )
+}
+
+/// Bytes of a grid's lists.
+pub fn write<V: Vector>(key: &Key, grid: &Grid<V>) -> Vec<u8> {
+    let (starts, leaves, angles) = grid.tables();
+    let leaves: Vec<u32> = leaves.iter().map(|leaf| leaf.0).collect();
+    let angles: Vec<u32> = angles.iter().map(|angle| angle.to_bits()).collect();
+    FORMAT.write(key, &[starts, &leaves, &angles], &[])
+}
+
+/// The grid with the lists of some bytes.
+///
+/// # Errors
+/// Why they do not fit: damaged, of another version, scene or parameters.
+pub fn read<S: Space>(
+    bytes: &[u8],
+    key: &Key,
+    grid: Grid<S::Vector>,
+    seen: &Seen<'_, S>,
+) -> Result<Grid<S::Vector>, String> {
+    let ([starts, leaves, angles], _) = FORMAT.read::<4, 3>(bytes, key, describe)?;
+    // A right sum says that nothing was damaged, and not that the numbers fit: each leaf must be one of the
+    // occluder database, and each angle a number to sort by.
+    let nodes = seen.tree.nodes();
+    let is_leaf = |&n: &u32| nodes.get(n as usize).is_some_and(|node| node.is_leaf() && seen.occluders[n as usize]);
+    let angles: Vec<f32> = angles.into_iter().map(f32::from_bits).collect();
+    if !leaves.iter().all(is_leaf) || !angles.iter().all(|a| a.is_finite() && *a >= 0.0) {
+        return Err(damaged());
+    }
+    let leaves = leaves.into_iter().map(NodeId).collect();
+    grid.with(starts, leaves, angles).ok_or_else(damaged)
+}
