@@ -29,18 +29,14 @@ pub struct Key<const PARAMS: usize> {
 
 impl Format {
     /// Bytes of tables. `last`: the table of bytes, empty where the format has none.
-    pub fn write<const PARAMS: usize>(
-        &self,
-        key: &Key<PARAMS>,
-        tables: &[&[u32]],
-        last: &[u8],
-    ) -> Vec<u8> {
+    pub fn write<const PARAMS: usize>(&self, key: &Key<PARAMS>, tables: &[&[u32]], last: &[u8]) -> Vec<u8> {
         let mut bytes = self.magic.to_vec();
         // A hash is always equally long, so it needs no length.
         bytes.extend(key.scene.as_bytes());
         let lengths = tables.iter().map(|t| t.len() as u32);
         let lengths = lengths.chain(self.has_bytes.then_some(last.len() as u32));
-        let numbers = key.params.into_iter().chain(lengths).chain(tables.iter().flat_map(|t| t.iter().copied()));
+        let numbers =
+            key.params.into_iter().chain(lengths).chain(tables.iter().flat_map(|t| t.iter().copied()));
         numbers.for_each(|n| bytes.extend(n.to_le_bytes()));
         bytes.extend(last);
         let sum = Sha256::digest(&bytes);

@@ -19,10 +19,10 @@
 
 use rayon::prelude::*;
 
+use super::leaves::Leaves;
 use crate::geometry::{Aabb, Eye, Frustum, FrustumTest, NodeId, PrimId, Space, Vector, View};
-use crate::index::KdTree;
 use crate::raster::{Drawable, Options, Target};
-use crate::scene::{Progress, Scene, Surfaces};
+use crate::scene::{Progress, Surfaces};
 
 /// Pixels a side of the images about a point. A line of flatland costs little, so it has more.
 pub const SIDE: [u32; 2] = [64, 256];
@@ -47,14 +47,6 @@ pub struct Grid<V> {
     /// flatland).
     leaves: Vec<NodeId>,
     angles: Vec<f32>,
-}
-
-/// Of a scene of leaves what grids need.
-pub struct Seen<'a, S: Space> {
-    pub scene: &'a Scene<S>,
-    pub tree: &'a KdTree<S::Vector>,
-    /// For each node whether it, or some leaf below it, is in the occluder database.
-    pub occluders: &'a [bool],
 }
 
 impl<V: Vector> Grid<V> {
@@ -149,13 +141,13 @@ impl<V: Vector> Grid<V> {
     /// Makes the lists; `None` when cancelled.
     pub fn fill<S: Drawable<Vector = V>>(
         mut self,
-        seen: &Seen<'_, S>,
+        leaves: &Leaves<'_, S>,
         surfaces: Surfaces,
         progress: &dyn Progress,
     ) -> Option<Self> {
         let points: Vec<usize> = (0..self.len()).collect();
         let longest = (MOST / points.len()).max(LEAST);
-        let leaf_of = seen.leaf_of();
+        let leaf_of = leaves.of_prims();
         for (i, some) in points.chunks(POINTS_AT_A_TIME).enumerate() {
             progress.report((i * POINTS_AT_A_TIME) as f32 / points.len() as f32, "looking from grid points");
             if progress.cancelled() {
@@ -163,10 +155,10 @@ impl<V: Vector> Grid<V> {
             }
             // Collected in the order of the points, whichever is done first.
             let look = |buffer: &mut ItemBuffer<S>, &point: &usize| {
-                buffer.look(seen, &leaf_of, self.place(point), &self.bounds, longest)
+                buffer.look(leaves, &leaf_of, self.place(point), &self.bounds, longest)
             };
             let lists: Vec<_> =
-                some.par_iter().map_init(|| ItemBuffer::new(seen, surfaces), look).collect();
+                some.par_iter().map_init(|| ItemBuffer::new(leaves, surfaces), look).collect();
             for (leaf, angle) in lists.into_iter().flat_map(|list| {
                 self.starts.push(self.starts[self.starts.len() - 1] + list.len() as u32);
                 list
@@ -176,19 +168,6 @@ impl<V: Vector> Grid<V> {
             }
         }
         Some(self)
-    }
-}
-
-impl<S: Space> Seen<'_, S> {
-    /// Of each primitive the leaf of the occluder database that holds it, or `u32::MAX`.
-    fn leaf_of(&self) -> Vec<u32> {
-        let mut leaf_of = vec![u32::MAX; self.scene.prim_count()];
-        let nodes = self.tree.nodes();
-        for node in (0..nodes.len()).filter(|&n| nodes[n].is_leaf() && self.occluders[n]) {
-            let prims = self.tree.prims_below(NodeId(node as u32));
-            prims.iter().for_each(|p| leaf_of[p.at()] = node as u32);
-        }
-        leaf_of
     }
 }
 
@@ -244,13 +223,13 @@ struct ItemBuffer<S: Space> {
 }
 
 impl<S: Drawable> ItemBuffer<S> {
-    fn new(seen: &Seen<'_, S>, surfaces: Surfaces) -> Self {
+    fn new(leaves: &Leaves<'_, S>, surfaces: Surfaces) -> Self {
         Self {
             target: Target::default(),
             options: Options { surfaces, ..Options::default() },
             prims: Vec::new(),
             pixels: pixel_angles::<S>(),
-            angles: vec![0.0; seen.tree.nodes().len()],
+            angles: vec![0.0; leaves.tree.nodes().len()],
             found: Vec::new(),
             kinds: std::marker::PhantomData,
         }
@@ -258,26 +237,23 @@ impl<S: Drawable> ItemBuffer<S> {
     /// 2. and 3.: the leaves that are seen from a point, ascending, of these the `longest` that look largest.
     fn look(
         &mut self,
-        seen: &Seen<'_, S>,
-        leaf_of: &[u32],
+        leaves: &Leaves<'_, S>,
+        leaf_of: &[Option<NodeId>],
         point: S::Vector,
         bounds: &Aabb<S::Vector>,
         longest: usize,
     ) -> Vec<(NodeId, f32)> {
         for view in views_about::<S>(point, bounds) {
             self.prims.clear();
-            self.gather(seen, &view.frustum(), (NodeId(0), Frustum::<S::Vector>::ALL));
-            S::redraw(&mut self.target, seen.scene, &view, &self.prims, &self.options);
+            self.gather(leaves, &view.frustum(), (NodeId(0), Frustum::<S::Vector>::ALL));
+            S::redraw(&mut self.target, leaves.scene, &view, &self.prims, &self.options);
             for (&item, &angle) in self.target.item.iter().zip(&self.pixels) {
                 // What is no occluder hides what is.
-                let leaf = leaf_of.get(item as usize).copied().unwrap_or(u32::MAX);
-                if leaf == u32::MAX {
-                    continue;
+                let Some(leaf) = leaf_of.get(item as usize).copied().flatten() else { continue };
+                if self.angles[leaf.at()] == 0.0 {
+                    self.found.push(leaf);
                 }
-                if self.angles[leaf as usize] == 0.0 {
-                    self.found.push(NodeId(leaf));
-                }
-                self.angles[leaf as usize] += angle;
+                self.angles[leaf.at()] += angle;
             }
         }
         let angle = |leaf: &NodeId| (*leaf, self.angles[leaf.at()] as f32);
@@ -291,19 +267,19 @@ impl<S: Drawable> ItemBuffer<S> {
         list
     }
     /// What stands still in a view, from a node on.
-    fn gather(&mut self, seen: &Seen<'_, S>, view: &Frustum<S::Vector>, (id, planes): (NodeId, u8)) {
-        let node = &seen.tree.nodes()[id.at()];
+    fn gather(&mut self, leaves: &Leaves<'_, S>, view: &Frustum<S::Vector>, (id, planes): (NodeId, u8)) {
+        let node = &leaves.tree.nodes()[id.at()];
         let cutting = match view.test(&node.bounds, planes) {
             FrustumTest::Outside(_) => return,
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
         match node.children().filter(|_| cutting > 0) {
-            Some(children) => children.into_iter().for_each(|c| self.gather(seen, view, (c, cutting))),
+            Some(children) => children.into_iter().for_each(|c| self.gather(leaves, view, (c, cutting))),
             None => {
-                let moves = !seen.scene.moving().is_empty();
-                let still = |p: &&PrimId| !(moves && seen.scene.is_moving(**p));
-                self.prims.extend(seen.tree.prims_below(id).iter().filter(still));
+                let moves = !leaves.scene.moving().is_empty();
+                let still = |p: &&PrimId| !(moves && leaves.scene.is_moving(**p));
+                self.prims.extend(leaves.tree.prims_below(id).iter().filter(still));
             }
         }
     }
@@ -316,7 +292,8 @@ mod tests {
     use super::*;
     use crate::geometry::dice::Dice;
     use crate::geometry::{Flat, Solid};
-    use crate::scene::{Parts, Quiet};
+    use crate::index::KdTree;
+    use crate::scene::{Parts, Quiet, Scene};
 
     #[test]
     fn pixels_of_a_cube_fill_the_sphere() {
@@ -382,17 +359,17 @@ mod tests {
         let boxes = scene.live().iter().map(|&p| (p, scene.prim_bounds(p)));
         let tree = KdTree::build(boxes, 4, || false).expect("not cancelled");
         let occluders = vec![true; tree.nodes().len()];
-        let seen = Seen { scene: &scene, tree: &tree, occluders: &occluders };
+        let leaves = Leaves { scene: &scene, tree: &tree, occluders: &occluders };
         let made = || {
             let grid = Grid::new(&scene.bounds(), 11);
-            grid.fill(&seen, Surfaces::default(), &Quiet).expect("not cancelled")
+            grid.fill(&leaves, Surfaces::default(), &Quiet).expect("not cancelled")
         };
         let grid = made();
         assert!(grid == made(), "threads leave no trace");
         let of = |prim: u32| {
-            let leaf = (0..tree.nodes().len() as u32).map(NodeId).find(|&n| {
-                tree.nodes()[n.at()].is_leaf() && tree.prims_below(n) == [PrimId(prim)]
-            });
+            let leaf = (0..tree.nodes().len() as u32)
+                .map(NodeId)
+                .find(|&n| tree.nodes()[n.at()].is_leaf() && tree.prims_below(n) == [PrimId(prim)]);
             leaf.expect("a leaf a segment")
         };
         let mut inside = 0;

@@ -6,7 +6,7 @@
 //!
 //! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]), by
 //!    lists of what a grid's points see if one is made ([`grid`]);
-//! 2. they are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
+//! 2. they, or what stands in for them ([`stand_ins`], Section 8), are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
 //!    is averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
 //! 3. the hierarchy of the model is visited: a node that is outside the frustum, or behind the occluders
 //!    (Section 5.2) and within what they cover ([`overlap`], Section 5.1), is culled with all below it.
@@ -21,11 +21,13 @@ mod depth;
 mod evidence;
 mod grid;
 mod index;
+mod leaves;
 mod maps;
 mod overlap;
 mod picture;
 mod saved;
 mod selection;
+mod stand_ins;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -38,6 +40,7 @@ pub(crate) use self::evidence::{Evidence, Ground};
 use self::index::Databases;
 use self::maps::Maps;
 use self::selection::Selection;
+use self::stand_ins::Kind;
 use self::walk::{Scratch, Walk};
 use super::depth::Faces;
 use crate::drawing::Drawing;
@@ -59,6 +62,8 @@ pub(crate) struct Params {
     opacity_threshold: f32,
     depth: DepthKind,
     depth_resolution: u32,
+    closing: u32,
+    occluders: Kind,
     selection: Selection,
     /// Points of the grid along the longest side.
     grid: u32,
@@ -82,6 +87,8 @@ impl Default for Params {
             depth: DepthKind::default(),
             // Section 5.2.2: "a coarse resolution (e.g. 64×64)".
             depth_resolution: 64,
+            closing: 0,
+            occluders: Kind::default(),
             selection: Selection::default(),
             grid: 16,
             occluder_budget: 0,
@@ -218,7 +225,10 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         Walk::new(frame, memory, maps, out, watch).run();
     }
     fn is_conservative(params: &Params) -> bool {
-        params.samples == Samples::Image && params.opacity_threshold == 1.0
+        // Stand-ins that preserve occlusion change what is culled, not what is seen.
+        let preserves = params.occluders != Kind::Clustered;
+        let ignores = params.opacity_threshold < 1.0 || params.closing > 0;
+        params.samples == Samples::Image && preserves && !ignores
     }
     fn has_line(params: &Params, line: u8) -> bool {
         has_line(params, line)
@@ -254,6 +264,14 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     );
     // Below a half a pixel that is mostly empty would count as opaque.
     knobs.real(threshold, 0.5..=1.0, &mut params.opacity_threshold);
+    let closing = Knob::new(
+        "closing",
+        "samples",
+        "holes of up to so many black samples of the maps are filled: area closing, which unlike a threshold \
+         tells a hole from a slit. What shows through them is lost; 0 fills none",
+        "Vincent 1992; Zhang et al. 1997, Section 5.4",
+    );
+    knobs.integer(closing, 0..=10_000, &mut params.closing);
     let depth = Knob::new(
         "depth",
         "",
@@ -293,6 +311,15 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         source,
     );
     knobs.integer(grid, 1..=64, &mut params.grid);
+    let drawn = Knob::new(
+        "occluders",
+        "",
+        "what is drawn of an occluder: original, what it holds; merged, its coplanar primitives as polygons, \
+         in fewer triangles; largest, the largest of them, three quarters by area; inner, boxes inside its \
+         closed parts; clustered, points closer than occluder-size as one, which may cull what is visible",
+        "Zhang et al. 1997, Sections 6.2 and 8",
+    );
+    knobs.words(drawn, &mut params.occluders);
     let budget = Knob::new(
         "occluder-budget",
         "polygons",

@@ -2,7 +2,8 @@
 //! angles of these.
 
 use super::Params;
-use super::grid::{Grid, Seen};
+use super::grid::Grid;
+use super::leaves::Leaves;
 use crate::culling::saved::{self, Format, damaged};
 use crate::geometry::{NodeId, Space, Vector};
 use crate::scene::Scene;
@@ -45,17 +46,15 @@ pub fn read<S: Space>(
     bytes: &[u8],
     key: &Key,
     grid: Grid<S::Vector>,
-    seen: &Seen<'_, S>,
+    leaves: &Leaves<'_, S>,
 ) -> Result<Grid<S::Vector>, String> {
-    let ([starts, leaves, angles], _) = FORMAT.read::<4, 3>(bytes, key, describe)?;
+    let ([starts, listed, angles], _) = FORMAT.read::<4, 3>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit: each leaf must be one of the
     // occluder database, and each angle a number to sort by.
-    let nodes = seen.tree.nodes();
-    let is_leaf = |&n: &u32| nodes.get(n as usize).is_some_and(|node| node.is_leaf() && seen.occluders[n as usize]);
     let angles: Vec<f32> = angles.into_iter().map(f32::from_bits).collect();
-    if !leaves.iter().all(is_leaf) || !angles.iter().all(|a| a.is_finite() && *a >= 0.0) {
+    let listed: Vec<NodeId> = listed.into_iter().map(NodeId).collect();
+    if !listed.iter().all(|&leaf| leaves.is_one(leaf)) || !angles.iter().all(|a| a.is_finite() && *a >= 0.0) {
         return Err(damaged());
     }
-    let leaves = leaves.into_iter().map(NodeId).collect();
-    grid.with(starts, leaves, angles).ok_or_else(damaged)
+    grid.with(starts, listed, angles).ok_or_else(damaged)
 }

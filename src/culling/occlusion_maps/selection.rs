@@ -2,7 +2,6 @@
 
 use super::index::Databases;
 use crate::geometry::{Frustum, FrustumTest, NodeId, Projection, Vector, View, nearest_depth};
-use crate::index::Hierarchy;
 use crate::method::words;
 use crate::raster::Drawable;
 
@@ -33,7 +32,7 @@ pub(crate) struct Candidate {
     pub angle: f32,
     /// The depth (`1/w`) of its nearest point.
     pub nearest: f32,
-    /// Primitives that it holds.
+    /// Primitives that are drawn of it.
     pub polygons: u32,
     /// Whether it comes before its turn: it was an occluder, or could be seen, in the last frame.
     pub is_kept: bool,
@@ -111,7 +110,7 @@ fn gather<S: Drawable>(
         return;
     }
     let node = &index.tree().nodes()[id.at()];
-    let cutting = match frustum.test(&node.bounds, planes) {
+    let cutting = match frustum.test(index.occluder_bounds(id), planes) {
         FrustumTest::Outside(_) => return,
         FrustumTest::Partial(cutting) => cutting,
         FrustumTest::Inside => 0,
@@ -122,7 +121,11 @@ fn gather<S: Drawable>(
                 gather(index, view, frustum, projection, (child, cutting), to);
             }
         }
-        None => to.push(candidate(index, view, projection, id)),
+        None => {
+            let found = candidate(index, view, projection, id);
+            // Where nothing may be drawn for it, it is none.
+            to.extend((found.polygons > 0).then_some(found));
+        }
     }
 }
 
@@ -132,7 +135,7 @@ fn candidate<S: Drawable>(
     projection: &Projection<S::Vector>,
     node: NodeId,
 ) -> Candidate {
-    let bounds = Hierarchy::<S>::bounds(index, node);
+    let bounds = index.occluder_bounds(node);
     // "The distance between the viewer and the center of an object's bounding volume."
     let distance = (bounds.center() - view.eye.position).length();
     let across = bounds.diagonal() / distance.max(f32::MIN_POSITIVE);
@@ -141,8 +144,8 @@ fn candidate<S: Drawable>(
         distance,
         size: across * across,
         angle: 0.0,
-        nearest: nearest_depth(projection, &bounds, view.eye.near),
-        polygons: index.tree().prims_below(node).len() as u32,
+        nearest: nearest_depth(projection, bounds, view.eye.near),
+        polygons: index.occluder_prims(node, view, projection),
         is_kept: false,
     }
 }
