@@ -1,14 +1,15 @@
 //! Area closing: small holes of a picture of bits are filled.
 //!
 //! A *hole* is a connected set of black samples, of those that nothing covers; it is filled if it has at most
-//! so many. That is the area closing of Vincent ("Morphological area openings and closings for grayscale
-//! images", 1992, <https://doi.org/10.1007/978-3-662-03039-4_13>) of a binary image.
+//! so many. That is the area closing of Vincent ("Morphological Area Openings and Closings for Grey-scale
+//! Images", in Shape in Picture, 1994, <https://doi.org/10.1007/978-3-662-03039-4_13>) of a binary image.
 //!
-//! Samples that touch at a corner belong to one hole (8-connected): what covers is then 4-connected, as the two
-//! must differ for holes to be what coverings surround. With 4-connected holes a slit that runs askew, one
-//! sample wide, would fall into single samples and be filled whatever its length.
+//! Samples that touch at a corner belong to one hole (8-connected): what covers is then 4-connected, as the
+//! two must differ for holes to be what coverings surround. With 4-connected holes a slit that runs askew,
+//! one sample wide, would fall into single samples and be filled whatever its length.
 //!
-//! 1. Rows are cut into runs of black samples, and runs of neighboring rows that touch are joined (union-find).
+//! 1. Rows are cut into runs of black samples, and runs of neighboring rows that touch are joined
+//!    (union-find).
 //! 2. The runs of sets that are small enough are filled.
 //!
 //! Cost: O(tiles + runs), and nothing where no sample is black.

@@ -13,9 +13,9 @@ impl Turns {
     pub fn new<S: Space>(view: &View<S>) -> Self {
         Self(Camera::new(view))
     }
-    /// Whether the triangles that a flat polygon is cut into (or the one segment) may stand for any others that
-    /// it is cut into, with the same border: they cover no sample that those do not, and are nearer than those
-    /// by no more than twice [`super::DEPTH_SLACK`].
+    /// Whether the triangles that a flat polygon is cut into (or the one segment) may stand for any others
+    /// that it is cut into, with the same border: they cover no sample that those do not, and are nearer
+    /// than those by no more than twice [`super::DEPTH_SLACK`].
     ///
     /// The triangles of either cut, by the signs of the ways round that they turn, cover a sample as often in
     /// sum as the border winds around it. If none of these turns another way than the others (flat ones turn

@@ -248,11 +248,11 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "6.2",
-        what: "with occluders=merged, largest or inner what stands in for an occluder covers no sample that it \
-               does not cover, nearer than it does; where snapping to the pixel grid could undo that, the \
-               occluder itself is drawn, or, of inner boxes, nothing",
-        why: "the paper's simplified occluders have error bounds and do not preserve occlusion, which Section 8 \
-              wishes for",
+        what: "with occluders=merged, largest or inner what stands in for an occluder covers no sample that \
+               it does not cover, nearer than it does; where snapping to the pixel grid could undo that, \
+               the occluder itself is drawn, or, of inner boxes, nothing",
+        why: "the paper's simplified occluders have error bounds and do not preserve occlusion, which \
+              Section 8 wishes for",
         when: When::Without("occluders", "original"),
     },
     Departure {

@@ -455,8 +455,8 @@ impl Built {
             format!(" with {} of holes of at most {} filled", count(self.filled, "sample"), self.closing)
         };
         format!(
-            "The occluders cover {covered:.1} % of the samples{filled}. Averaged, they make {} of occlusion maps, \
-             the finest of {columns} × {rows}; {threshold}.",
+            "The occluders cover {covered:.1} % of the samples{filled}. Averaged, they make {} of occlusion \
+             maps, the finest of {columns} × {rows}; {threshold}.",
             count(self.levels, "level")
         )
     }
@@ -604,9 +604,9 @@ impl<S: Faces> Answered<S> {
                          what they cover. {reads}."
                     ),
                     (true, false, 0) => format!(
-                        "Node {node} is culled, though not proven hidden: it is behind the occluders, and its \
-                         rectangle lies within what is drawn of them at the samples of the maps, which may \
-                         be more than they cover. {reads}."
+                        "Node {node} is culled, though not proven hidden: it is behind the occluders, and \
+                         its rectangle lies within what is drawn of them at the samples of the maps, which \
+                         may be more than they cover. {reads}."
                     ),
                     (true, false, n) => format!(
                         "Node {node} is culled, though not proven hidden: {} in the map pixels under it are \

@@ -6,8 +6,9 @@
 //!
 //! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]), by
 //!    lists of what a grid's points see if one is made ([`grid`]);
-//! 2. they, or what stands in for them ([`stand_ins`], Section 8), are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
-//!    is averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
+//! 2. they, or what stands in for them ([`stand_ins`], Section 8), are drawn in white ([`maps`]), their
+//!    depths are estimated ([`depth`], Section 5.2), and the image is averaged down to a hierarchy of
+//!    occlusion maps (Section 4, [`crate::raster::Opacity`]);
 //! 3. the hierarchy of the model is visited: a node that is outside the frustum, or behind the occluders
 //!    (Section 5.2) and within what they cover ([`overlap`], Section 5.1), is culled with all below it.
 //!
@@ -192,6 +193,7 @@ impl<S: Faces> Method<S> for OcclusionMaps {
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         map_knobs(params, knobs);
+        selection_knobs(params, knobs);
         occluder_knobs(params, knobs);
         surface_knobs(knobs, &mut params.surfaces);
     }
@@ -269,7 +271,7 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         "samples",
         "holes of up to so many black samples of the maps are filled: area closing, which unlike a threshold \
          tells a hole from a slit. What shows through them is lost; 0 fills none",
-        "Vincent 1992; Zhang et al. 1997, Section 5.4",
+        "Vincent 1994; Zhang et al. 1997, Section 5.4",
     );
     knobs.integer(closing, 0..=10_000, &mut params.closing);
     let depth = Knob::new(
@@ -290,8 +292,8 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     knobs.integer(entries, 1..=1024, &mut params.depth_resolution);
 }
 
-/// Parameters of the occluders.
-fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+/// How occluders are chosen.
+fn selection_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let source = "Zhang et al. 1997, Section 5.3.2";
     let selection = Knob::new(
         "selection",
@@ -311,15 +313,6 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         source,
     );
     knobs.integer(grid, 1..=64, &mut params.grid);
-    let drawn = Knob::new(
-        "occluders",
-        "",
-        "what is drawn of an occluder: original, what it holds; merged, its coplanar primitives as polygons, \
-         in fewer triangles; largest, the largest of them, three quarters by area; inner, boxes inside its \
-         closed parts; clustered, points closer than occluder-size as one, which may cull what is visible",
-        "Zhang et al. 1997, Sections 6.2 and 8",
-    );
-    knobs.words(drawn, &mut params.occluders);
     let budget = Knob::new(
         "occluder-budget",
         "polygons",
@@ -335,6 +328,19 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         "Zhang et al. 1997, Sections 6.2 and 7",
     );
     knobs.switch(adapts, &mut params.adapts);
+}
+
+/// What occluders are.
+fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+    let drawn = Knob::new(
+        "occluders",
+        "",
+        "what is drawn of an occluder: original, what it holds; merged, its coplanar primitives as polygons, \
+         in fewer triangles; largest, the largest of them, three quarters by area; inner, boxes inside its \
+         closed parts; clustered, points closer than occluder-size as one, which may cull what is visible",
+        "Zhang et al. 1997, Sections 6.2 and 8",
+    );
+    knobs.words(drawn, &mut params.occluders);
     let source = "Zhang et al. 1997, Section 5.3.1";
     let size =
         Knob::new("occluder-size", "‰", "what is smaller than this part of the scene is no occluder", source);

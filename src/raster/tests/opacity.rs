@@ -152,8 +152,8 @@ fn levels_of_a_wide_image() {
     assert_eq!((maps.opacity(last), maps.black(PyramidCell { level: 6, x: 3, y: 2 })), (1.0, 0));
 }
 
-/// Black samples in holes of at most `most`, by filling one hole after the other; samples that touch at a corner
-/// are of one.
+/// Black samples in holes of at most `most`, by filling one hole after the other; samples that touch at a
+/// corner are of one.
 fn flooded([width, height]: [u32; 2], most: usize, black: &[bool]) -> Vec<bool> {
     let (mut filled, mut seen) = (vec![false; black.len()], vec![false; black.len()]);
     for first in 0..black.len() {

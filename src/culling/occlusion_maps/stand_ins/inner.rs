@@ -10,13 +10,13 @@
 //!    around a cell that is left, and so on. Boxes overlap, so that they leave no slits where they meet.
 //! 4. Each is made smaller by a margin, and given to the nearest leaf that holds some of the part.
 //!
-//! Why nothing shows ([`Inside::is_deep_enough`]): the rasterizer moves corners by half a grid step an axis, those
-//! of the box and those of the part. Take a sample that the box covers, and the point of the box there before
-//! it was moved. All points of the part's surface are farther from it than both moves together, on the screen
-//! and in depth. While corners are moved into their places the surface does not pass through that point, so
-//! its winding number stays what it was; and since the part is closed and lies as a whole beyond the near
-//! plane, its moved surface crosses the line of sight before that point. So it covers the sample, nearer than
-//! the box does there.
+//! Why nothing shows ([`Inside::is_deep_enough`]): the rasterizer moves corners by half a grid step an axis,
+//! those of the box and those of the part. Take a sample that the box covers, and the point of the box there
+//! before it was moved. All points of the part's surface are farther from it than both moves together, on
+//! the screen and in depth. While corners are moved into their places the surface does not pass through that
+//! point, so its winding number stays what it was; and since the part is closed and lies as a whole beyond
+//! the near plane, its moved surface crosses the line of sight before that point. So it covers the sample,
+//! nearer than the box does there.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -233,15 +233,7 @@ impl<V: Vector> Cells<V> {
                 // One without a plane is beside it everywhere.
                 is_free[at] &= beside && sides().any(|s| s != 0.0);
             });
-            // All along the ray that comes from below.
-            let mut rays = cells.all();
-            for axis in 1..V::AXES {
-                let center = |i: &usize| middle(&cells.planes[axis], *i);
-                let hit = |i: &usize| (bounds.min.get(axis)..=bounds.max.get(axis)).contains(&center(i));
-                let first = (0..cells.counts()[axis]).find(hit).unwrap_or(0);
-                let past = (0..cells.counts()[axis]).rev().find(hit).map_or(0, |last| last + 1);
-                rays[axis] = first..past.max(first);
-            }
+            let rays = cells.rays_through(&bounds);
             cells.each(&rays, |at, bounds| windings[at] += crossing::<S>(corners, bounds.center()));
         }
         let is_in = |winding: &i32| if one_sided { *winding > 0 } else { *winding != 0 };
@@ -271,6 +263,18 @@ impl<V: Vector> Cells<V> {
     fn bounds(&self, cells: &Span) -> Aabb<V> {
         let at = |end: fn(&Range<usize>) -> usize| V::from_fn(|a| self.planes[a][end(&cells[a])]);
         Aabb { min: at(|r| r.start), max: at(|r| r.end) }
+    }
+    /// The cells along the first axis whose centers are level with a box along the others.
+    fn rays_through(&self, bounds: &Aabb<V>) -> Span {
+        let mut rays = self.all();
+        for (axis, cells) in rays.iter_mut().enumerate().take(V::AXES).skip(1) {
+            let planes = &self.planes[axis];
+            let center = |i: &usize| planes[*i] * 0.5 + planes[*i + 1] * 0.5;
+            let hit = |i: &usize| (bounds.min.get(axis)..=bounds.max.get(axis)).contains(&center(i));
+            let first = cells.clone().find(hit).unwrap_or(0);
+            *cells = first..cells.clone().rev().find(hit).map_or(first, |last| last + 1);
+        }
+        rays
     }
     /// Makes the sums.
     fn sum_up(&mut self) {
@@ -383,15 +387,10 @@ fn cuts<S: Space>(scene: &Scene<S>, prims: &[PrimId], axis: usize) -> Vec<f32> {
     at
 }
 
-/// The middle of a cell along an axis, as its center has it.
-fn middle(planes: &[f32], cell: usize) -> f32 {
-    planes[cell] * 0.5 + planes[cell + 1] * 0.5
-}
-
 /// By how much a ray from a point along the first axis changes the winding number where it crosses a
-/// primitive: 1 where it leaves by its front, −1 where it enters, 0 where it passes by. Points on an edge count
-/// for one of the primitives that meet there, as though the point stood a little farther along the second
-/// axis, and less so along the third.
+/// primitive: 1 where it leaves by its front, −1 where it enters, 0 where it passes by. Points on an edge
+/// count for one of the primitives that meet there, as though the point stood a little farther along the
+/// second axis, and less so along the third.
 fn crossing<S: Space>(corners: &[S::Vector], from: S::Vector) -> i32 {
     let flat = |p: S::Vector| glam::dvec2(f64::from(p.get(1)), f64::from(p.get(S::Vector::AXES - 1)));
     let at = flat(from);

@@ -1,13 +1,13 @@
 //! Coplanar neighbors of a leaf as one polygon, cut into fewer triangles (Zhang et al. 1997, Section 8).
 //!
-//! Neighboring triangles of a leaf whose corners lie exactly on one plane, and which have one border together,
-//! are cut anew along that border. Every corner of the border is kept, so that its image
+//! Neighboring triangles of a leaf whose corners lie exactly on one plane, and which have one border
+//! together, are cut anew along that border. Every corner of the border is kept, so that its image
 //! is the same to the last sample; corners inside are not needed, and each saves two triangles. Triangles are
 //! cut off as ears, none of which is flat. In flatland segments that go on straight become one.
 //!
 //! Depth: on one plane the new triangles are as deep as the old ones, but for rounding and for what the
-//! rasterizer's slack allows ([`crate::raster::Turns::may_stand_for`]). Where a single Z plane or depths at samples are
-//! compared, what is culled must be farther by that.
+//! rasterizer's slack allows ([`crate::raster::Turns::may_stand_for`]). Where a single Z plane or depths at
+//! samples are compared, what is culled must be farther by that.
 
 use std::collections::BTreeMap;
 

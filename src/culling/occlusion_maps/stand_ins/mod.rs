@@ -7,8 +7,8 @@
 //! - [`inner`]: boxes inside closed parts;
 //! - *clustered*: for comparison a simplification that preserves nothing, vertex clustering (Rossignac and
 //!   Borrel, "Multi-resolution 3D approximations for rendering complex scenes", 1993,
-//!   <https://doi.org/10.1007/978-3-642-78114-8_29>): points in one cell of a grid become their mean, and what
-//!   is left of two corners or one is dropped. What is hidden by that is presumed.
+//!   <https://doi.org/10.1007/978-3-642-78114-8_29>): points in one cell of a grid become their mean, and
+//!   what is left of two corners or one is dropped. What is hidden by that is presumed.
 //!
 //! Stand-ins are a scene of their own, made into clusters after those of the model. Which leaves are
 //! occluders, and what is culled, is a matter of the model as ever.

@@ -18,8 +18,8 @@ pub const TABLE: Experiment = Experiment {
     method: OCCLUSION_MAPS,
     scenes: &["generate:forest"],
     title: "Zhang et al. 1997, Section 5.4: thresholds and area closing",
-    summary: "Holes of up to n samples ignored by opacity thresholds and by area closing: triangles saved and \
-              pixels lost",
+    summary: "Holes of up to n samples ignored by opacity thresholds and by area closing: triangles saved \
+              and pixels lost",
     notes: &[
         "Images of 1024 × 1024 pixels, unless a size is set, and maps of at most 64 × 64, as in the paper's \
          example. A threshold of 1 − n/m_0 ignores up to n black samples of each map pixel, wherever they \

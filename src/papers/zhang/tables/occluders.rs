@@ -53,8 +53,8 @@ const SWEEP: Sweep = Sweep {
     plots,
 };
 
-/// A kind and the parameters that make it. What is clustered is as coarse as what is too small for the occluder
-/// database.
+/// A kind and the parameters that make it. What is clustered is as coarse as what is too small for the
+/// occluder database.
 type Drawn = (&'static str, &'static [(&'static str, &'static str)]);
 
 const KINDS: [Drawn; 6] = [
