@@ -13,6 +13,7 @@ pub(crate) mod large_occluders;
 pub(crate) mod layered_projection;
 pub(crate) mod occlusion_maps;
 pub(crate) mod parallel_hierarchical_z;
+mod saved;
 
 pub use hierarchical_z::parts as hierarchical_z_parts;
 pub use large_occluders::anatomy;

@@ -14,6 +14,7 @@ mod id;
 mod overlap;
 mod predicate;
 mod project;
+mod sets;
 mod space;
 #[cfg(test)]
 mod tests;
@@ -31,5 +32,6 @@ pub use overlap::{
 };
 pub use predicate::{insphere, orient2d, orient3d};
 pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, farthest_depth, nearest_depth, project_box};
+pub use sets::Sets;
 pub use space::{Flat, Solid, Space, Vector, faces_away};
 pub use walk::WALKING_STEP_M;

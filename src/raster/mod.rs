@@ -15,6 +15,7 @@
 //! Cost: O(points + primitives + covered pixels).
 
 mod blocks;
+mod closing;
 mod fill;
 mod frame;
 mod image;
@@ -31,6 +32,7 @@ mod stand_in;
 pub(crate) mod tests;
 mod through;
 mod tiles;
+mod turns;
 mod vertex;
 
 pub use opacity::Opacity;
@@ -42,6 +44,7 @@ pub use srgb::{srgb, srgb_bytes};
 pub use stand_in::StandIn;
 pub use through::look_through;
 pub use tiles::{Answer, Boxes, Clusters, Fate, Hears, How, Outcome, Question, Read, Tiles};
+pub use turns::Turns;
 
 use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::{Scene, Surfaces};

@@ -12,8 +12,11 @@
 //! no level is rounded. Opacity is `1 − black / present`; samples beyond the image's edge are neither black
 //! nor present.
 //!
+//! Small holes may be filled before the samples are counted ([`Opacity::fill_holes`]).
+//!
 //! Cost: O(tiles + pixels of level 0); 4 bytes a map pixel.
 
+use super::closing::{present_of_tile, small_holes};
 use super::{PyramidCell, Tiles};
 use crate::geometry::PixelRect;
 
@@ -25,6 +28,8 @@ pub struct Opacity {
     /// A pixel of level 0 has `1 << shift` samples a side.
     shift: u32,
     is_flat: bool,
+    /// Most black samples of a hole that is filled.
+    closing: u32,
     /// From the finest up.
     levels: Vec<Map>,
 }
@@ -36,6 +41,8 @@ struct Map {
     rows: u32,
     /// Black samples of each pixel, row by row.
     black: Vec<u32>,
+    /// Samples that were black before holes were filled; nothing where none are.
+    filled: Vec<u32>,
 }
 
 /// Both sides of the coarsest map are at most this (Section 4.1: "typically 4×4").
@@ -45,7 +52,7 @@ impl Opacity {
     /// Maps over an image of so many samples, whose finest pixels have `1 << shift` of them a side; nothing
     /// is covered. In flatland the image is one row.
     pub fn clear(&mut self, size: [u32; 2], shift: u32, is_flat: bool) {
-        (self.size, self.shift, self.is_flat) = (size, shift, is_flat);
+        (self.size, self.shift, self.is_flat, self.closing) = (size, shift, is_flat, 0);
         let mut at = [size[0].div_ceil(1 << shift), if is_flat { 1 } else { size[1].div_ceil(1 << shift) }];
         let mut count = 0;
         loop {
@@ -55,6 +62,7 @@ impl Opacity {
             let map = &mut self.levels[count];
             (map.columns, map.rows) = (at[0], at[1]);
             map.black.clear();
+            map.filled.clear();
             count += 1;
             if at[0].max(at[1]) <= TOP {
                 break;
@@ -65,6 +73,11 @@ impl Opacity {
         for level in 0..count {
             self.blacken(level);
         }
+    }
+    /// From here on fills holes of at most so many black samples before the samples are counted: connected
+    /// ones, if only at corners. See [`mod@super::closing`].
+    pub fn fill_holes(&mut self, most: u32) {
+        self.closing = most;
     }
     /// Makes all samples of a level black.
     fn blacken(&mut self, level: usize) {
@@ -98,9 +111,33 @@ impl Opacity {
             })
         });
     }
-    /// Counts the black samples of level 0 from masks of four tiles of 8×4 samples side by side, bit
-    /// `8 y + x`, given by strip of 32 samples and row; then adds up.
+    /// From masks of four tiles of 8×4 samples side by side, bit `8 y + x`, given by strip of 32 samples and
+    /// row.
     fn build_from(&mut self, masks: impl Fn(usize, usize) -> [u32; 4]) {
+        if self.closing == 0 {
+            return self.count(masks);
+        }
+        let of_tile = |x: u16, y: u16| masks(usize::from(x) / 4, usize::from(y))[usize::from(x) % 4];
+        let filled = small_holes(self.size, self.closing, of_tile);
+        let columns = self.size[0].div_ceil(8) as usize;
+        let of_line = |strip: usize, row: usize| {
+            [0, 1, 2, 3].map(|k| match 4 * strip + k {
+                x if x < columns => filled[row * columns + x],
+                _ => 0,
+            })
+        };
+        // Counted by the same code, as if they were all that is black.
+        self.count(|strip, row| of_line(strip, row).map(|m| !m));
+        for map in &mut self.levels {
+            map.filled.clone_from(&map.black);
+        }
+        self.count(|strip, row| {
+            let (covered, filled) = (masks(strip, row), of_line(strip, row));
+            [0, 1, 2, 3].map(|k| covered[k] | filled[k])
+        });
+    }
+    /// Counts the black samples of level 0, then adds up.
+    fn count(&mut self, masks: impl Fn(usize, usize) -> [u32; 4]) {
         self.blacken(0);
         for strip in 0..self.size[0].div_ceil(32) as usize {
             for row in 0..self.size[1].div_ceil(4) as usize {
@@ -173,6 +210,13 @@ impl Opacity {
         let map = &self.levels[usize::from(cell.level)];
         map.black[u32::from(cell.y) as usize * map.columns as usize + usize::from(cell.x)]
     }
+    /// Samples of a pixel that were black before holes were filled.
+    #[inline]
+    pub fn filled(&self, cell: PyramidCell) -> u32 {
+        let map = &self.levels[usize::from(cell.level)];
+        let at = u32::from(cell.y) as usize * map.columns as usize + usize::from(cell.x);
+        map.filled.get(at).copied().unwrap_or(0)
+    }
     /// Samples of a pixel that lie in the image.
     #[inline]
     pub fn present(&self, cell: PyramidCell) -> u32 {
@@ -217,13 +261,6 @@ impl Opacity {
         };
         (0..top).find(|&k| spans(k) <= 1).unwrap_or(top)
     }
-}
-
-/// The bits of a tile's samples that lie in the image.
-fn present_of_tile([width, height]: [u32; 2], [x, y]: [u32; 2]) -> u32 {
-    let (columns, rows) = ((width - 8 * x).min(8), (height - 4 * y).min(4));
-    let row = 0xff >> (8 - columns);
-    (0..rows).fold(0, |bits, k| bits | row << (8 * k))
 }
 
 /// A level from the one below: sums of two by two pixels, fewer at the far edges.

@@ -53,14 +53,14 @@ impl<S: Cellular> Index<S> {
     pub fn restore(scene: &Arc<Scene<S>>, params: &Params, bytes: &[u8]) -> Result<Self, String> {
         // The key comes from what was asked for, so the bytes have to prove that they fit. ρ_max is not among
         // them: it is counted again.
-        let (cells, assignment) = saved::read(bytes, &Key::of(scene, params), scene)?;
+        let (cells, assignment) = saved::read(bytes, &saved::key(scene, params), scene)?;
         Ok(Self::of(scene, params, cells, assignment))
     }
     fn of(scene: &Arc<Scene<S>>, params: &Params, cells: Cells<S>, assignment: Assignment) -> Self {
         // The root's box holds the scene and every cell, whichever reaches farther.
         let all = (0..cells.any().count() as u32).map(|c| cells.any().bounds(CellId(c)));
         let bounds = all.fold(scene.bounds(), |a, b| a.union(b));
-        let key = Key::of(scene, params);
+        let key = saved::key(scene, params);
         let clusters = None;
         let mut made =
             Self { cells, most: assignment.most(), assignment, clusters, hiding: None, key, bounds };

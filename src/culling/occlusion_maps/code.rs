@@ -1,5 +1,6 @@
 //! The pseudocode of the method, and where it departs from the paper.
 
+use super::stand_ins::Kind;
 use super::{DepthKind, Params};
 use crate::method::{CodeLine, Departure, When};
 
@@ -12,23 +13,30 @@ pub(super) const CODE: &[CodeLine] = &[
         "occlusion culling should be turned off (7)",
     ),
     CodeLine::new("Frame:3", "  C := the leaves of the occluder database in the frustum"),
-    CodeLine::new("Frame:4", "  sort C by distance, or as it is chosen"),
-    CodeLine::new("Frame:5", "  for each leaf B of C, in this order"),
-    CodeLine::new("Frame:6", "    if B is beyond the distance limit: next B"),
+    CodeLine::new("Frame:4", "  look up how large each of C looks from the grid points about the eye"),
+    CodeLine::new("Frame:5", "  sort C by distance, or as it is chosen"),
+    CodeLine::new("Frame:6", "  for each leaf B of C, in this order"),
+    CodeLine::new("Frame:7", "    if B is beyond the distance limit: next B"),
     CodeLine::departing(
-        "Frame:7",
+        "Frame:8",
         "    if the polygons of occluders with those of B exceed L: stop",
         "until their combined polygon count exceeds L (5.3.2)",
     ),
-    CodeLine::new("Frame:8", "    B is an occluder"),
-    CodeLine::new("Frame:9", "  Z := the nearest depth of the leaf that ended this, or the far plane"),
-    CodeLine::new("Frame:10", "  for each occluder B"),
-    CodeLine::new("Frame:11", "    draw B in white"),
-    CodeLine::new("Frame:12", "    write B's farthest depth to the entries that its rectangle touches"),
-    CodeLine::new("Frame:13", "  average 2×2 pixels, again and again, down to a map of 4×4"),
-    CodeLine::new("Frame:14", "  Cull(root)"),
+    CodeLine::new("Frame:9", "    B is an occluder"),
+    CodeLine::new("Frame:10", "  Z := the nearest depth of the leaf that ended this, or the far plane"),
+    CodeLine::new("Frame:11", "  for each occluder B"),
+    CodeLine::new("Frame:12", "    draw B in white"),
+    CodeLine::new("Frame:13", "    draw what stands in for B in white"),
+    CodeLine::new("Frame:14", "    write B's farthest depth to the entries that its rectangle touches"),
     CodeLine::departing(
         "Frame:15",
+        "  fill the holes of at most so many black samples",
+        "ignores small holes by thresholds (5.4)",
+    ),
+    CodeLine::new("Frame:16", "  average 2×2 pixels, again and again, down to a map of 4×4"),
+    CodeLine::new("Frame:17", "  Cull(root)"),
+    CodeLine::departing(
+        "Frame:18",
         "  adapt L and the distance limit by what was culled and drawn",
         "by what was culled and the frame rate (6.2)",
     ),
@@ -93,18 +101,21 @@ pub(super) mod line {
     pub const FRAME: u8 = line(CODE, "Frame:1");
     pub const OFF: u8 = line(CODE, "Frame:2");
     pub const CANDIDATES: u8 = line(CODE, "Frame:3");
-    pub const SORT: u8 = line(CODE, "Frame:4");
-    pub const EACH: u8 = line(CODE, "Frame:5");
-    pub const BEYOND: u8 = line(CODE, "Frame:6");
-    pub const EXCEEDS: u8 = line(CODE, "Frame:7");
-    pub const CHOOSE: u8 = line(CODE, "Frame:8");
-    pub const PLANE: u8 = line(CODE, "Frame:9");
-    pub const EACH_OCCLUDER: u8 = line(CODE, "Frame:10");
-    pub const COVER: u8 = line(CODE, "Frame:11");
-    pub const WRITE: u8 = line(CODE, "Frame:12");
-    pub const AVERAGE: u8 = line(CODE, "Frame:13");
-    pub const ROOT: u8 = line(CODE, "Frame:14");
-    pub const ADAPT: u8 = line(CODE, "Frame:15");
+    pub const LOOK_UP: u8 = line(CODE, "Frame:4");
+    pub const SORT: u8 = line(CODE, "Frame:5");
+    pub const EACH: u8 = line(CODE, "Frame:6");
+    pub const BEYOND: u8 = line(CODE, "Frame:7");
+    pub const EXCEEDS: u8 = line(CODE, "Frame:8");
+    pub const CHOOSE: u8 = line(CODE, "Frame:9");
+    pub const PLANE: u8 = line(CODE, "Frame:10");
+    pub const EACH_OCCLUDER: u8 = line(CODE, "Frame:11");
+    pub const COVER: u8 = line(CODE, "Frame:12");
+    pub const STAND_IN: u8 = line(CODE, "Frame:13");
+    pub const WRITE: u8 = line(CODE, "Frame:14");
+    pub const FILL: u8 = line(CODE, "Frame:15");
+    pub const AVERAGE: u8 = line(CODE, "Frame:16");
+    pub const ROOT: u8 = line(CODE, "Frame:17");
+    pub const ADAPT: u8 = line(CODE, "Frame:18");
     pub const CULL: u8 = line(CODE, "Cull:1");
     pub const OUTSIDE: u8 = line(CODE, "Cull:2");
     pub const HOLDS: u8 = line(CODE, "Cull:3");
@@ -140,14 +151,15 @@ pub(super) mod line {
 /// At which lines each kind of event stands.
 pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("NodeClassified", &["Cull:2"]),
-    ("OccludersGathered", &["Frame:4"]),
-    ("OccluderChosen", &["Frame:8"]),
-    ("OccluderRefused", &["Frame:6", "Frame:7"]),
-    ("PlaneSet", &["Frame:9"]),
-    ("OccluderDrawn", &["Frame:11"]),
-    ("DepthWritten", &["Frame:12"]),
-    ("MapsBuilt", &["Frame:13"]),
-    ("BudgetAdapted", &["Frame:15"]),
+    ("OccludersGathered", &["Frame:5"]),
+    ("GridLookedUp", &["Frame:4"]),
+    ("OccluderChosen", &["Frame:9"]),
+    ("OccluderRefused", &["Frame:7", "Frame:8"]),
+    ("PlaneSet", &["Frame:10"]),
+    ("OccluderDrawn", &["Frame:12", "Frame:13"]),
+    ("DepthWritten", &["Frame:14"]),
+    ("MapsBuilt", &["Frame:16"]),
+    ("BudgetAdapted", &["Frame:18"]),
     ("CullingPaused", &["Frame:2"]),
     ("OccluderHeld", &["Cull:3"]),
     ("DepthCompared", &["Cull:7", "Cull:8", "Cull:11"]),
@@ -238,11 +250,40 @@ pub(super) const DEPARTURES: &[Departure] = &[
         when: When::Always,
     },
     Departure {
+        section: "5.3.2",
+        what: "with selection=grid leaves come by the angle under which the grid points about the eye see \
+               them, each point by its trilinear weight, and the nearest of all others follow",
+        why: "the paper says that occluders can be chosen from lists, not in which order",
+        when: When::With("selection", "grid"),
+    },
+    Departure {
+        section: "5.4",
+        what: "with closing holes of at most so many black samples, connected if only at corners, are filled \
+               before the maps are averaged",
+        why: "a threshold counts black samples of a map pixel, whether they are one hole or part of a slit",
+        when: When::Without("closing", "0"),
+    },
+    Departure {
+        section: "5.5",
+        what: "with selection=grid what moves is in no list, and is chosen by distance after what is in one",
+        why: "the paper has no preprocess where things move; what stands still need not do without",
+        when: When::With("selection", "grid"),
+    },
+    Departure {
         section: "6.2",
         what: "L and the distance limit change by a quarter, by counts of polygons and not by the clock; \
                below 500 polygons (2 in flatland) or above 5 % of the scene (20 %) L does not go",
         why: "a frame can then be played again; the paper gives no numbers",
         when: When::With("adapt", "true"),
+    },
+    Departure {
+        section: "6.2",
+        what: "with occluders=merged, largest or inner what stands in for an occluder covers no sample that \
+               it does not cover, nearer than it does; where snapping to the pixel grid could undo that, \
+               the occluder itself is drawn, or, of inner boxes, nothing",
+        why: "the paper's simplified occluders have error bounds and do not preserve occlusion, which \
+              Section 8 wishes for",
+        when: When::Without("occluders", "original"),
     },
     Departure {
         section: "7",
@@ -262,6 +303,10 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
         line::WRITE | line::BEHIND_ENTRIES => params.depth == DepthKind::Estimation,
         line::NOT_COVERED | line::BEHIND_SAMPLES => params.depth == DepthKind::Samples,
         line::HOLDS | line::OVERLAP => params.depth != DepthKind::Samples,
+        line::COVER => params.occluders == Kind::Original,
+        line::STAND_IN => params.occluders != Kind::Original,
+        line::FILL => params.closing > 0,
+        line::LOOK_UP => params.uses_grid(),
         line::DRAW_ALL => !params.surfaces.one_sided,
         line::EACH_PRIM | line::DRAW_PRIM => params.surfaces.one_sided || params.knows_what_shows(),
         line::FACES_AWAY => params.surfaces.one_sided,

@@ -24,12 +24,14 @@ pub(crate) enum Evidence<S: Faces> {
     Facing(Facing),
     /// Leaves of the occluder database in view, and what the database is.
     Gathered(u32, Counts),
+    /// So many grid points about the eye, and how many leaves they see.
+    LookedUp(u32, u32),
     /// A leaf became an occluder, or not.
     Chosen(Choice),
     /// The single Z plane, by its view depth, world units.
     Plane(f32),
-    /// An occluder was drawn into the maps: with fronts only, or from both sides.
-    Covered(NodeId, bool),
+    /// An occluder was drawn into the maps.
+    Covered(Cover),
     /// An occluder's farthest depth was written to these entries.
     Written(NodeId, PixelRect, f32),
     /// The levels were made.
@@ -62,6 +64,16 @@ pub(crate) struct Choice {
     pub is_taken: bool,
 }
 
+/// What was drawn of an occluder.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cover {
+    pub node: NodeId,
+    /// The node whose groups were drawn: itself, or beyond all nodes what stands in for it.
+    pub drawn: NodeId,
+    /// Whether with fronts only; else from both sides.
+    pub one_sided: bool,
+}
+
 /// The maps that were built.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Built {
@@ -72,6 +84,9 @@ pub(crate) struct Built {
     pub side: u32,
     /// Black samples that a pixel may have.
     pub ignored: u32,
+    /// Samples of holes that were filled, and how many such a hole has at most.
+    pub filled: u32,
+    pub closing: u32,
     /// Black samples of all, and how many there are.
     pub black: u32,
     pub samples: u32,
@@ -130,7 +145,7 @@ impl<S: Faces> Evidence<S> {
     pub(super) fn step(&self) -> Option<MapStep> {
         match *self {
             Self::Plane(z) => Some(MapStep::Plane(z)),
-            Self::Covered(node, one_sided) => Some(MapStep::Cover(node, one_sided)),
+            Self::Covered(c) => Some(MapStep::Cover(c.drawn, c.one_sided)),
             Self::Written(_, touched, farthest) => Some(MapStep::Write(touched, farthest)),
             Self::Built(_) => Some(MapStep::Build),
             Self::Depth(DepthNote::Refreshed(cell)) => Some(MapStep::Refresh(cell)),
@@ -190,6 +205,7 @@ impl<S: Faces> Tallied for Evidence<S> {
                     tally.add("overlap_tests", 1);
                 }
             }
+            Self::LookedUp(_, leaves) => tally.add("leaves_listed", (*leaves).into()),
             Self::Chosen(_) | Self::Plane(_) | Self::Built(_) | Self::Holds(_) => {}
             Self::Adapted(_) | Self::Paused(_) => {}
         }
@@ -207,6 +223,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Tested(n) => n.kind(),
             Self::Facing(_) => "OrientationTested",
             Self::Gathered(..) => "OccludersGathered",
+            Self::LookedUp(..) => "GridLookedUp",
             Self::Chosen(n) if n.is_taken => "OccluderChosen",
             Self::Chosen(_) => "OccluderRefused",
             Self::Plane(_) => "PlaneSet",
@@ -227,12 +244,13 @@ impl<S: Faces> Note<S> for Evidence<S> {
             Self::Tested(n) => n.subject(),
             Self::Facing(n) => n.subject(),
             Self::Chosen(n) => Subject::Node(n.candidate.node),
-            Self::Covered(n, _) | Self::Written(n, ..) | Self::Holds(n) => Subject::Node(*n),
+            Self::Covered(c) => Subject::Node(c.node),
+            Self::Written(n, ..) | Self::Holds(n) => Subject::Node(*n),
             Self::Compared(n) => Subject::Node(n.node),
             Self::Depth(n) => n.subject(),
             Self::Read(n, ..) => Subject::Node(*n),
             Self::Answered(n) => Subject::Node(n.node),
-            Self::Gathered(..) | Self::Plane(_) | Self::Built(_) => Subject::None,
+            Self::Gathered(..) | Self::LookedUp(..) | Self::Plane(_) | Self::Built(_) => Subject::None,
             Self::Adapted(_) | Self::Paused(_) => Subject::None,
         }
     }
@@ -277,11 +295,14 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 integer("redundant", c.redundant),
                 integer("complex", c.complex),
             ],
+            Self::LookedUp(points, leaves) => vec![integer("points", *points), integer("leaves", *leaves)],
             Self::Chosen(n) => n.fields(),
             Self::Plane(z) => vec![number("depth_units", (*z).into())],
-            Self::Covered(n, one_sided) => {
-                vec![integer("node", n.0), Field { name: "one_sided", value: Value::Switch(*one_sided) }]
-            }
+            Self::Covered(c) => vec![
+                integer("node", c.node.0),
+                Field { name: "stand_in", value: Value::Switch(c.drawn != c.node) },
+                Field { name: "one_sided", value: Value::Switch(c.one_sided) },
+            ],
             Self::Written(n, r, farthest) => vec![
                 integer("node", n.0),
                 rectangle("entries", *r),
@@ -295,6 +316,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 integer("black_samples", n.black),
                 integer("samples", n.samples),
                 integer("ignored_samples", n.ignored),
+                integer("filled_samples", n.filled),
             ],
             Self::Holds(n) => vec![integer("node", n.0)],
             Self::Compared(n) => n.fields(),
@@ -318,15 +340,25 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 c.redundant,
                 c.complex
             ),
-            Self::Chosen(n) => n.sentence(S::PRIM),
+            Self::LookedUp(points, listed) => format!(
+                "{} about the eye saw {}: these come first, the larger they looked.",
+                if *points == 1 { "One grid point".into() } else { format!("{points} grid points") },
+                if *listed == 0 { "no occluder".into() } else { leaves(*listed) }
+            ),
+            Self::Chosen(n) => n.sentence::<S>(),
             Self::Plane(z) => format!(
                 "The Z plane lies {} units before the eye: occluders are drawn as far as it, and only what \
                  is wholly beyond it can be culled.",
                 short(*z)
             ),
-            Self::Covered(n, one_sided) => format!(
-                "What node {n} holds is drawn in white{}: it covers samples, and nothing else of it counts.",
-                if *one_sided { ", as far as it faces the eye" } else { "" }
+            Self::Covered(c) => format!(
+                "What {} is drawn in white{}: it covers samples, and nothing else of it counts.",
+                if c.drawn == c.node {
+                    format!("node {} holds", c.node)
+                } else {
+                    format!("stands in for occluder {}", c.node)
+                },
+                if c.one_sided { ", as far as it faces the eye" } else { "" }
             ),
             Self::Written(n, r, farthest) => format!(
                 "Occluder {n} touches {} of the depth estimation buffer: none of these may be nearer than \
@@ -365,6 +397,7 @@ impl Choice {
             integer("node", c.node.0),
             number("distance_units", c.distance.into()),
             number("size", c.size.into()),
+            number("grid_angle", c.angle.into()),
             integer("polygons", c.polygons),
             integer("sum", self.sum),
             integer("limit", self.limit),
@@ -373,11 +406,19 @@ impl Choice {
             Field { name: "kept", value: Value::Switch(c.is_kept) },
         ]
     }
-    fn sentence(&self, prim: &str) -> String {
-        let c = &self.candidate;
+    fn sentence<S: Space>(&self) -> String {
+        let (c, prim) = (&self.candidate, S::PRIM);
         let (node, distance) = (c.node, short(c.distance));
         let holds = count(c.polygons, prim);
-        let kept = if c.is_kept { ", and was of use in the last frame" } else { "" };
+        let kept = match (c.is_kept, c.angle > 0.0) {
+            (true, _) => ", and was of use in the last frame".to_owned(),
+            (_, true) => format!(
+                ", and seen from the grid under {} {}",
+                short(c.angle),
+                if S::CORNERS == 2 { "rad" } else { "sr" }
+            ),
+            _ => String::new(),
+        };
         if self.is_taken {
             format!(
                 "Node {node}, {distance} units away{kept}, is an occluder: its {holds} make {} of at most \
@@ -408,9 +449,14 @@ impl Built {
         } else {
             format!("a pixel counts as opaque with up to {}", count(self.ignored, "black sample"))
         };
+        let filled = if self.closing == 0 {
+            String::new()
+        } else {
+            format!(" with {} of holes of at most {} filled", count(self.filled, "sample"), self.closing)
+        };
         format!(
-            "The occluders cover {covered:.1} % of the samples. Averaged, they make {} of occlusion maps, \
-             the finest of {columns} × {rows}; {threshold}.",
+            "The occluders cover {covered:.1} % of the samples{filled}. Averaged, they make {} of occlusion \
+             maps, the finest of {columns} × {rows}; {threshold}.",
             count(self.levels, "level")
         )
     }
@@ -558,9 +604,9 @@ impl<S: Faces> Answered<S> {
                          what they cover. {reads}."
                     ),
                     (true, false, 0) => format!(
-                        "Node {node} is culled: it is behind the occluders, and its rectangle lies within \
-                         what they cover at the samples of the maps, which are not those of the image. \
-                         {reads}."
+                        "Node {node} is culled, though not proven hidden: it is behind the occluders, and \
+                         its rectangle lies within what is drawn of them at the samples of the maps, which \
+                         may be more than they cover. {reads}."
                     ),
                     (true, false, n) => format!(
                         "Node {node} is culled, though not proven hidden: {} in the map pixels under it are \

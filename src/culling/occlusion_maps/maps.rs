@@ -14,7 +14,7 @@ use crate::scene::Scene;
 pub(crate) enum MapStep {
     /// Occluders count as far as this view depth only, world units: a single Z plane.
     Plane(f32),
-    /// What a leaf holds is drawn, with fronts only or from both sides.
+    /// What a node holds is drawn, or stands in for one, with fronts only or from both sides.
     Cover(NodeId, bool),
     /// A farthest depth is written to entries of the depth estimation buffer.
     Write(PixelRect, f32),
@@ -88,8 +88,9 @@ impl<S: Faces> Maps<S> {
             }
         };
         let samples = View { width: size[0], height: size[1], ..*view };
-        self.tiled.clear(&samples, index.clusters(), scene.prim_count());
+        self.tiled.clear(&samples, index.clusters(), index.drawn_count(scene));
         self.opacity.clear(size, shift, is_flat);
+        self.opacity.fill_holes(params.closing);
         self.buffer.clear([view.width, view.height], params.depth_resolution);
         (self.view, self.pixel, self.has_plane) = (Some(samples), pixel, false);
         // Of many primitives few are drawn.

@@ -4,9 +4,11 @@
 //! <https://doi.org/10.1145/258734.258781>. Once, the occluder database is made ([`index`], Section 5.3.1).
 //! A frame ([`walk`], Section 3):
 //!
-//! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]);
-//! 2. they are drawn in white ([`maps`]), their depths are estimated ([`depth`], Section 5.2), and the image
-//!    is averaged down to a hierarchy of occlusion maps (Section 4, [`crate::raster::Opacity`]);
+//! 1. occluders are chosen ([`selection`], Section 5.3.2), as many as the budget allows ([`budget`]), by
+//!    lists of what a grid's points see if one is made ([`grid`]);
+//! 2. they, or what stands in for them ([`stand_ins`], Section 8), are drawn in white ([`maps`]), their
+//!    depths are estimated ([`depth`], Section 5.2), and the image is averaged down to a hierarchy of
+//!    occlusion maps (Section 4, [`crate::raster::Opacity`]);
 //! 3. the hierarchy of the model is visited: a node that is outside the frustum, or behind the occluders
 //!    (Section 5.2) and within what they cover ([`overlap`], Section 5.1), is culled with all below it.
 //!
@@ -18,11 +20,15 @@ mod budget;
 mod code;
 mod depth;
 mod evidence;
+mod grid;
 mod index;
+mod leaves;
 mod maps;
 mod overlap;
 mod picture;
+mod saved;
 mod selection;
+mod stand_ins;
 #[cfg(test)]
 mod tests;
 mod walk;
@@ -35,13 +41,13 @@ pub(crate) use self::evidence::{Evidence, Ground};
 use self::index::Databases;
 use self::maps::Maps;
 use self::selection::Selection;
+use self::stand_ins::Kind;
 use self::walk::{Scratch, Walk};
 use super::depth::Faces;
 use crate::drawing::Drawing;
 use crate::geometry::Space;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
-    surface_knobs, words,
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, surface_knobs, words,
 };
 use crate::raster::{DepthScale, Opacity};
 use crate::scene::{Progress, Scene, Surfaces};
@@ -57,7 +63,11 @@ pub(crate) struct Params {
     opacity_threshold: f32,
     depth: DepthKind,
     depth_resolution: u32,
+    closing: u32,
+    occluders: Kind,
     selection: Selection,
+    /// Points of the grid along the longest side.
+    grid: u32,
     /// 0: by the scene.
     occluder_budget: u32,
     occluder_size: u32,
@@ -79,7 +89,10 @@ impl Default for Params {
             depth: DepthKind::Samples,
             // Section 5.2.2: "a coarse resolution (e.g. 64×64)".
             depth_resolution: 64,
+            closing: 0,
+            occluders: Kind::default(),
             selection: Selection::default(),
+            grid: 16,
             occluder_budget: 0,
             occluder_size: 2,
             adapts: true,
@@ -128,6 +141,10 @@ words! {
 }
 
 impl Params {
+    /// Whether it is looked from the points of a grid: a single Z plane is a choice of its own.
+    fn uses_grid(&self) -> bool {
+        self.selection == Selection::Grid && self.depth != DepthKind::Plane
+    }
     /// Primitives of a leaf, at most.
     fn leaf_prims<S: Space>(&self) -> u32 {
         // A test costs about as much as a few dozen triangles; flatland is there to be looked at.
@@ -182,6 +199,7 @@ impl<S: Faces> Method<S> for OcclusionMaps {
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         map_knobs(params, knobs);
+        selection_knobs(params, knobs);
         occluder_knobs(params, knobs);
         surface_knobs(knobs, &mut params.surfaces);
     }
@@ -191,18 +209,17 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Self::Index>, String> {
-        keeps_nothing(saved)?;
-        Ok(Databases::build(scene, params, progress))
+        Databases::build(scene, params, saved, progress)
     }
     fn moved(
         index: &mut Arc<Self::Index>,
         _: &mut Memory,
         scene: &Arc<Scene<S>>,
-        _: &Params,
+        params: &Params,
         _: &dyn Progress,
     ) -> Option<()> {
         // The nodes stay, and with them what was chosen and drawn last.
-        Arc::make_mut(index).follow(scene);
+        Arc::make_mut(index).follow(scene, params);
         Some(())
     }
     fn cull<O: Observer<Evidence<S>>>(
@@ -216,7 +233,10 @@ impl<S: Faces> Method<S> for OcclusionMaps {
         Walk::new(frame, memory, maps, out, watch).run();
     }
     fn is_conservative(params: &Params) -> bool {
-        params.samples == Samples::Image && params.opacity_threshold == 1.0
+        // Stand-ins that preserve occlusion change what is culled, not what is seen.
+        let preserves = params.occluders != Kind::Clustered;
+        let ignores = params.opacity_threshold < 1.0 || params.closing > 0;
+        params.samples == Samples::Image && preserves && !ignores
     }
     fn has_line(params: &Params, line: u8) -> bool {
         has_line(params, line)
@@ -252,6 +272,14 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     );
     // Below a half a pixel that is mostly empty would count as opaque.
     knobs.real(threshold, 0.5..=1.0, &mut params.opacity_threshold);
+    let closing = Knob::new(
+        "closing",
+        "samples",
+        "holes of up to so many black samples of the maps are filled: area closing, which unlike a threshold \
+         tells a hole from a slit. What shows through them is lost; 0 fills none",
+        "Vincent 1994; Zhang et al. 1997, Section 5.4",
+    );
+    knobs.integer(closing, 0..=10_000, &mut params.closing);
     let depth = Knob::new(
         "depth",
         "",
@@ -270,18 +298,27 @@ fn map_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     knobs.integer(entries, 1..=1024, &mut params.depth_resolution);
 }
 
-/// Parameters of the occluders.
-fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+/// How occluders are chosen.
+fn selection_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let source = "Zhang et al. 1997, Section 5.3.2";
     let selection = Knob::new(
         "selection",
         "",
         "by what occluders are chosen: distance, the nearest; size, those that look largest; visible, the \
-         nearest of those that could be seen in the last frame. With depth=plane it is the nearest point \
+         nearest of those that could be seen in the last frame; grid, those that look largest from the grid \
+         points about the eye (grid=), and after these the nearest. With depth=plane it is the nearest point \
          that counts",
         source,
     );
     knobs.words(selection, &mut params.selection);
+    let grid = Knob::new(
+        "grid",
+        "points",
+        "points along the longest side of the scene from which it is looked at once, for selection=grid; \
+         what moves is not seen from them",
+        source,
+    );
+    knobs.integer(grid, 1..=64, &mut params.grid);
     let budget = Knob::new(
         "occluder-budget",
         "polygons",
@@ -297,6 +334,19 @@ fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
         "Zhang et al. 1997, Sections 6.2 and 7",
     );
     knobs.switch(adapts, &mut params.adapts);
+}
+
+/// What occluders are.
+fn occluder_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+    let drawn = Knob::new(
+        "occluders",
+        "",
+        "what is drawn of an occluder: original, what it holds; merged, its coplanar primitives as polygons, \
+         in fewer triangles; largest, the largest of them, three quarters by area; inner, boxes inside its \
+         closed parts; clustered, points closer than occluder-size as one, which may cull what is visible",
+        "Zhang et al. 1997, Sections 6.2 and 8",
+    );
+    knobs.words(drawn, &mut params.occluders);
     let source = "Zhang et al. 1997, Section 5.3.1";
     let size =
         Knob::new("occluder-size", "‰", "what is smaller than this part of the scene is no occluder", source);

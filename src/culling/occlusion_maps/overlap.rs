@@ -71,7 +71,7 @@ pub(crate) trait Hears {
 pub(crate) struct Overlap {
     /// Whether the rectangle lies within what is opaque.
     pub is_covered: bool,
-    /// Black samples of the pixels that were opaque enough.
+    /// Samples of the pixels that were opaque enough which are black, or were before holes were filled.
     pub ignored: u32,
     /// Map pixels that were read.
     pub reads: u32,
@@ -133,7 +133,7 @@ impl<H: Hears> Test<'_, H> {
         if black <= self.ignored {
             read(self, Outcome::Opaque);
             self.hears.reaches(Step::Opaque);
-            self.found.ignored += black;
+            self.found.ignored += black + self.maps.filled(cell);
             return true;
         }
         self.hears.reaches(Step::Finest);

@@ -3,7 +3,7 @@
 
 use glam::{Vec2, vec2};
 
-use super::evidence::{Choice, Evidence, draw_choice};
+use super::evidence::{Choice, Cover, Evidence, draw_choice};
 use super::maps::Maps;
 use super::overlap::Outcome;
 use super::{DepthKind, OcclusionMaps};
@@ -26,9 +26,16 @@ type At<'a, 'b, S> = &'a Moment<'b, S, OcclusionMaps>;
 pub(super) fn explain<S: Faces>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
     let (index, view) = (moment.frame.index, moment.frame.view);
     for note in moment.notes {
-        if let Evidence::Covered(node, _) = note {
-            let bounds = Hierarchy::<S>::bounds(index, *node);
-            to.bounds(Layer::Nodes, Role::Occluder, Subject::Node(*node), &bounds);
+        if let Evidence::Covered(Cover { node, drawn, .. }) = note {
+            let subject = Subject::Node(*node);
+            to.bounds(Layer::Nodes, Role::Occluder, subject, index.occluder_bounds(*node));
+            // What stands in is nowhere else to be seen.
+            if let Some(made) = index.stand_ins().filter(|_| drawn != node) {
+                for &prim in made.prims(*node) {
+                    let corners: Vec<S::Vector> = made.scene().prim_points(prim).collect();
+                    to.outline(Layer::Evidence, Role::Occluder, subject, corners);
+                }
+            }
         }
     }
     if S::CORNERS == 2 {

@@ -2,7 +2,6 @@
 
 use super::index::Databases;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, Projection, Space, Vector, View, nearest_depth};
-use crate::index::Hierarchy;
 use crate::method::words;
 use crate::raster::Drawable;
 
@@ -15,6 +14,9 @@ words! {
         Size = "size",
         /// The nearest of those that could be seen in the last frame.
         Visible = "visible",
+        /// Those that look largest from the grid points about the eye, as far as they are seen from there;
+        /// then the nearest of the others.
+        Grid = "grid",
     }
 }
 
@@ -26,9 +28,11 @@ pub(crate) struct Candidate {
     pub distance: f32,
     /// About the solid angle of its box: the square of its diagonal over that of its distance.
     pub size: f32,
+    /// The angle under which the grid points about the eye see it, weighted; 0 where they do not.
+    pub angle: f32,
     /// The depth (`1/w`) of its nearest point.
     pub nearest: f32,
-    /// Primitives that it holds.
+    /// Primitives that are drawn of it.
     pub polygons: u32,
     /// Whether it comes before its turn: it was an occluder, or could be seen, in the last frame.
     pub is_kept: bool,
@@ -42,10 +46,12 @@ pub(crate) enum Order {
     Nearest,
 }
 
-/// What was an occluder in the last frame, and what was drawn, by node.
-pub(crate) struct Last<'a> {
+/// What is known beforehand, by node: what was an occluder in the last frame, and what was drawn.
+pub(crate) struct Known<'a> {
     pub occluders: &'a [bool],
     pub drawn: &'a [bool],
+    /// By node the angles of the grid points about the eye; empty where none is asked.
+    pub angles: &'a [f32],
 }
 
 /// A set that was chosen in the last frame stays while it ranks within so many times the limit.
@@ -68,28 +74,43 @@ pub(crate) fn candidates<S: Drawable>(
     (frustum, projection): (&Frustum<S::Vector>, &Projection<S::Vector>),
     order: Order,
     limit: u32,
-    last: &Last<'_>,
+    known: &Known<'_>,
 ) -> (Vec<Candidate>, u32) {
     let mut ranked = Vec::new();
-    let is_first = |node: NodeId| order == Order::By(Selection::Visible) && last.drawn[node.at()];
-    let key = |bounds: &Aabb<S::Vector>| match order {
+    let angle = |node: NodeId| known.angles.get(node.at()).copied().unwrap_or(0.0);
+    let is_first = |node: NodeId| match order {
+        Order::By(Selection::Visible) => known.drawn[node.at()],
+        // What moves is in no list (Section 5.5: "no pre-processing"): it follows by its distance, as does
+        // all else that the grid points do not see.
+        Order::By(Selection::Grid) => angle(node) > 0.0,
+        _ => false,
+    };
+    let key = |node: NodeId, bounds: &Aabb<S::Vector>| match order {
         Order::By(Selection::Size) => -size_of(bounds, view),
-        Order::By(Selection::Distance | Selection::Visible) => distance_of(bounds, view),
+        Order::By(Selection::Grid) if is_first(node) => -angle(node),
+        Order::By(Selection::Distance | Selection::Visible | Selection::Grid) => distance_of(bounds, view),
         // Larger depths are nearer.
         Order::Nearest => -nearest_depth(projection, bounds, view.eye.near),
     };
-    gather(index, frustum, (NodeId(0), Frustum::<S::Vector>::ALL), &mut |node, bounds| {
-        ranked.push(Ranked { is_first: is_first(node), key: key(bounds), node });
+    let polygons = |node: NodeId| index.occluder_prims(node, view, projection);
+    let may_be_none = index.stand_ins().is_some();
+    gather(index, frustum, (NodeId(0), Frustum::<S::Vector>::ALL), &mut |node| {
+        // Where nothing may be drawn for it, it is none.
+        if !may_be_none || polygons(node) > 0 {
+            let key = key(node, index.occluder_bounds(node));
+            ranked.push(Ranked { is_first: is_first(node), key, node });
+        }
     });
     let in_view = ranked.len() as u32;
-    sort_first(&mut ranked, KEEPS * limit as f32, |node| index.tree().prims_below(node).len());
+    sort_first(&mut ranked, KEEPS * limit as f32, polygons);
     let found = ranked.iter().map(|r| {
         let is_kept = match order {
             // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
-            Order::By(Selection::Distance) => last.occluders[r.node.at()],
-            _ => r.is_first,
+            Order::By(Selection::Distance) => known.occluders[r.node.at()],
+            Order::By(Selection::Visible) => r.is_first,
+            _ => false,
         };
-        candidate(index, view, projection, r.node, is_kept)
+        candidate(index, view, projection, r.node, (angle(r.node), is_kept))
     });
     let mut found: Vec<Candidate> = found.collect();
     found.sort_by_key(|c| !c.is_kept);
@@ -97,7 +118,7 @@ pub(crate) fn candidates<S: Drawable>(
 }
 
 /// Leaves those that come first, in order, and hold more than `most` primitives together, or all.
-fn sort_first(ranked: &mut Vec<Ranked>, most: f32, polygons: impl Fn(NodeId) -> usize) {
+fn sort_first(ranked: &mut Vec<Ranked>, most: f32, polygons: impl Fn(NodeId) -> u32) {
     // Equal ones by number, so that every run takes the same.
     let in_order = |a: &Ranked, b: &Ranked| {
         b.is_first.cmp(&a.is_first).then(a.key.total_cmp(&b.key)).then(a.node.cmp(&b.node))
@@ -126,13 +147,13 @@ fn gather<S: Drawable>(
     index: &Databases<S>,
     frustum: &Frustum<S::Vector>,
     (id, planes): (NodeId, u8),
-    to: &mut impl FnMut(NodeId, &Aabb<S::Vector>),
+    to: &mut impl FnMut(NodeId),
 ) {
     if !index.has_occluders(id) {
         return;
     }
     let node = &index.tree().nodes()[id.at()];
-    let cutting = match frustum.test(&node.bounds, planes) {
+    let cutting = match frustum.test(index.occluder_bounds(id), planes) {
         FrustumTest::Outside(_) => return,
         FrustumTest::Partial(cutting) => cutting,
         FrustumTest::Inside => 0,
@@ -143,7 +164,7 @@ fn gather<S: Drawable>(
                 gather(index, frustum, (child, cutting), to);
             }
         }
-        None => to(id, &node.bounds),
+        None => to(id),
     }
 }
 
@@ -162,15 +183,16 @@ fn candidate<S: Drawable>(
     view: &View<S>,
     projection: &Projection<S::Vector>,
     node: NodeId,
-    is_kept: bool,
+    (angle, is_kept): (f32, bool),
 ) -> Candidate {
-    let bounds = Hierarchy::<S>::bounds(index, node);
+    let bounds = index.occluder_bounds(node);
     Candidate {
         node,
-        distance: distance_of(&bounds, view),
-        size: size_of(&bounds, view),
-        nearest: nearest_depth(projection, &bounds, view.eye.near),
-        polygons: index.tree().prims_below(node).len() as u32,
+        distance: distance_of(bounds, view),
+        size: size_of(bounds, view),
+        angle,
+        nearest: nearest_depth(projection, bounds, view.eye.near),
+        polygons: index.occluder_prims(node, view, projection),
         is_kept,
     }
 }

@@ -8,7 +8,7 @@ use super::overlap::{Hears, MapRead, Outcome, Overlap, Step, overlap_test};
 use super::*;
 use crate::geometry::dice::Dice;
 use crate::geometry::{Eye, Flat, PixelRect, PrimId, Solid, View};
-use crate::method::{Recorder, Verdict};
+use crate::method::{Recorder, Verdict, Words};
 use crate::raster::PyramidCell;
 use crate::scene::{Face, LoadOptions, Parts, Quiet};
 
@@ -320,6 +320,15 @@ fn segments(ends: &[[f32; 4]]) -> (Arc<Scene<Flat>>, View<Flat>) {
     (Arc::new(scene), View { eye, width: 512, height: 1 })
 }
 
+/// A committed scene with its first view.
+fn flat_file(name: &str) -> (Arc<Scene<Flat>>, View<Flat>) {
+    let path = format!("{}/scenes2d/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    let scene = crate::scene::load(&path, &LoadOptions::default(), &Quiet).expect("a committed scene");
+    let crate::scene::AnyScene::Flat(scene) = scene else { panic!("it is flat") };
+    let view = scene.paths()[0].views[0];
+    (scene, view)
+}
+
 fn ids(ids: &[u32]) -> Vec<PrimId> {
     ids.iter().copied().map(PrimId).collect()
 }
@@ -327,13 +336,7 @@ fn ids(ids: &[u32]) -> Vec<PrimId> {
 /// Section 4.3: "occlusion maps represent the fusion of small and possibly disjoint occluders".
 #[test]
 fn two_walls_hide_together_what_neither_hides() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes2d/fusion.json");
-    let crate::scene::AnyScene::Flat(scene) =
-        crate::scene::load(path, &LoadOptions::default(), &Quiet).expect("a committed scene")
-    else {
-        panic!("it is flat")
-    };
-    let mut view = scene.paths()[0].views[0];
+    let (scene, mut view) = flat_file("fusion");
     view.width = 512;
     for depth in [DepthKind::Estimation, DepthKind::Samples] {
         let drawn = |walls: u32| Tried::new(scene.clone(), flat_params(walls, depth)).cull(&view).0;
@@ -399,31 +402,73 @@ fn a_wall_in_pieces_hides_more() {
     assert!(!wall(4), "its piece ends at 4.5");
 }
 
+/// Of the nearest leaves those that fit: which become occluders.
+fn taken<S: Faces>(tried: &mut Tried<S>, view: &View<S>) -> Vec<PrimId> {
+    let (_, film, _) = tried.cull(view);
+    let leaves = film.notes.iter().filter_map(|n| match n {
+        Evidence::Chosen(c) if c.is_taken => Some(c.candidate.node),
+        _ => None,
+    });
+    leaves.flat_map(|leaf| tried.index.tree().prims_below(leaf)).copied().collect()
+}
+
 /// Figure 5: the distance criterion takes what is near, and misses A and B, which are far and large.
 #[test]
 fn figure_5_of_the_paper() {
-    // C, D, E and F of 30 segments each, and A and B of two.
-    let mut ends = Vec::new();
-    for (k, y) in [2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
-        let x = -0.4 + 0.2 * k as f32;
-        ends.extend((0..30).map(|i| [x, y + 0.001 * i as f32, x + 0.05, y + 0.001 * i as f32]));
+    let (scene, mut view) = flat_file("figure5");
+    view.width = 512;
+    // A and B, two segments each.
+    let far: Vec<PrimId> = ids(&[120, 121, 122, 123]);
+    for selection in [Selection::Distance, Selection::Size, Selection::Visible, Selection::Grid] {
+        let params = Params { selection, ..flat_params(100, DepthKind::Samples) };
+        let mut tried = Tried::new(scene.clone(), params);
+        if selection == Selection::Visible {
+            // What was seen is known after a frame, of occluders too, as these are tested by their samples.
+            tried.cull(&view);
+        }
+        let taken = taken(&mut tried, &view);
+        let has_far = far.iter().filter(|p| taken.contains(p)).count();
+        assert!(taken.len() <= 100, "{selection:?}");
+        if selection == Selection::Distance {
+            assert_eq!((taken.len(), has_far), (100, 0), "A and B are missed, and leave a hole");
+        } else {
+            assert_eq!(has_far, 4, "{selection:?} takes A and B: {taken:?}");
+        }
     }
-    for x in [-30.0, 5.0] {
-        ends.extend([[x, 50.0, x + 25.0, 50.0], [x, 50.1, x + 25.0, 50.1]]);
-    }
-    let (scene, view) = segments(&ends);
-    let taken = |selection: Selection| {
-        let params = Params { selection, ..flat_params(100, DepthKind::Estimation) };
-        let (_, film, _) = Tried::new(scene.clone(), params).cull(&view);
-        let chosen = film.notes.iter().filter_map(|n| match n {
-            Evidence::Chosen(c) if c.is_taken => Some(c.candidate.distance > 40.0),
-            _ => None,
-        });
-        chosen.collect::<Vec<_>>()
+}
+
+/// Section 5.3.2: lists are made once, are the same when they are restored, and fit nothing else.
+#[test]
+fn saved_lists_are_those_that_were_made_and_fit_nothing_else() {
+    let (scene, view) = flat_file("figure5");
+    let params = Params { selection: Selection::Grid, grid: 7, ..flat_params(50, DepthKind::Samples) };
+    let restore = |scene: &Arc<Scene<Flat>>, params: &Params, bytes: &[u8]| {
+        <OcclusionMaps as Method<Flat>>::build(scene, params, Some(bytes), &Quiet)
     };
-    assert_eq!(taken(Selection::Distance), [false; 100], "A and B are missed, and leave a hole");
-    let large = taken(Selection::Size);
-    assert_eq!((large.len(), &large[..5]), (100, &[true, true, true, true, false][..]), "their size counts");
+    let mut made = Tried::new(scene.clone(), params);
+    let saved = crate::index::Hierarchy::<Flat>::save(&made.index).expect("there is something to save");
+    let index = restore(&scene, &params, &saved).expect("it fits").expect("not cancelled");
+    assert!(index.grid() == made.index.grid());
+    assert_eq!(crate::index::Hierarchy::<Flat>::save(&index), Some(saved.clone()));
+    let mut again = Tried { scene: scene.clone(), params, index, memory: Memory::default() };
+    assert_eq!(made.cull(&view).0, again.cull(&view).0);
+    // What a frame does with the lists does not matter to them.
+    let later = Params { occluder_budget: 3, depth: DepthKind::Estimation, ..params };
+    assert!(restore(&scene, &later, &saved).is_ok());
+    let refused = |params: &Params, bytes: &[u8]| restore(&scene, params, bytes).err().expect("refused");
+    let other = Params { grid: 8, ..params };
+    assert!(refused(&other, &saved).starts_with("it was made with grid=7 leaf-primitives=1"));
+    let without = Params { selection: Selection::Distance, ..params };
+    assert_eq!(refused(&without, &saved), "only what selection=grid looks up is kept");
+    assert_eq!(crate::index::Hierarchy::<Flat>::save(&Tried::new(scene.clone(), without).index), None);
+    for at in (0..saved.len()).step_by(saved.len() / 60) {
+        let mut bad = saved.clone();
+        bad[at] ^= 4;
+        assert!(!refused(&params, &bad).contains('\n'));
+        assert!(!refused(&params, &saved[..at]).is_empty(), "cut at {at}");
+    }
+    let (elsewhere, _) = flat_file("holes");
+    assert_eq!(restore(&elsewhere, &params, &saved).err().as_deref(), Some("it was made for another scene"));
 }
 
 /// What is culled through a hole that is ignored is presumed, and what is not so is proven.
@@ -499,7 +544,7 @@ fn a_building_is_whole_with_every_depth_and_choice() {
     };
     let path = &scene.paths()[0];
     for depth in [DepthKind::Estimation, DepthKind::Plane, DepthKind::Samples] {
-        for selection in [Selection::Distance, Selection::Size, Selection::Visible] {
+        for selection in Selection::ALL.iter().copied() {
             let params =
                 Params { depth, selection, occluder_budget: 300, adapts: false, ..Params::default() };
             let (mut tried, mut culled) = (Tried::new(scene.clone(), params), 0);

@@ -3,11 +3,12 @@
 use super::budget::{Budget, Work};
 use super::code::line;
 use super::depth::DepthTest;
-use super::evidence::{Answered, Built, Choice, DepthCompared, Evidence, Ground};
+use super::evidence::{Answered, Built, Choice, Cover, DepthCompared, Evidence, Ground};
 use super::index::Databases;
 use super::maps::{MapStep, Maps};
 use super::overlap::{self, MapRead, Overlap, overlap_test};
-use super::selection::{Candidate, Last, Order, candidates};
+use super::selection::{Candidate, Known, Order, candidates};
+use super::stand_ins::Kind;
 use super::{DepthKind, Memory, Params, Samples};
 use crate::culling::depth::{Asking, DepthNote, Faces, Rasterized, Stage, deciding, footprint};
 use crate::drawing::Subject;
@@ -24,6 +25,8 @@ pub(super) struct Scratch {
     /// Nodes that hold an occluder of this frame.
     holds: Vec<bool>,
     occluders: Vec<NodeId>,
+    /// Of each node the angle under which the grid points about the eye see it.
+    angles: Vec<f32>,
 }
 
 impl Clone for Scratch {
@@ -113,9 +116,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             DepthKind::Plane => Order::Nearest,
             _ => Order::By(self.params.selection),
         };
-        let last = Last { occluders: &self.memory.occluders, drawn: &self.memory.drawn };
+        self.look_up();
+        let Memory { occluders, drawn, scratch, .. } = &*self.memory;
+        let known = Known { occluders, drawn, angles: &scratch.angles };
         let cameras = (&self.frustum, &self.projection);
-        let (all, count) = candidates(self.index, self.view, cameras, order, limit, &last);
+        let (all, count) = candidates(self.index, self.view, cameras, order, limit, &known);
         self.line(line::SORT);
         let counts = self.index.counts();
         self.watch.note(move || Evidence::Gathered(count, counts));
@@ -156,6 +161,18 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.maps.step(MapStep::Plane(z));
         }
     }
+    /// What the grid points about the eye see (Section 5.3.2).
+    fn look_up(&mut self) {
+        let angles = &mut self.memory.scratch.angles;
+        angles.clear();
+        if let Some(grid) = self.index.grid() {
+            let nodes = self.index.tree().nodes().len();
+            let points = grid.angles_about(self.view.eye.position, nodes, angles);
+            let leaves = angles.iter().filter(|a| **a > 0.0).count() as u32;
+            self.line(line::LOOK_UP);
+            self.watch.note(move || Evidence::LookedUp(points, leaves));
+        }
+    }
     fn refuse(&mut self, candidate: Candidate, sum: u32, reach: f32) {
         let limit = self.memory.budget.limit;
         let choice = Choice { candidate, sum, limit, reach, is_taken: false };
@@ -181,15 +198,16 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let occluders = std::mem::take(&mut self.memory.scratch.occluders);
         for &node in &occluders {
             self.line(line::EACH_OCCLUDER);
-            self.line(line::COVER);
-            self.watch.note(move || Evidence::Covered(node, one_sided));
-            self.maps.step(MapStep::Cover(node, one_sided));
+            self.line(if self.params.occluders == Kind::Original { line::COVER } else { line::STAND_IN });
+            let drawn = self.index.drawn_for(node, self.view, &self.projection);
+            self.watch.note(move || Evidence::Covered(Cover { node, drawn, one_sided }));
+            self.maps.step(MapStep::Cover(drawn, one_sided));
             if self.params.depth != DepthKind::Estimation {
                 continue;
             }
             self.line(line::WRITE);
-            let bounds = self.index.tree().nodes()[node.at()].bounds;
-            let pixels = match footprint(self.view, &self.projection, &bounds) {
+            let bounds = self.index.occluder_bounds(node);
+            let pixels = match footprint(self.view, &self.projection, bounds) {
                 Footprint::Seen(image) => image.pixels,
                 // No rectangle bounds it.
                 Footprint::CrossesNear => whole(self.view),
@@ -197,7 +215,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             };
             if !pixels.is_empty() {
                 let touched = self.maps.buffer().touched(pixels);
-                let farthest = farthest_depth(&self.projection, &bounds, self.view.eye.near);
+                let farthest = farthest_depth(&self.projection, bounds, self.view.eye.near);
                 self.watch.note(move || Evidence::Written(node, touched, farthest));
                 self.maps.step(MapStep::Write(touched, farthest));
             }
@@ -206,6 +224,10 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// The hierarchy of maps (Section 4.1).
     fn build(&mut self) {
+        let closing = self.params.closing;
+        if closing > 0 {
+            self.line(line::FILL);
+        }
         self.line(line::AVERAGE);
         self.maps.step(MapStep::Build);
         let maps = &self.maps;
@@ -219,6 +241,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 size: opacity.size(0),
                 side: 1 << opacity.shift(0),
                 ignored,
+                closing,
+                filled: opacity.cells(top).map(|c| opacity.filled(c)).sum(),
                 black: opacity.cells(top).map(|c| opacity.black(c)).sum(),
                 samples: width * height,
             })
@@ -336,10 +360,11 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             Ground::BesideImage | Ground::NoPixel => true,
             Ground::Overlap(found) => found.is_covered,
         };
-        // Samples of the maps' own say nothing about those of the image, and a hole that is ignored may show
-        // something.
+        // Samples of the maps' own say nothing about those of the image, a hole that is ignored may show
+        // something, and what is clustered may cover what no occluder does.
+        let exact = self.params.samples == Samples::Image && self.params.occluders != Kind::Clustered;
         let is_sure = match ground {
-            Ground::Overlap(found) => self.params.samples == Samples::Image && found.ignored == 0,
+            Ground::Overlap(found) => exact && found.ignored == 0,
             _ => true,
         };
         let is_proven = is_culled && is_sure;
@@ -357,6 +382,10 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// The depth test (Section 5.2): whether a node is behind all occluders that it could overlap.
     fn is_behind(&mut self, node: NodeId, BoxImage { pixels, nearest }: BoxImage) -> bool {
+        // Corners of boxes bound what is drawn and what it stands for. Depths of what is drawn do not.
+        let exact = self.params.depth == DepthKind::Estimation;
+        let nearer = self.index.stand_ins().filter(|_| !exact).map_or(0.0, |made| made.nearer());
+        let nearest = nearest * (1.0 + nearer);
         let (test, place) = match self.params.depth {
             DepthKind::Plane => {
                 self.line(line::BEHIND_PLANE);

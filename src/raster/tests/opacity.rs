@@ -151,3 +151,84 @@ fn levels_of_a_wide_image() {
     maps.build_from_depths(&vec![1.0; 1920 * 1080], 0.5);
     assert_eq!((maps.opacity(last), maps.black(PyramidCell { level: 6, x: 3, y: 2 })), (1.0, 0));
 }
+
+/// Black samples in holes of at most `most`, by filling one hole after the other; samples that touch at a
+/// corner are of one.
+fn flooded([width, height]: [u32; 2], most: usize, black: &[bool]) -> Vec<bool> {
+    let (mut filled, mut seen) = (vec![false; black.len()], vec![false; black.len()]);
+    for first in 0..black.len() {
+        let (mut hole, mut next) = (vec![first], 0);
+        if !black[first] || std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        while let Some(&at) = hole.get(next) {
+            next += 1;
+            let (x, y) = (at as u32 % width, at as u32 / width);
+            for v in y.saturating_sub(1)..(y + 2).min(height) {
+                for u in x.saturating_sub(1)..(x + 2).min(width) {
+                    let beside = (v * width + u) as usize;
+                    if black[beside] && !std::mem::replace(&mut seen[beside], true) {
+                        hole.push(beside);
+                    }
+                }
+            }
+        }
+        if hole.len() <= most {
+            hole.into_iter().for_each(|at| filled[at] = true);
+        }
+    }
+    filled
+}
+
+#[test]
+fn closing_fills_the_holes_that_a_flood_finds() {
+    let (mut dice, mut some) = (Dice::new(97), [0, 0]);
+    for round in 0..400 {
+        let is_flat = round % 5 == 0;
+        let (width, height) = (1 + dice.below(90), if is_flat { 1 } else { 1 + dice.below(70) });
+        // From a few samples to nearly all.
+        let share = dice.unit();
+        let black: Vec<bool> = (0..width * height).map(|_| dice.unit() * dice.unit() > share).collect();
+        let depths: Vec<f32> = black.iter().map(|b| if *b { 0.0 } else { 1.0 }).collect();
+        let most = [1, 2, 5, 25, 1000][round as usize % 5];
+        let filled = flooded([width, height], most, &black);
+        let mut maps = Opacity::default();
+        maps.clear([width, height], dice.below(4), is_flat);
+        maps.fill_holes(most as u32);
+        maps.build_from_depths(&depths, 0.5);
+        for cell in (0..maps.levels()).flat_map(|level| maps.cells(level)) {
+            let side = 1 << maps.shift(cell.level);
+            let (x, y) = (u32::from(cell.x) * side, u32::from(cell.y) * side);
+            let rows = y..(y + side).min(height);
+            let all = rows.flat_map(|y| (x..(x + side).min(width)).map(move |x| (y * width + x) as usize));
+            let (mut left, mut gone) = (0, 0);
+            all.for_each(|at| {
+                left += u32::from(black[at] && !filled[at]);
+                gone += u32::from(filled[at]);
+            });
+            assert_eq!((maps.black(cell), maps.filled(cell)), (left, gone), "{cell:?}, round {round}");
+            some = [some[0] + left, some[1] + gone];
+        }
+    }
+    assert!(some.iter().all(|n| *n > 10_000), "{some:?}");
+}
+
+/// A slit askew, one sample wide, is one hole, as long as it is.
+#[test]
+fn a_slit_askew_is_one_hole() {
+    let black = |most: u32, is_black: fn(u32, u32) -> bool| {
+        let depths: Vec<f32> =
+            (0..64 * 64).map(|k| if is_black(k % 64, k / 64) { 0.0 } else { 1.0 }).collect();
+        let mut maps = Opacity::default();
+        maps.clear([64, 64], 2, false);
+        maps.fill_holes(most);
+        maps.build_from_depths(&depths, 0.5);
+        maps.cells(0).map(|c| maps.black(c)).sum::<u32>()
+    };
+    assert_eq!([63, 64].map(|most| black(most, |x, y| x == y)), [64, 0]);
+    assert_eq!([63, 64].map(|most| black(most, |x, _| x == 9)), [64, 0]);
+    // A hole on a corner of four map pixels is no smaller for that.
+    let hole = |x: u32, y: u32| (29..35).contains(&x) && (29..35).contains(&y);
+    assert_eq!([35, 36].map(|most| black(most, hole)), [36, 0]);
+    assert_eq!(black(0, |_, _| true), 64 * 64);
+}

@@ -180,23 +180,38 @@ impl Clusters {
         surfaces: Surfaces,
         groups: impl IntoIterator<Item = &'a [PrimId]>,
     ) -> Self {
+        let mut all = Self::default();
+        all.extend(scene, surfaces, groups, 0);
+        all
+    }
+    /// Adds groups of another scene, whose ids count on from `first`.
+    pub fn extend<'a, S: Space>(
+        &mut self,
+        scene: &Scene<S>,
+        surfaces: Surfaces,
+        groups: impl IntoIterator<Item = &'a [PrimId]>,
+        first: u32,
+    ) {
         let points: Vec<Vec3> = scene.points().iter().map(|&p| widened(p)).collect();
         let (points, is_flat) = (&points[..], S::CORNERS == 2);
         let place = welded(points, &movers(scene));
-        let mut all = Self::default();
-        let mut boxes = Vec::new();
+        let box_of = |i: usize| {
+            let [min, max] = self.boxes.at(i).map(Vec3::from_array);
+            Aabb { min, max }
+        };
+        let mut boxes: Vec<Aabb<Vec3>> = (0..self.boxes.len()).map(box_of).collect();
         let mut own = vec![u32::MAX; points.len()];
         for group in groups {
-            let (first_cluster, first_apart) = (boxes.len(), all.apart.len());
+            let (first_cluster, first_apart) = (boxes.len(), self.apart.len());
             let mut triangles = Vec::with_capacity(group.len());
             for &id in group {
                 // 1. Points at one place are one.
                 let Some(corners) = scene.corners(id) else { continue };
                 let [a, b, c] = [0, 1, 2].map(|k| place[corners.as_ref()[k.min(S::CORNERS - 1)] as usize]);
                 if surfaces.show_through(scene, id) || a == b || c == a || b == c && !is_flat {
-                    all.apart.push(id);
+                    self.apart.push(PrimId(id.0 + first));
                 } else {
-                    let is_two_sided = scene.is_two_sided(id);
+                    let (is_two_sided, id) = (scene.is_two_sided(id), PrimId(id.0 + first));
                     triangles.push(Triangle { corners: [a, b, c], is_two_sided, id });
                 }
             }
@@ -215,18 +230,19 @@ impl Clusters {
             let mut parts = Vec::new();
             split(points, &mut prims, 0, &mut parts);
             for part in parts {
-                let moves = prims[part.clone()].iter().any(|p| p.ids.iter().any(|&id| scene.is_moving(id)));
-                let (bounds, used) = all.add(points, &prims[part], &mut own);
+                let moves = prims[part.clone()]
+                    .iter()
+                    .any(|p| p.ids.iter().any(|&id| scene.is_moving(PrimId(id.0 - first))));
+                let (bounds, used) = self.add(points, &prims[part], &mut own);
                 if moves {
-                    all.moving.push((boxes.len() as u32, used.into()));
+                    self.moving.push((boxes.len() as u32, used.into()));
                 }
                 boxes.push(bounds);
             }
-            let (clusters, apart) = (first_cluster..boxes.len(), first_apart..all.apart.len());
-            all.groups.push(Group { clusters, apart });
+            let (clusters, apart) = (first_cluster..boxes.len(), first_apart..self.apart.len());
+            self.groups.push(Group { clusters, apart });
         }
-        all.boxes = Boxes::new(boxes);
-        all
+        self.boxes = Boxes::new(boxes);
     }
     /// The primitives of a group, by its number, that are in no cluster: what lets light through, and those
     /// with two corners at one place, which cover nothing.
