@@ -184,6 +184,7 @@ fn generated_models_lose_nothing() {
         ("cars", 100_000),
         ("forest", 20_000),
         ("swarm", 10_000),
+        ("terrain", 10_000),
     ] {
         let call = if full { format!("generate:{name}") } else { format!("generate:{name}?polygons={few}") };
         check_file(&call, every, random, side_px);

@@ -17,7 +17,7 @@ const STATES: [(Role, &str); 10] = [
     (Role::FacesAway, "faces away"),
     (Role::Hidden, "hidden"),
     (Role::Approximated, "left out or replaced"),
-    (Role::Occluder, "active occluder"),
+    (Role::Occluder, "occluder"),
     (Role::Current, "this step"),
     (Role::Selected, "selected"),
 ];
@@ -42,6 +42,9 @@ impl State {
                 return None;
             }
             let now: usize = verdicts.iter().map(|&v| here.of(v)).sum();
+            // Where nothing else is left out, it is named as what it is.
+            let is_presumed = total > 0 && role == Role::Approximated && total == end.of(Verdict::Presumed);
+            let words = if is_presumed { "presumed hidden" } else { words };
             Some((
                 role,
                 match role {

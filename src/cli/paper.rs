@@ -51,6 +51,14 @@ pub(super) struct Args {
     /// Every how many frames the answer is compared with the truth; 0: never
     #[arg(long, value_name = "N", default_value_t = 8)]
     check_every: u32,
+    /// Random rectangles that zhang-overlap asks maps about
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 100_000,
+        value_parser = clap::value_parser!(u32).range(1..=100_000_000)
+    )]
+    rectangles: u32,
     /// Image size in pixels [default: that of the path]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<[u32; 2]>,
@@ -105,6 +113,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         frames: args.frames as usize,
         settings: settings(&args.set)?,
         check_every: args.check_every as usize,
+        rectangles: args.rectangles as usize,
         size_px: args.size,
         ..Setup::default()
     };

@@ -30,6 +30,13 @@ const DOTS: usize = 40;
 
 /// Charts on a page over two columns; the legend names each series once.
 pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
+    let (content, legend) = charts(plots);
+    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }
+        .compose(&content)
+}
+
+/// Charts beside and above each other, for a page over two columns, and their legend.
+pub fn charts(plots: &[Plot]) -> (Drawing, Vec<Entry>) {
     let columns = plots.len().clamp(1, COLUMNS);
     let rows = plots.len().div_ceil(columns).max(1);
     let width = (WIDTH_PT - GAP_PT * (columns as f32 - 1.0)) / columns as f32;
@@ -53,8 +60,7 @@ pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
             }
         }
     }
-    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }
-        .compose(&content)
+    (content, legend)
 }
 
 fn draw(to: &mut Drawing, plot: &Plot, [mut min, max]: [Vec2; 2]) {

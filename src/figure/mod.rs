@@ -13,7 +13,7 @@ mod pick;
 mod place;
 pub mod tools;
 
-pub use chart::chart;
+pub use chart::{chart, charts};
 pub use clip::clip;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};

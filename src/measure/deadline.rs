@@ -68,6 +68,24 @@ pub fn frame_within<S: Drawable>(
     TimedFrame { list, image: canvas.into_inner().image, ms: watch.elapsed_ms() }
 }
 
+/// Culls a frame: what it draws, and the time of each stage by name, milliseconds. Until the method names its
+/// first stage, the state of the frame is cleared: `clear`.
+pub fn stages_ms<S: Drawable>(
+    run: &mut dyn Run<S>,
+    view: &View<S>,
+) -> (DrawList<S>, BTreeMap<&'static str, f64>) {
+    let (watch, mut stages) = (Stopwatch::start(), BTreeMap::new());
+    let mut last = ("clear", 0.0);
+    let mut end = |next: &'static str| {
+        let now = watch.elapsed_ms();
+        let (name, since) = std::mem::replace(&mut last, (next, now));
+        *stages.entry(name).or_default() += now - since;
+    };
+    let list = run.stages(view, &mut end);
+    end("");
+    (list, stages)
+}
+
 /// The milliseconds of a run's budget, if it is a time.
 fn time_of<S: Drawable>(run: &dyn Run<S>) -> Option<f64> {
     run.knobs().into_iter().find_map(|(_, value)| match value {
@@ -124,26 +142,11 @@ impl<S: Drawable> Paced<S> {
     /// As [`Paced::cull`], with the time of each stage of the frame by name, milliseconds; a frame that ends
     /// at a deadline draws as it culls, and has one stage.
     pub fn stages_ms(&mut self, view: &View<S>) -> (DrawList<S>, BTreeMap<&'static str, f64>) {
-        let mut stages = BTreeMap::new();
         if time_of(&*self.run).is_some() {
             let (list, ms) = timed(|| self.cull(view));
-            stages.insert("cull-and-draw", ms);
-            return (list, stages);
+            return (list, BTreeMap::from([("cull-and-draw", ms)]));
         }
-        let watch = Stopwatch::start();
-        let mut last: Option<(&'static str, f64)> = None;
-        let mut next = |name: Option<&'static str>| {
-            let now = watch.elapsed_ms();
-            if let Some((before, since)) = last.take() {
-                *stages.entry(before).or_default() += now - since;
-            }
-            last = name.map(|name| (name, now));
-        };
-        // Until the method names its first stage, the state of the frame is cleared.
-        next(Some("clear"));
-        let list = self.run.stages(view, &mut |name| next(Some(name)));
-        next(None);
-        (list, stages)
+        stages_ms(&mut *self.run, view)
     }
     /// As [`Run::count`], of the frame that [`Paced::cull`] drew.
     pub fn count(&mut self, view: &View<S>) -> (DrawList<S>, Tally) {

@@ -35,6 +35,8 @@ pub struct Setup {
     pub settings: Settings,
     /// Every how many of the measured frames the answer is compared with the truth; 0: never.
     pub check_every: usize,
+    /// Random rectangles that a table asks maps about.
+    pub rectangles: usize,
     /// Size of the image, if not that of the path.
     pub size_px: Option<[u32; 2]>,
     /// What was run so far.
@@ -47,6 +49,7 @@ impl Default for Setup {
             frames: 240,
             settings: Settings::default(),
             check_every: 8,
+            rectangles: 100_000,
             size_px: None,
             ran: RefCell::default(),
         }

@@ -186,4 +186,22 @@ pub trait Shown<S: Space>: Method<S> {
     fn probe(_: &Moment<'_, S, Self>, _which: usize, _at: glam::Vec2) -> Option<String> {
         None
     }
+    /// What follows from a parameter for the image of this frame, such as numbers that a paper derives from
+    /// it; `None` if nothing does.
+    fn derived(_: &Frame<'_, S, Self>) -> Option<Derived> {
+        None
+    }
+}
+
+/// What follows from a parameter, as a table for people.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Derived {
+    /// Name of the parameter beside which it is shown.
+    pub knob: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Headings, then the rows, each as long as these.
+    pub rows: Vec<Vec<String>>,
+    /// A sentence or two about it.
+    pub note: String,
 }

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::{
-    Card, Claim, Compared, Context, Event, Field, Frame, Knob, KnobValue, Method, Moment, Note, Recorder,
-    Shown, State, Verdict,
+    Card, Claim, Compared, Context, Derived, Event, Field, Frame, Knob, KnobValue, Method, Moment, Note,
+    Recorder, Shown, State, Verdict,
 };
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, Space, View};
@@ -46,6 +46,8 @@ pub trait Reel: Send + Sync {
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
     /// What event `at` did, in a sentence or two.
     fn sentence(&self, at: usize) -> String;
+    /// What follows from a parameter for the image of the view.
+    fn derived(&self) -> Option<&Derived>;
     /// Names of the method's pictures that are not of the world.
     fn pictures(&self) -> &'static [&'static str];
     /// Picture `which < pictures().len()` at a step, in paper coordinates, with depths in gray on this scale.
@@ -94,6 +96,8 @@ pub(super) struct Footage<S: Space, M: Method<S>> {
     states: Mutex<States<M::State>>,
     /// Found when it is first asked for.
     evidence: OnceLock<Vec<Grounds>>,
+    /// The same.
+    derived: OnceLock<Option<Derived>>,
 }
 
 /// A decision, and the evidence that it rests on: both as places among the events.
@@ -121,7 +125,8 @@ impl<S: Space, M: Shown<S>> Footage<S, M> {
         recorder: Recorder<M::Note>,
     ) -> Self {
         let states = Mutex::new(States { keys: Vec::new(), last: None });
-        Self { scene, index, params, knobs, view, recorder, states, evidence: OnceLock::new() }
+        let (evidence, derived) = (OnceLock::new(), OnceLock::new());
+        Self { scene, index, params, knobs, view, recorder, states, evidence, derived }
     }
     fn frame(&self) -> Frame<'_, S, M> {
         let (scene, index, view, params) = (&*self.scene, &*self.index, &self.view, &self.params);
@@ -350,6 +355,9 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
             Event::DecidedNode(n, v) => node_sentence::<S>(n.0, self.index.held(n), v),
             Event::DecidedPrim(p, v) => prim_sentence::<S>(p.0, v),
         }
+    }
+    fn derived(&self) -> Option<&Derived> {
+        self.derived.get_or_init(|| M::derived(&self.frame())).as_ref()
     }
     fn pictures(&self) -> &'static [&'static str] {
         M::PICTURES

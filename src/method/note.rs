@@ -94,7 +94,12 @@ impl Compared {
 
 impl fmt::Display for Compared {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let short = |v: f64| words::short(v as f32, Room::Sentence);
+        // Counts are whole numbers, and look like it.
+        let are_counts = [self.found.1, self.with.1].iter().all(|v| v.fract() == 0.0 && v.abs() < 1e5);
+        let short = |v: f64| match are_counts {
+            true => format!("{v:.0}"),
+            false => words::short(v as f32, Room::Sentence),
+        };
         let (found, with) = (short(self.found.1), short(self.with.1));
         write!(f, "{} {found} {} {with} {}", self.found.0, self.sign, self.with.0)
     }

@@ -316,6 +316,126 @@ fn klosowski_silva_layering_is_that_of_the_same_triangles() {
 }
 
 #[test]
+fn zhang_frames_have_their_mean_first() {
+    let scene = small("generate:city?polygons=4000");
+    // Of so few polygons hardly any pay for maps.
+    let settings = Settings::of(&[("adapt", "false"), ("occluder-budget", "400"), ("depth", "samples")]);
+    let report = run("zhang-frames", &scene, &Setup { settings, ..setup(10) });
+    assert_eq!(report.table.rows.len(), 14);
+    let keys = ["in_view_triangles", "drawn_triangles", "culled_percent", "frustum_ms", "maps_ms"];
+    for key in keys {
+        let mean = (1..11).map(|row| report.at(row, key)).sum::<f64>() / 10.0;
+        assert!(near(mean, report.at(0, key)), "{key}");
+    }
+    for row in 1..11 {
+        let [in_view, drawn, culled, frustum, maps] = report.row(row, keys);
+        assert!(near(culled, 100.0 * (in_view - drawn) / in_view), "{in_view} in view, {drawn} drawn");
+        assert!(near(report.at(row, "speedup_ratio"), frustum / maps));
+        assert!(near(report.at(row, "model_percent"), 100.0 * (1.0 - drawn / prims(&report))));
+    }
+    assert!(report.at(0, "culled_percent") > 10.0, "a street hides much");
+    assert_eq!([11, 12, 13].map(|row| report.at(row, "speedup_ratio")), [5.0, 2.0, 5.0]);
+}
+
+/// Primitives of the scene that was measured.
+fn prims(report: &Report) -> f64 {
+    report.scenes[0].prims as f64
+}
+
+#[test]
+fn zhang_stages_add_up_to_the_frame() {
+    let report = city("zhang-stages", 2);
+    let parts = ["clear", "select", "occluders", "maps", "cull", "draw"];
+    let parts = parts.map(|stage| report.at(0, &format!("{stage}_percent")));
+    assert!(parts.iter().all(|share| *share > 0.0), "{parts:?}");
+    assert!(near(parts.iter().sum(), report.at(0, "total_percent")));
+    assert!(near(parts[1] + parts[2], report.at(0, "chosen_and_drawn_percent")));
+    let at = report.table.columns.iter().position(|c| c.key == "chosen_and_drawn_percent");
+    assert_eq!(report.table.shown(1, at.expect("a column")), "10–25");
+}
+
+#[test]
+fn zhang_claims_stand_beside_the_papers() {
+    let report = city("zhang-claims", 6);
+    let [all, database, share] = report.row(0, ["polygons", "database_polygons", "database_percent"]);
+    assert!(all == prims(&report) && 0.0 < database && database <= all);
+    assert!(near(share, 100.0 * database / all));
+    let [mean, most] = report.row(0, ["model_percent", "most_percent"]);
+    assert!(mean <= most && most < 100.0, "{mean} {most}");
+    // Section 6.2 and Figure 1 as printed; 217,636 of 632,252.
+    assert_eq!(report.row(2, ["polygons", "database_polygons"]), [632_252.0, 217_636.0]);
+    assert!((report.at(2, "database_percent") - 34.4).abs() < 0.05);
+    assert_eq!(report.at(3, "model_percent"), 82.7);
+    assert_eq!([1, 2].map(|row| report.at(row, "construction_ms")), [9.0, 4.0]);
+}
+
+#[test]
+fn zhang_overlap_is_the_same_three_ways() {
+    let scene = small("generate:city?polygons=4000");
+    let report = run("zhang-overlap", &scene, &Setup { rectangles: 3000, ..setup(8) });
+    for row in 0..4 {
+        let keys = ["rectangles", "finest_differences", "samples_differences"];
+        assert_eq!(report.row(row, keys), [3000.0, 0.0, 0.0], "the answers are the same");
+        let [hierarchy, finest, samples] =
+            report.row(row, ["hierarchy_reads", "finest_reads", "samples_reads"]);
+        assert!(finest <= samples && near(report.at(row, "saved_ratio"), finest / hierarchy));
+        let covered = report.at(row, "covered_percent");
+        assert!(covered > 1.0 && covered < 99.0, "{covered} % are covered");
+    }
+    assert!(report.at(0, "saved_ratio") > 1.5, "the hierarchy reads less");
+    assert!(report.at(0, "covered_percent") <= report.at(3, "covered_percent"));
+    assert!(report.at(4, "rectangles") > 0.0 && report.at(4, "hierarchy_reads") >= 1.0);
+}
+
+#[test]
+fn zhang_construction_times_the_same_image() {
+    let report = run("zhang-construction", &small("generate:city?polygons=4000"), &setup(2));
+    assert_eq!(report.table.rows.len(), 6);
+    // 256² and larger images have a finest map of 256², which takes six more to 4².
+    assert!((0..4).all(|row| report.row(row, ["map_px", "levels"]) == [256.0, 7.0]));
+    for row in 0..4 {
+        let [a, b, ratio] = report.row(row, ["opacity_ms", "pyramid_ms", "opacity_ratio"]);
+        assert!(a > 0.0 && b > 0.0 && near(ratio, a / b));
+    }
+    assert_eq!([4, 5].map(|row| report.at(row, "opacity_ms")), [9.0, 4.0]);
+}
+
+#[test]
+fn zhang_thresholds_lose_no_more_than_their_bound() {
+    let scene = small("generate:forest?polygons=20000");
+    let settings = Settings::of(&[("occluder-budget", "8000")]);
+    let report = run("zhang-thresholds", &scene, &Setup { size_px: Some([512, 512]), settings, ..setup(3) });
+    assert_eq!(
+        (0..5).map(|row| report.at(row, "ignored_samples")).collect::<Vec<_>>(),
+        [0.0, 6.0, 12.0, 19.0, 32.0]
+    );
+    let exact = ["missed_visible", "wrong_pixels", "accepted_pixels", "bound_pixels"];
+    assert_eq!(report.row(0, exact), [0.0; 4], "nothing is ignored");
+    for row in 0..5 {
+        let [wrong, black, bound] = report.row(row, ["wrong_pixels", "black_samples", "bound_pixels"]);
+        assert!(wrong <= bound && black <= bound, "{wrong} wrong, {black} black, at most {bound}");
+        assert_eq!(report.at(row, "over_bound_frames"), 0.0);
+        assert!(report.at(row, "checked_frames") >= 2.0);
+    }
+    let of = |key: &str| (0..5).map(|row| report.at(row, key)).collect::<Vec<_>>();
+    assert!(of("culled_percent").is_sorted() && of("house_percent").is_sorted());
+    assert!(of("house_percent")[4] > of("house_percent")[0], "{:?}", of("house_percent"));
+    assert!(of("missed_visible")[4] > 0.0, "what shows through holes is lost");
+}
+
+#[test]
+fn zhang_open_views_turn_culling_off() {
+    let report = run("zhang-open", &small("generate:terrain?polygons=20000"), &setup(12));
+    let keys = ["on_percent", "covered_triangles", "occluder_triangles", "tests"];
+    let [automatic, never] = [0, 1].map(|row| report.row(row, keys));
+    assert_eq!(never[0], 100.0);
+    assert!((automatic[0] - 25.0).abs() < 1e-9, "three frames of twelve: {automatic:?}");
+    assert!(automatic[2] < never[2] && automatic[3] < never[3], "{automatic:?}, {never:?}");
+    let in_view = report.at(0, "in_view_triangles");
+    assert!(never[1] < 0.001 * in_view, "{} of {in_view} are behind others where nothing is", never[1]);
+}
+
+#[test]
 fn names_begin_with_their_papers_key_and_are_taken_once() {
     let mut names = BTreeSet::new();
     let mut once = |name: &'static str| assert!(names.insert(name), "{name} is taken twice");

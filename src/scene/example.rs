@@ -31,6 +31,7 @@ const EXAMPLES: &[(&str, &str, &[u8])] = &[
     ("two_viewpoints", "scenes2d/two_viewpoints.json", include_bytes!("../../scenes2d/two_viewpoints.json")),
     ("bottleneck", "scenes2d/bottleneck.json", include_bytes!("../../scenes2d/bottleneck.json")),
     ("forest", "scenes2d/forest.json", include_bytes!("../../scenes2d/forest.json")),
+    ("figure5", "scenes2d/figure5.json", include_bytes!("../../scenes2d/figure5.json")),
     ("detail_objects", "scenes2d/detail_objects.json", include_bytes!("../../scenes2d/detail_objects.json")),
 ];
 

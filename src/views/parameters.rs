@@ -6,13 +6,17 @@ use super::Answers;
 use crate::app::{Action, Command, Gesture, State};
 use crate::culling::Methods;
 use crate::geometry::{Either, Flat, Solid, each};
-use crate::method::{Budget, Knob, KnobValue};
+use crate::method::{Budget, Derived, Knob, KnobValue};
 
 /// Shows the parameters.
 pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &mut Answers) {
     ScrollArea::vertical().auto_shrink(false).id_salt("parameters").show(ui, |ui| {
+        let found = state.film().and_then(|film| film.reel.derived());
         for (knob, value) in wanted(state) {
             edit(state, gesture, ui, knob, &value, answers);
+            if let Some(found) = found.filter(|found| found.knob == knob.name) {
+                derived(found, ui);
+            }
         }
         if !state.settings.0.is_empty() {
             super::action_button(state, ui, Action::ResetSettings, "Reset", answers);
@@ -23,6 +27,23 @@ pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &m
         if let Some(film) = state.film() {
             ui.weak(film.reel.card().summary);
         }
+    });
+}
+
+/// What follows from a parameter, for the image that was culled for last: a sentence, and a table that is
+/// opened with a click.
+fn derived(derived: &Derived, ui: &mut egui::Ui) {
+    ui.weak(&derived.note);
+    egui::CollapsingHeader::new(derived.title).show(ui, |ui| {
+        egui::Grid::new("derived").striped(true).spacing([10.0, 2.0]).show(ui, |ui| {
+            for (i, row) in derived.rows.iter().enumerate() {
+                for cell in row {
+                    let text = egui::RichText::new(cell);
+                    ui.label(if i == 0 { text.weak() } else { text.monospace() });
+                }
+                ui.end_row();
+            }
+        });
     });
 }
 

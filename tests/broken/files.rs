@@ -194,12 +194,12 @@ fn generators_say_what_they_take() {
         (
             "generate:castle",
             "generate:castle: there is no generator `castle`; there are: building, city, machine-room, \
-             box-and-objects, thin-slabs, seminar-room, cars, forest, swarm",
+             box-and-objects, thin-slabs, seminar-room, cars, forest, swarm, terrain",
         ),
         (
             "generate:",
             "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, \
-             thin-slabs, seminar-room, cars, forest, swarm",
+             thin-slabs, seminar-room, cars, forest, swarm, terrain",
         ),
         (
             "generate:building?storeys=3",

@@ -275,12 +275,12 @@ impl<S: Faces> DepthNote<S> {
             Self::Rasterized(n) => {
                 outline(scene, n.prim, to);
                 if let Some(r) = &n.tile {
-                    sight_lines(view, r.cell.pixels(view.width, view.height), r.nearest, r.held, to);
+                    sight_lines(view, r.cell.pixels(view.width, view.height), r.nearest, (r.held, DRAWN), to);
                 }
             }
             Self::Read(_, n) => {
                 let size = (view.width, view.height);
-                sight_lines(view, n.cell.pixels(size.0, size.1), n.nearest, n.held, to);
+                sight_lines(view, n.cell.pixels(size.0, size.1), n.nearest, (n.held, DRAWN), to);
             }
             // A tile has no place in the world; the pictures of the pyramid show it.
             Self::Refreshed(_) | Self::Drawn(..) => {}
@@ -415,13 +415,16 @@ pub fn place_in_view<S: Faces>(view: &View<S>, [x, y]: [u32; 2], w: f32) -> S::V
     projection.eye + ray * w
 }
 
+/// What a depth is that was drawn.
+const DRAWN: &str = "drawn to";
+
 /// The lines of sight around some pixels, as far as the surfaces that are drawn there; and where the thing
-/// queried begins.
+/// queried begins. `held`: that depth, and what it is.
 pub fn sight_lines<S: Faces>(
     view: &View<S>,
     pixels: PixelRect,
     nearest: f32,
-    held: f32,
+    (held, what): (f32, &str),
     to: &mut Drawing<S::Vector>,
 ) {
     let at = |x: u32, y: u32, w: f32| place_in_view(view, [x, y], w);
@@ -442,7 +445,7 @@ pub fn sight_lines<S: Faces>(
     to.outline(Layer::Evidence, Role::Occluder, Subject::None, section(far));
     to.outline(Layer::Evidence, Role::Current, Subject::None, section(near));
     // At opposite corners, so that they do not meet.
-    label(to, at(pixels.x0, pixels.y0, far), format!("drawn to {}", short(far)));
+    label(to, at(pixels.x0, pixels.y0, far), format!("{what} {}", short(far)));
     label(to, at(pixels.x1, pixels.y1, near), format!("nearest {}", short(near)));
 }
 
@@ -455,7 +458,7 @@ impl<S: Faces> Answered<S> {
             to.outline(Layer::Emphasis, Role::Current, Subject::Node(self.node), face);
         }
         if let Some(d) = self.answer.decisive {
-            sight_lines(view, d.cell.pixels(view.width, view.height), d.nearest, d.held, to);
+            sight_lines(view, d.cell.pixels(view.width, view.height), d.nearest, (d.held, DRAWN), to);
         }
     }
     /// `far`: the depth of an empty pixel.

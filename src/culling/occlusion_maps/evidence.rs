@@ -159,7 +159,12 @@ impl<S: Faces> Evidence<S> {
             Self::Facing(n) => n.draw(scene, view, to),
             Self::Depth(n) => n.draw(scene, view, to),
             Self::Compared(n) if n.test.held.is_finite() => {
-                sight_lines(view, n.pixels, n.nearest, n.test.held, to);
+                let what = match n.kind {
+                    DepthKind::Plane => "Z plane",
+                    DepthKind::Estimation => "occluders reach to",
+                    DepthKind::Samples => "occluders drawn to",
+                };
+                sight_lines(view, n.pixels, n.nearest, (n.test.held, what), to);
             }
             Self::Answered(n) => {
                 to.bounds(Layer::Emphasis, Role::Current, Subject::Node(n.node), &n.bounds);

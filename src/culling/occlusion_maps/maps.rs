@@ -157,6 +157,20 @@ impl<S: Faces> Maps<S> {
     pub fn pixel(&self) -> u32 {
         self.pixel
     }
+    /// Of each sample whether an occluder covers it, row by row: from what is drawn, not from the levels.
+    pub fn covered(&mut self) -> Vec<bool> {
+        let [width, height] = self.opacity.samples();
+        if self.has_plane {
+            let far = self.tiled.projected().map_or(0.0, |p| 1.0 / p.view.eye.far);
+            return self.tiled.depths().iter().map(|depth| *depth > far).collect();
+        }
+        let tiles = self.tiled.tiles();
+        let at = |x: u32, y: u32| {
+            let tile = PyramidCell { level: PyramidCell::TILE, x: (x / 8) as u16, y: (y / 4) as u16 };
+            tiles.covered_pixels(tile) >> (8 * (y % 4) + x % 8) & 1 != 0
+        };
+        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| at(x, y)).collect()
+    }
     /// The tiles that occluders are drawn into, for pictures.
     pub fn levels(&self) -> TileLevels {
         self.tiled.levels()

@@ -25,12 +25,14 @@ mod index;
 mod leaves;
 mod maps;
 mod overlap;
+pub(crate) mod parts;
 mod picture;
 mod saved;
 mod selection;
 mod stand_ins;
 #[cfg(test)]
 mod tests;
+mod thresholds;
 mod walk;
 
 use std::sync::Arc;
@@ -47,7 +49,8 @@ use super::depth::Faces;
 use crate::drawing::Drawing;
 use crate::geometry::Space;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, surface_knobs, words,
+    Card, Derived, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
+    surface_knobs, words,
 };
 use crate::raster::{DepthScale, Opacity};
 use crate::scene::{Progress, Scene, Surfaces};
@@ -387,5 +390,8 @@ impl<S: Faces> Shown<S> for OcclusionMaps {
     fn probe(moment: &Moment<'_, S, Self>, which: usize, at: glam::Vec2) -> Option<String> {
         // Of the pictures only the levels beside each other show pixels that are not askew.
         (which == 0).then(|| picture::probe(moment, at))?
+    }
+    fn derived(frame: &Frame<'_, S, Self>) -> Option<Derived> {
+        Some(thresholds::table(frame))
     }
 }

@@ -3,14 +3,15 @@
 
 use glam::{Vec2, vec2};
 
+use super::depth::DepthBuffer;
 use super::evidence::{Choice, Cover, Evidence, draw_choice};
 use super::maps::Maps;
 use super::overlap::Outcome;
 use super::{DepthKind, OcclusionMaps};
 use crate::culling::depth::picture::{Levels, Lit, Reads, WIDTH_PT, finished, last_reads, levels, stacked};
 use crate::culling::depth::{DepthNote, Faces, place_in_view};
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject};
-use crate::geometry::View;
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
+use crate::geometry::{NodeId, PixelRect, View};
 use crate::index::Hierarchy;
 use crate::method::Moment;
 use crate::method::evidence::short;
@@ -22,25 +23,11 @@ pub(super) const PICTURES: &[&str] =
 
 type At<'a, 'b, S> = &'a Moment<'b, S, OcclusionMaps>;
 
-/// Draws the occluders so far, the depth estimation buffer in flatland, and the evidence of the step.
+/// Draws the occluders so far, the depth estimation buffer, and the evidence of the step.
 pub(super) fn explain<S: Faces>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
     let (index, view) = (moment.frame.index, moment.frame.view);
-    for note in moment.notes {
-        if let Evidence::Covered(Cover { node, drawn, .. }) = note {
-            let subject = Subject::Node(*node);
-            to.bounds(Layer::Nodes, Role::Occluder, subject, index.occluder_bounds(*node));
-            // What stands in is nowhere else to be seen.
-            if let Some(made) = index.stand_ins().filter(|_| drawn != node) {
-                for &prim in made.prims(*node) {
-                    let corners: Vec<S::Vector> = made.scene().prim_points(prim).collect();
-                    to.outline(Layer::Evidence, Role::Occluder, subject, corners);
-                }
-            }
-        }
-    }
-    if S::CORNERS == 2 {
-        draw_buffer(moment.state, view, to);
-    }
+    draw_occluders(moment, to);
+    draw_buffer(moment.state, view, to);
     match moment.note {
         Some(Evidence::Chosen(choice)) => {
             let bounds = Hierarchy::<S>::bounds(index, choice.candidate.node);
@@ -51,23 +38,89 @@ pub(super) fn explain<S: Faces>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vecto
     }
 }
 
-/// In flatland: each entry that holds something, as a line across its part of the view at its depth.
-fn draw_buffer<S: Faces>(maps: &Maps<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
-    let buffer = maps.buffer();
-    for x in 0..buffer.size()[0] {
-        let held = buffer.held([x, 0]);
-        if held.is_finite() {
-            let pixels = buffer.pixels([x, 0], [view.width, view.height]);
-            let ends = [pixels.x0, pixels.x1].map(|at| place_in_view(view, [at, 0], 1.0 / held));
-            to.line(Layer::Evidence, Role::Evidence, Subject::None, ends);
+/// Occluders with more primitives than this are shown by their boxes.
+const MOST_SHOWN: usize = 2000;
+
+/// What was drawn into the maps so far, so that it is told from what is kept and what is culled (Figure 1).
+fn draw_occluders<S: Faces>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
+    let index = moment.frame.index;
+    let cover = |n: &Evidence<S>| if let Evidence::Covered(c) = n { Some(*c) } else { None };
+    let covers: Vec<Cover> = moment.notes.iter().filter_map(cover).collect();
+    // What stands in for an occluder is nowhere else to be seen.
+    let stands_in = |c: &Cover| index.stand_ins().filter(|_| c.drawn != c.node);
+    let prims = |c: &Cover| {
+        stands_in(c).map_or_else(|| Hierarchy::<S>::prims(index, c.node), |made| made.prims(c.node))
+    };
+    let are_few = covers.iter().map(|c| prims(c).len()).sum::<usize>() <= MOST_SHOWN;
+    for cover in &covers {
+        let node = Subject::Node(cover.node);
+        if !are_few {
+            to.bounds(Layer::Nodes, Role::Occluder, node, index.occluder_bounds(cover.node));
+            continue;
+        }
+        let made = stands_in(cover);
+        let scene = made.map_or(moment.frame.scene, |made| made.scene());
+        for &prim in prims(cover) {
+            let points: Vec<S::Vector> = scene.prim_points(prim).collect();
+            let subject = if made.is_some() { node } else { Subject::Prim(prim) };
+            match points.len() {
+                2 => to.line(Layer::Evidence, Role::Occluder, subject, points),
+                _ => to.push(Layer::Evidence, Role::Occluder, subject, Mark::Area(points)),
+            }
         }
     }
+}
+
+/// The depth estimation buffer as a relief before the eye: entries that hold something, each across its part
+/// of the view at its depth; in flatland lines, in space faces, those of one depth as one.
+fn draw_buffer<S: Faces>(maps: &Maps<S>, view: &View<S>, to: &mut Drawing<S::Vector>) {
+    let buffer = maps.buffer();
+    for (entries, held) in alike(buffer) {
+        let low = buffer.pixels([entries.x0, entries.y0], [view.width, view.height]);
+        let high = buffer.pixels([entries.x1 - 1, entries.y1 - 1], [view.width, view.height]);
+        let at = |x: u32, y: u32| place_in_view(view, [x, y], 1.0 / held);
+        if S::CORNERS == 2 {
+            let ends = [at(low.x0, 0), at(high.x1, 0)];
+            to.line(Layer::Evidence, Role::Evidence, Subject::None, ends);
+        } else {
+            let corners = [(low.x0, low.y0), (high.x1, low.y0), (high.x1, high.y1), (low.x0, high.y1)];
+            let face = Mark::Area(corners.map(|(x, y)| at(x, y)).to_vec());
+            to.push(Layer::Evidence, Role::Evidence, Subject::None, face);
+        }
+    }
+}
+
+/// Rectangles of entries that hold the same depth, from the top down; what no occluder touches is in none.
+fn alike(buffer: &DepthBuffer) -> Vec<(PixelRect, f32)> {
+    let [columns, rows] = buffer.size();
+    let mut found: Vec<(PixelRect, f32)> = Vec::new();
+    for y in 0..rows {
+        let mut x0 = 0;
+        while x0 < columns {
+            let held = buffer.held([x0, y]);
+            let x1 = (x0..columns).find(|&x| buffer.held([x, y]) != held).unwrap_or(columns);
+            // It goes on below a run that is as wide.
+            let is_above =
+                |(r, depth): &&mut (PixelRect, f32)| r.y1 == y && (r.x0, r.x1) == (x0, x1) && *depth == held;
+            match found.iter_mut().rev().find(is_above) {
+                Some((above, _)) => above.y1 = y + 1,
+                None if held.is_finite() => found.push((PixelRect { x0, x1, y0: y, y1: y + 1 }, held)),
+                None => {}
+            }
+            x0 = x1;
+        }
+    }
+    found
 }
 
 /// Draws picture `which`.
 pub(super) fn picture<S: Faces>(moment: At<'_, '_, S>, which: usize, scale: DepthScale) -> Drawing {
     let (view, maps) = (moment.frame.view, moment.state);
     let of = MapLevels { opacity: maps.opacity(), pixel: maps.pixel() };
+    // A frame without maps must not look as if nothing were covered.
+    if moment.notes.iter().any(|n| matches!(n, Evidence::Paused(_))) {
+        return paused();
+    }
     // In the order of `PICTURES`.
     match which {
         0 => levels(&of, view, &reads(moment), scale),
@@ -75,6 +128,20 @@ pub(super) fn picture<S: Faces>(moment: At<'_, '_, S>, which: usize, scale: Dept
         2 => depths(moment, scale),
         _ => choice(moment),
     }
+}
+
+/// In place of all pictures where culling is turned off.
+fn paused() -> Drawing {
+    let mut to = Drawing::default();
+    let lines = [
+        "There are no maps in this frame: culling did not pay in the frames before it, and is turned off for",
+        "a while (adapt). Other frames, a larger scene, or adapt = false show it.",
+    ];
+    for (line, text) in lines.into_iter().enumerate() {
+        let at = vec2(0.0, 12.0 + 11.0 * line as f32);
+        to.text(Layer::Labels, Role::Ink, at, 8.5, Anchor::Start, text);
+    }
+    finished(to, 32.0, "Culling is turned off")
 }
 
 /// The map pixels of the test that the step belongs to.
@@ -186,7 +253,7 @@ fn depths<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
     }
 }
 
-/// The depth estimation buffer as a relief: the nearer an entry, the darker.
+/// The depth estimation buffer in gray, the nearer an entry the darker, and in numbers where there is room.
 fn buffer<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
     let (buffer, view) = (moment.state.buffer(), moment.frame.view);
     let mut to = Drawing::default();
@@ -204,11 +271,34 @@ fn buffer<S: Faces>(moment: At<'_, '_, S>, scale: DepthScale) -> Drawing {
     let pixels = Pixels { width: columns, height: rows, rgba };
     to.push(Layer::Scene, Role::Scene, Subject::None, Mark::Image { corners: [a, b], pixels });
     to.outline(Layer::Scene, Role::Faint, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
-    light_entry(moment, (b - a) / vec2(columns as f32, rows as f32), a, &mut to);
+    let cell = (b - a) / vec2(columns as f32, rows as f32);
+    numbers(&held, columns, cell, a, &mut to);
+    light_entry(moment, cell, a, &mut to);
     let empty = held.iter().filter(|d| !d.is_finite()).count();
     let text = format!("{empty} of {} entries are touched by no occluder.", held.len());
     to.text(Layer::Labels, Role::Faint, vec2(0.0, b.y + 11.0), 8.5, Anchor::Start, text);
     finished(to, b.y + 18.0, "The depth estimation buffer")
+}
+
+/// Depths in numbers, where all entries have room for them.
+fn numbers(held: &[f32], columns: u32, cell: Vec2, first: Vec2, to: &mut Drawing) {
+    const NUMBER_PT: f32 = 6.5;
+    let texts: Vec<String> =
+        held.iter().map(|d| if d.is_finite() { short(1.0 / d) } else { String::new() }).collect();
+    let wide = |text: &String| metrics::width_pt(text, Font::Regular, NUMBER_PT) + 3.0;
+    if cell.y < NUMBER_PT + 3.0 || texts.iter().any(|text| wide(text) > cell.x) {
+        return;
+    }
+    for (i, text) in texts.into_iter().enumerate().filter(|(_, text)| !text.is_empty()) {
+        let place = vec2((i as u32 % columns) as f32, (i as u32 / columns) as f32);
+        let middle = first + cell * (place + 0.5);
+        let half = vec2(wide(&text) * 0.5, NUMBER_PT * 0.6);
+        let (low, high) = (middle - half, middle + half);
+        let corners = vec![low, vec2(high.x, low.y), high, vec2(low.x, high.y)];
+        to.push(Layer::Evidence, Role::Paper, Subject::None, Mark::Area(corners));
+        let at = middle + vec2(0.0, NUMBER_PT * 0.35);
+        to.text(Layer::Labels, Role::Ink, at, NUMBER_PT, Anchor::Middle, text);
+    }
 }
 
 /// The entries that the step wrote, or the one that decided.

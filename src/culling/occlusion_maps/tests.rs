@@ -559,3 +559,63 @@ fn a_building_is_whole_with_every_depth_and_choice() {
         }
     }
 }
+
+/// The table of Section 5.4's example: 25 of 16 × 16 samples.
+#[test]
+fn the_table_of_thresholds_is_that_of_section_5_4() {
+    let scene = crate::scene::samples::soup::<Solid>(3, 50);
+    let params = |t: f32| Params { opacity_threshold: t, map_resolution: 64, ..Params::default() };
+    let view = View { width: 1024, height: 1024, ..crate::scene::framing_view(&scene.bounds(), 64, 64) };
+    let rows = |t: f32| {
+        let tried = Tried::new(scene.clone(), params(t));
+        let Tried { scene, params, index, .. } = &tried;
+        let frame = Frame { index, scene: &**scene, view: &view, params, limit: None };
+        <OcclusionMaps as Shown<Solid>>::derived(&frame).expect("a table")
+    };
+    let table = rows(0.902_343_75);
+    let words = |row: usize| table.rows[row].iter().map(String::as_str).collect::<Vec<_>>();
+    assert_eq!(words(1), ["0", "64 × 64", "256", "0.9023"]);
+    assert_eq!(words(2), ["1", "32 × 32", "1024", "0.9756"]);
+    assert_eq!(words(3), ["2", "16 × 16", "4096", "0.9939"]);
+    assert!(table.note.contains("n = 25:") && table.note.contains("(3 + O(k)) / 4"), "{}", table.note);
+    assert!(table.rows.iter().all(|row| row.len() == table.rows[0].len()));
+    // With a threshold of 1 no sample may be black; one of 256 may at 0.9961.
+    let exact = rows(1.0);
+    assert!(exact.note.contains("n = 0:") && exact.note.contains("0.9961"), "{}", exact.note);
+    assert!(exact.rows[1..].iter().all(|row| row[3] == "1.0000"));
+}
+
+/// In space an entry of the depth estimation buffer is a face at its depth.
+#[test]
+fn the_depth_estimation_buffer_is_a_relief_before_the_eye() {
+    let crate::scene::AnyScene::Solid(scene) =
+        crate::scene::load("generate:building?polygons=3000", &LoadOptions::default(), &Quiet).expect("made")
+    else {
+        panic!("a building is in space")
+    };
+    let view = View { width: 160, height: 120, ..scene.paths()[0].views[0] };
+    let pairs = [("depth", "estimation"), ("adapt", "false"), ("occluder-budget", "300")];
+    let entry = <Solid as crate::culling::Methods>::method("occlusion-maps").expect("a method");
+    let run = entry.ready(&scene, &crate::method::Settings::of(&pairs), &Quiet).expect("fine");
+    let film = run.expect("not cancelled").record(&view, usize::MAX).film;
+    let mut to = Drawing::default();
+    film.explain(film.events().len(), &mut to);
+    let mut depths = Vec::new();
+    for item in to.items.iter().filter(|i| i.role == crate::drawing::Role::Evidence) {
+        let crate::drawing::Mark::Area(corners) = &item.mark else { continue };
+        let of = |p: glam::Vec3| (p - view.eye.position).dot(view.eye.forward());
+        let depth = of(corners[0]);
+        assert!(corners.iter().all(|p| (of(*p) - depth).abs() < 1e-3 * depth), "it faces the eye");
+        depths.push(depth);
+    }
+    // Those that the notes wrote.
+    let written = crate::method::notes::<Solid, OcclusionMaps>(&*film).filter_map(|(_, note)| match note {
+        Evidence::Written(_, _, farthest) => Some(1.0 / farthest),
+        _ => None,
+    });
+    let written: Vec<f32> = written.collect();
+    assert!(!depths.is_empty(), "there is a relief");
+    assert!(depths.iter().all(|d| written.iter().any(|w| (w - d).abs() < 1e-3 * d)), "{depths:?}");
+    let occluders = to.items.iter().filter(|i| i.role == crate::drawing::Role::Occluder);
+    assert!(occluders.count() > 100, "occluders are black, triangle by triangle");
+}

@@ -1,5 +1,5 @@
-//! Zhang, Manocha, Hudson and Hoff, 1997: occluders, kept and culled (Figure 1), the hierarchy of occlusion
-//! maps (3), the distance criterion (5), approximate culling (7) and the overlap test (8).
+//! Zhang, Manocha, Hudson and Hoff, 1997: all of its figures, from the pipeline (2) to the three models
+//! (11 to 13), and what it measured.
 
 mod figures;
 mod tables;

@@ -25,6 +25,7 @@ mod shapes;
 mod stand;
 mod street;
 mod swarm;
+mod terrain;
 mod thin_slabs;
 mod tree;
 mod walk;
@@ -84,6 +85,7 @@ static GENERATORS: &[Generator] = &[
     cars::GENERATOR,
     forest::GENERATOR,
     swarm::GENERATOR,
+    terrain::GENERATOR,
 ];
 
 /// All generators, by name.

@@ -1,6 +1,13 @@
 //! Figures of Zhang et al., "Visibility Culling using Hierarchical Occlusion Maps", SIGGRAPH 1997, made anew.
 
+mod averages;
+mod charts;
+mod distance;
 mod notes;
+mod pipeline;
+mod plates;
+mod space;
+mod trees;
 
 use std::sync::Arc;
 
@@ -26,10 +33,34 @@ pub const FIGURES: &[Figure] = &[
         make: level,
     },
     Figure {
+        name: "zhang-figure-2",
+        former: None,
+        summary: "The pipeline: two phases, with a picture of one frame in each block",
+        make: pipeline::pipeline,
+    },
+    Figure {
         name: "zhang-figure-3",
         former: None,
         summary: "The hierarchy of occlusion maps over an office",
         make: hierarchy,
+    },
+    Figure {
+        name: "zhang-figure-4",
+        former: None,
+        summary: "A map is averaged as a texture that is drawn at half its size",
+        make: averages::averages,
+    },
+    Figure {
+        name: "zhang-figure-5",
+        former: None,
+        summary: "The distance criterion misses what is far and hides much",
+        make: distance::distance,
+    },
+    Figure {
+        name: "zhang-figure-6",
+        former: None,
+        summary: "A house behind trees, the holes among them, and the maps",
+        make: trees::trees,
     },
     Figure {
         name: "zhang-figure-7",
@@ -42,6 +73,36 @@ pub const FIGURES: &[Figure] = &[
         former: None,
         summary: "The overlap test reads map pixels, level by level",
         make: overlap,
+    },
+    Figure {
+        name: "zhang-figure-9",
+        former: None,
+        summary: "What is drawn and culled frame by frame, on three models",
+        make: charts::frames,
+    },
+    Figure {
+        name: "zhang-figure-10",
+        former: None,
+        summary: "What a frame draws by stage, on three models",
+        make: charts::stages,
+    },
+    Figure {
+        name: "zhang-figure-11",
+        former: None,
+        summary: "A city from above: occluders, kept, culled",
+        make: plates::city,
+    },
+    Figure {
+        name: "zhang-figure-12",
+        former: None,
+        summary: "A swarm of moving bodies from above: occluders, kept, culled",
+        make: plates::swarm,
+    },
+    Figure {
+        name: "zhang-figure-13",
+        former: None,
+        summary: "A machine room from above: occluders, kept, culled",
+        make: plates::room,
     },
 ];
 
