@@ -11,7 +11,7 @@ use super::{DepthKind, OcclusionMaps};
 use crate::culling::depth::picture::{Levels, Lit, Reads, WIDTH_PT, finished, last_reads, levels, stacked};
 use crate::culling::depth::{DepthNote, Faces, place_in_view};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Pixels, Role, Subject, metrics};
-use crate::geometry::{NodeId, PixelRect, View};
+use crate::geometry::{PixelRect, View};
 use crate::index::Hierarchy;
 use crate::method::Moment;
 use crate::method::evidence::short;
