@@ -270,6 +270,13 @@ pub(super) const DEPARTURES: &[Departure] = &[
         when: When::With("selection", "grid"),
     },
     Departure {
+        section: "5.5",
+        what: "boxes of what moves stay along the axes, refit to where its points are, and are not oriented",
+        why: "refit to points they are as tight as boxes that turn along; even the rectangle of the points \
+              themselves would spare 6 % of what is drawn of the swarm",
+        when: When::Always,
+    },
+    Departure {
         section: "6.2",
         what: "L and the distance limit change by a quarter, by counts of polygons and not by the clock; \
                below 500 polygons (2 in flatland) or above 5 % of the scene (20 %) L does not go",

@@ -23,10 +23,13 @@ pub const TABLE: Experiment = Experiment {
     notes: &[
         "Images of 1024 × 1024 pixels, unless a size is set, and maps of at most 64 × 64, as in the paper's \
          example. A threshold of 1 − n/m_0 ignores up to n black samples of each map pixel, wherever they \
-         are: a slit, or a hole on the corner of four map pixels, may have more (scenes3d/slit and \
-         scenes3d/corner_hole show it, scenes2d/holes.json in flatland). Closing fills holes of up to n \
-         connected samples. Saved: triangles that are drawn where no hole is ignored, and here are not; mean \
-         over the frames. Missed and lost are means over the frames that are compared with the item buffer.",
+         are; closing fills holes of up to n connected samples, if only at corners. Saved: triangles that \
+         are drawn where no hole is ignored, and here are not; mean over the frames. Missed and lost are \
+         means over the frames that are compared with the item buffer.",
+        "What thresholds do not bound shows where the walls alone are occluders: a slit of a pixel by 1,024 \
+         (--scene scenes3d/slit/slit.obj --set leaf-primitives=1 --set occluder-budget=4), a hole on a \
+         corner of map pixels (scenes3d/corner_hole/corner_hole.obj, 100), and gaps of flatland \
+         (scenes2d/holes.json, 7).",
     ],
     settings: &[
         ("adapt", "false"),

@@ -50,7 +50,8 @@ impl Seen {
             let named = tally.named();
             let count = |name: &str| named.get(name).copied().unwrap_or(0);
             all.drawn += list.prims.len() as u64;
-            all.in_view += frustum.cull(view).prims.len() as u64;
+            // Its leaves may be smaller: of a box in view all that it holds counts.
+            all.in_view += frustum.cull(view).prims.len().max(list.prims.len()) as u64;
             all.leaves += count("occluders_drawn");
             all.occluders += count("occluder_polygons");
             if setup.check_every > 0 && i.is_multiple_of(setup.check_every) {
