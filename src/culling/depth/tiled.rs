@@ -117,7 +117,9 @@ impl<S: Faces> Tiled<S> {
     /// A copy of the tiles in which nothing waits.
     pub fn settled(&self) -> Tiles {
         let mut tiles = self.tiles.clone();
-        drop(tiles.settle(&self.clusters, Isa::best()));
+        if tiles.waits() {
+            drop(tiles.settle(&self.clusters, Isa::best()));
+        }
         tiles
     }
     fn draw(&mut self, node: NodeId, one_sided: bool, tested: bool) {

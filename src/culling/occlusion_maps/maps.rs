@@ -97,7 +97,8 @@ impl<S: Faces> Maps<S> {
         for prim in self.drawn.drain(..) {
             self.shows[prim.at()] = true;
         }
-        self.shows.resize(scene.prim_count(), true);
+        // What stands in for occluders counts on.
+        self.shows.resize(index.drawn_count(scene), true);
     }
     /// Lets go of the clusters, until they are emptied for a view.
     pub fn release(&mut self) {

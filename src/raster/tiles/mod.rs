@@ -225,6 +225,10 @@ impl Tiles {
         self.scratch.told.is_asked = false;
         clusters.named(&self.scratch.told.shown)
     }
+    /// Whether something does.
+    pub fn waits(&self) -> bool {
+        self.scratch.waits()
+    }
     /// Whether something is hidden by what is drawn. What is read goes to `hears`; what changes is what
     /// [`Tiles::refresh`] of the cells changes that it hears of.
     pub fn hides<H: Hears>(&mut self, question: Question, isa: Isa, hears: &mut H) -> bool {

@@ -63,6 +63,10 @@ impl Scratch {
         self.segments = 0;
         self.hits.resize(strips, (0, 0, 0.0));
     }
+    /// Whether primitives wait to be set up.
+    pub fn waits(&self) -> bool {
+        self.rings.iter().any(|ring| ring.count > 0) || !self.turned.is_empty()
+    }
 }
 
 /// Primitives that wait to be set up: by columns x, y, z and packed of the four corners, and their tags.

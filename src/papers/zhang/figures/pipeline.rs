@@ -223,7 +223,10 @@ mod tests {
                 Fate::Culled => Role::Hidden,
                 _ => Role::Visible,
             };
-            assert_eq!(role_of(stamps.prim(*prim, end)), want, "{prim:?}");
+            let is = role_of(stamps.prim(*prim, end));
+            // Of an occluder what came nowhere nearer than what was drawn before it is known to be hidden.
+            let is_left_out = fates[prim.at()] == Fate::Occluder && is == Role::Hidden;
+            assert!(is == want || is_left_out, "{prim:?}: {is:?}, not {want:?}");
             assert_eq!(fates[prim.at()] == Fate::Occluder, chosen.contains(prim), "{prim:?}");
         }
         for fate in [Fate::Outside, Fate::Occluder, Fate::Before, Fate::Shows, Fate::Culled] {

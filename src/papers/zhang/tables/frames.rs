@@ -40,11 +40,14 @@ const PAPER: [(&str, &str, f64); 3] = [
     ("dinosaurs and teapots, 986,800", "paper, InfiniteReality", 5.0),
 ];
 
+/// A figure of a frame.
+type Figure<'a> = &'a dyn Fn(&Flown) -> f64;
+
 fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress) -> Rows {
     let path = path(scene, setup);
     let flight = fly(scene, &path, setup, &[], progress)?;
     let about = about(scene, &path);
-    let row = |frame: Cell, of: &dyn Fn(&dyn Fn(&Flown) -> f64) -> f64| {
+    let row = |frame: Cell, of: &dyn Fn(Figure<'_>) -> f64| {
         let counts = [
             of(&|f| f.counted.in_view as f64),
             of(&|f| f.counted.occluders as f64),
