@@ -139,9 +139,9 @@ pub fn level(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &look, label)]);
     let in_view = drawn + hidden;
     let caption = format!(
-        "A game level from above. Of its {} segments {} are occluders, those nearest to the eye. They and \
-         the rest of what is kept are {drawn} of {in_view} in view: {:.1} % of these are culled. The lines \
-         across the view are the depth estimation buffer: what lies beyond them, within what the \
+        "A game level from above. Of its {} segments {} are occluders, those nearest to the eye; some \
+         of them lie behind others. Kept are {drawn} of {in_view} in view: {:.1} % of these are culled. The \
+         lines across the view are the depth estimation buffer: what lies beyond them, within what the \
          occluders cover, is hidden. In the paper's Figure 1 82.7 % of a machine room are culled, outside \
          the frustum or hidden; here that is {:.1} %.",
         scene.live().len(),

@@ -183,8 +183,8 @@ pub fn pipeline(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
          them are chosen as occluders, and drawn in white; a buffer of {} × {} entries keeps how far the \
          occluders of each part of the screen reach, near dark and far light; the white image is averaged \
          down. Phase 2: what is in view is compared with these depths; {} triangles are not behind, so they \
-         are drawn without more ado, as the occluders are. Of the others {} lie within the maps and are \
-         culled; {} do not. The occluder database is the model's \
+         are drawn without more ado, as is what shows of the occluders. Of the others {} lie within the \
+         maps and are culled; {} do not. The occluder database is the model's \
          hierarchy without leaves that are small, redundant or complex. Pictures from above leave out roofs \
          and upper floors, and ground and floors are pale in them, whatever became of those.",
         film.scene().live().len(),

@@ -165,8 +165,9 @@ mod tests {
     fn plain_loops_average_and_take_minima() {
         let mut room: Vec<Vec<f32>> = vec![vec![0.0; 128 * 128], vec![0.0; 64 * 64]];
         // Columns of 0 and 1 in turn, on even rows.
-        let finest: Vec<f32> =
-            (0..PLAIN * PLAIN).map(|i| if i % 2 == 1 && (i / PLAIN).is_multiple_of(2) { 1.0 } else { 0.0 }).collect();
+        let finest: Vec<f32> = (0..PLAIN * PLAIN)
+            .map(|i| if i % 2 == 1 && (i / PLAIN).is_multiple_of(2) { 1.0 } else { 0.0 })
+            .collect();
         let sum = levels(&finest, &mut room, |v| v.iter().sum::<f32>() * 0.25);
         assert_eq!((room[0][5], room[1][7], sum), (0.25, 0.25, 0.25 * 64.0 * 64.0));
         assert_eq!(levels(&finest, &mut room, |v| v.into_iter().fold(9.0, f32::min)), 0.0);
