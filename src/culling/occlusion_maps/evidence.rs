@@ -263,6 +263,7 @@ impl<S: Faces> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
+            Self::Depth(n) => n.claim(context),
             Self::Answered(n) if n.is_culled && n.is_proven => Some(Claim::Hidden),
             // Depth and overlap each are half of it.
             _ => None,
