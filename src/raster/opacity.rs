@@ -75,7 +75,7 @@ impl Opacity {
         }
     }
     /// From here on fills holes of at most so many black samples before the samples are counted: connected
-    /// ones, if only at corners. See [`mod@super::closing`].
+    /// ones, if only at corners. See `closing`.
     pub fn fill_holes(&mut self, most: u32) {
         self.closing = most;
     }
