@@ -786,7 +786,7 @@ fn occlusion_is_measured_on_an_input_that_others_read_too() {
     fs::write(folder.join("cams.txt"), camera).expect("a written file");
     let call =
         ["bench", "occlusion", "--mesh", "wall.obj", "--boxes", "boxes.txt", "--cams", "cams.txt", "--size"];
-    for method in ["hierarchical-z", "tiles"] {
+    for method in ["hierarchical-z", "occlusion-maps", "tiles"] {
         let more = ["64x64", "--method", method, "--repeat", "2", "--dump-vis", "vis"];
         let said = done(&folder, &[&call[..], &more].concat());
         assert!(

@@ -10,7 +10,8 @@ use glam::Vec3;
 use super::error::reason;
 use super::{CliError, methods, output, scene};
 use crate::culling::Methods;
-use crate::culling::hierarchical_z_parts::{METHOD, Obscurer};
+use crate::culling::hierarchical_z_parts::{self, Obscurer};
+use crate::culling::occlusion_maps_parts::{self, Mapper};
 use crate::geometry::{Aabb, Eye, Footprint, Solid, View, project_box};
 use crate::measure::{timed, timing};
 use crate::method::Settings;
@@ -44,9 +45,11 @@ pub(super) struct Args {
     #[arg(long, value_name = "WxH", value_parser = super::paper::size)]
     size: [u32; 2],
     /// The method, or `tiles`: the depth structure by itself, clusters of occluders drawn front to back
-    #[arg(long, value_name = "METHOD", default_value = METHOD, value_parser = [METHOD, TILES])]
+    #[arg(long, value_name = "METHOD", default_value = hierarchical_z_parts::METHOD,
+        value_parser = [hierarchical_z_parts::METHOD, occlusion_maps_parts::METHOD, TILES])]
     method: String,
-    /// A parameter of the method; may be given several times [default: coherence=false backface-culling=true]
+    /// A parameter of the method; may be given several times [default: backface-culling=true, and
+    /// coherence=false or adapt=false]
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Times every camera is drawn; the median counts
@@ -70,12 +73,7 @@ const FINER: u32 = 2;
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
     let Command::Occlusion(args) = command;
-    let mut settings = Settings(
-        [("coherence", "false"), ("backface-culling", "true")]
-            .map(|(k, v)| (k.to_owned(), v.to_owned()))
-            .into(),
-    );
-    settings.0.extend(methods::settings(&args.set)?.0);
+    let settings = settings(args)?;
     // Words that are off are told before files are read.
     if args.method == TILES && !args.set.is_empty() {
         return Err(CliError::words("--set", "tiles have no parameters: leave it out"));
@@ -97,17 +95,25 @@ pub(super) fn run(command: &Command) -> Result<(), CliError> {
             .map_err(|why| CliError::work(format!("{} line {}", args.cams.display(), i + 1), why))
     });
     let views = views.collect::<Result<Vec<_>, _>>()?;
-    let mut occluders = if args.method == TILES {
-        Occluders::in_tiles(&mesh, &boxes)
-    } else {
-        let cubes = Obscurer::new(&mesh, &settings, &Quiet)?;
-        Occluders::Cubes(Box::new(cubes.ok_or(CliError::Interrupted)?), Boxes::new(boxes.iter().copied()))
-    };
+    let mut occluders = Occluders::new(&args.method, &mesh, &settings, &boxes)?;
     let measured = measure(&mut occluders, &mesh, &views, &boxes, args.repeat as usize);
     if let Some(path) = &args.dump_vis {
         output::write_file(path, |to| to.write_all(&measured.answers).map(|()| true))?;
     }
     output::print((measured.line(mesh.live().len()) + "\n").as_bytes())
+}
+
+/// Parameters of the method: those given, and otherwise such that no frame goes by the last, since cameras
+/// may stand anywhere.
+fn settings(args: &Args) -> Result<Settings, CliError> {
+    let first: &[(&str, &str)] = match args.method.as_str() {
+        hierarchical_z_parts::METHOD => &[("coherence", "false"), ("backface-culling", "true")],
+        occlusion_maps_parts::METHOD => &[("adapt", "false"), ("backface-culling", "true")],
+        _ => &[],
+    };
+    let mut settings = Settings(first.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect());
+    settings.0.extend(methods::settings(&args.set)?.0);
+    Ok(settings)
 }
 
 /// Lines of `count` numbers each; empty ones and those that begin with `#` are left out.
@@ -165,6 +171,8 @@ fn view(c: &[f64], eye: Vec3, all: &Aabb<Vec3>, [width, height]: [u32; 2]) -> Re
 enum Occluders {
     /// The method's octree, and the boxes to ask for.
     Cubes(Box<Obscurer<Solid>>, Boxes),
+    /// The method with its own choice of occluders, and the boxes to ask for.
+    Maps(Box<Mapper<Solid>>, Vec<Aabb<Vec3>>),
     /// The depth structure by itself.
     Tiles(Box<InTiles>),
 }
@@ -181,6 +189,25 @@ struct InTiles {
 const ONE_SIDED: Surfaces = Surfaces { one_sided: true, solid: false };
 
 impl Occluders {
+    fn new(
+        method: &str,
+        mesh: &Arc<Scene<Solid>>,
+        settings: &Settings,
+        boxes: &[Aabb<Vec3>],
+    ) -> Result<Self, CliError> {
+        Ok(match method {
+            TILES => Self::in_tiles(mesh, boxes),
+            occlusion_maps_parts::METHOD => {
+                let mapper = Mapper::new(mesh, settings, &Quiet)?;
+                Self::Maps(Box::new(mapper.ok_or(CliError::Interrupted)?), boxes.to_vec())
+            }
+            _ => {
+                let cubes = Obscurer::new(mesh, settings, &Quiet)?;
+                let boxes = Boxes::new(boxes.iter().copied());
+                Self::Cubes(Box::new(cubes.ok_or(CliError::Interrupted)?), boxes)
+            }
+        })
+    }
     fn in_tiles(mesh: &Scene<Solid>, boxes: &[Aabb<Vec3>]) -> Self {
         Self::Tiles(Box::new(InTiles {
             clusters: Clusters::new(mesh, ONE_SIDED, [mesh.live()]),
@@ -192,6 +219,7 @@ impl Occluders {
     fn render(&mut self, view: &View<Solid>) {
         match self {
             Self::Cubes(cubes, _) => _ = cubes.render(view),
+            Self::Maps(maps, _) => maps.make_maps(view),
             Self::Tiles(all) => {
                 all.tiles.clear(view, true);
                 all.tiles.draw(&all.clusters, ONE_SIDED.one_sided, Isa::best());
@@ -199,8 +227,9 @@ impl Occluders {
         }
     }
     /// Asks for all boxes; `None`: out of view.
-    fn hides(&mut self) -> Vec<Option<bool>> {
+    fn hides(&mut self, view: &View<Solid>) -> Vec<Option<bool>> {
         match self {
+            Self::Maps(maps, boxes) => maps.hides_all(view, boxes),
             Self::Cubes(cubes, boxes) => cubes.hides_all(boxes),
             Self::Tiles(all) => {
                 all.tiles.hides_all(&all.boxes, true, Isa::best(), &mut all.answers);
@@ -234,7 +263,7 @@ fn measure(
         let mut answers = Vec::new();
         for _ in 0..repeat {
             render.push(timed(|| occluders.render(view)).1);
-            let (all, ms) = timed(|| occluders.hides());
+            let (all, ms) = timed(|| occluders.hides(view));
             query.push(ms);
             answers = all;
         }

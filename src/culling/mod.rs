@@ -17,6 +17,7 @@ mod saved;
 
 pub use hierarchical_z::parts as hierarchical_z_parts;
 pub use large_occluders::anatomy;
+pub(crate) use occlusion_maps::parts as occlusion_maps_parts;
 
 use crate::geometry::{Flat, Solid, Space};
 use crate::method::{Entry, Of};

@@ -139,16 +139,28 @@ impl Opacity {
     /// Counts the black samples of level 0, then adds up.
     fn count(&mut self, masks: impl Fn(usize, usize) -> [u32; 4]) {
         self.blacken(0);
+        let whole =
+            if self.is_flat { [0; 2] } else { [self.size[0] / 32, self.size[1] / 4].map(|n| n as usize) };
         for strip in 0..self.size[0].div_ceil(32) as usize {
             for row in 0..self.size[1].div_ceil(4) as usize {
                 let masks = masks(strip, row);
-                let is_inside =
-                    32 * strip + 32 <= self.size[0] as usize && 4 * row + 4 <= self.size[1] as usize;
-                // Most is covered as a whole, or not at all.
-                if self.shift == 2 && !self.is_flat && is_inside && masks == [u32::MAX; 4] {
+                if masks == [0; 4] {
+                    continue;
+                }
+                // Most lies in the image as a whole.
+                if strip < whole[0] && row < whole[1] {
                     let map = &mut self.levels[0];
-                    map.black[row * map.columns as usize + 8 * strip..][..8].fill(0);
-                } else if masks != [0; 4] {
+                    match self.shift {
+                        0 => whiten_whole::<0>(map, [strip, row], masks),
+                        1 => whiten_whole::<1>(map, [strip, row], masks),
+                        2 => whiten_whole::<2>(map, [strip, row], masks),
+                        shift => {
+                            let first = ((4 * row) >> shift) * map.columns as usize;
+                            let at = |k: usize| first + ((32 * strip + 8 * k) >> shift);
+                            (0..4).for_each(|k| map.black[at(k)] -= masks[k].count_ones());
+                        }
+                    }
+                } else {
                     (0..4).for_each(|k| self.whiten([(4 * strip + k) as u32, row as u32], masks[k]));
                 }
             }
@@ -260,6 +272,23 @@ impl Opacity {
             span(under.x0, under.x1).max(span(under.y0, under.y1))
         };
         (0..top).find(|&k| spans(k) <= 1).unwrap_or(top)
+    }
+}
+
+/// Takes what is covered of four tiles side by side off the black samples, where pixels of the map have
+/// `1 << SHIFT` samples a side, 4 at most, so that they are of one tile each.
+#[inline(always)]
+fn whiten_whole<const SHIFT: u32>(map: &mut Map, [strip, row]: [usize; 2], masks: [u32; 4]) {
+    let (columns, side) = (map.columns as usize, 1_usize << SHIFT);
+    let (wide, high) = (8 / side, 4 / side);
+    let square = (0..side).fold(0, |bits, y| bits | (0xff_u32 >> (8 - side)) << (8 * y));
+    for j in 0..high {
+        let pixels = &mut map.black[(row * high + j) * columns + 4 * wide * strip..][..4 * wide];
+        for (pixels, mask) in pixels.chunks_exact_mut(wide).zip(masks) {
+            for (i, black) in pixels.iter_mut().enumerate() {
+                *black = (!mask >> (8 * side * j + side * i) & square).count_ones();
+            }
+        }
     }
 }
 

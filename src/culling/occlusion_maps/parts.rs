@@ -7,14 +7,18 @@ use super::evidence::{Evidence, Ground};
 use super::index::{Counts, Databases};
 use super::maps::{MapStep, Maps};
 use super::overlap::{Hears, MapRead, Step, overlap_test};
+use super::walk::Walk;
 use super::{Memory, OcclusionMaps, Params};
 use crate::culling::depth::Faces;
-use crate::geometry::{NodeId, PixelRect, PrimId, View};
+use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Solid, View};
 use crate::method::{
-    DrawList, Event, Frame, Method, Observer, SettingError, Settings, State, Verdict, params,
+    DrawList, Event, Frame, Method, Observer, SettingError, Settings, State, Unobserved, Verdict, params,
 };
 use crate::raster::{Opacity, PyramidCell};
 use crate::scene::{Progress, Scene};
+
+/// Key of the method whose parts these are.
+pub(crate) const METHOD: &str = <OcclusionMaps as Method<Solid>>::CARD.key;
 
 /// The method on a scene, with what it keeps from frame to frame.
 pub(crate) struct Mapper<S: Faces> {
@@ -124,6 +128,22 @@ impl<S: Faces> Mapper<S> {
         let (hidden, kept) = (hidden + alone, kept - alone);
         let in_view = hidden + presumed + kept;
         (list, Counted { in_view, hidden, presumed, covered, ..watch.counted })
+    }
+    /// The maps of a frame alone (Section 3, phase 1), with nobody listening.
+    pub fn make_maps(&mut self, view: &View<S>) {
+        let Self { scene, index, params, memory, maps, .. } = self;
+        let frame = Frame { index: &**index, scene: &**scene, view, params, limit: None };
+        let mut list = DrawList::default();
+        State::<S, OcclusionMaps>::begin(maps, &frame);
+        Walk::new::<OcclusionMaps>(&frame, memory, maps, &mut list, &mut Unobserved).make_maps();
+    }
+    /// Whether boxes are culled by the maps of the last frame, in order; `None` if one is out of view.
+    /// `view`: that of the frame.
+    pub fn hides_all(&mut self, view: &View<S>, boxes: &[Aabb<S::Vector>]) -> Vec<Option<bool>> {
+        let Self { scene, index, params, memory, maps, .. } = self;
+        let frame = Frame { index: &**index, scene: &**scene, view, params, limit: None };
+        let mut list = DrawList::default();
+        Walk::new::<OcclusionMaps>(&frame, memory, maps, &mut list, &mut Unobserved).hides_all(boxes)
     }
     /// What the last frame culled because it is hidden, proven or presumed.
     pub fn culled(&self) -> impl Iterator<Item = PrimId> {

@@ -1,5 +1,7 @@
 //! Which leaves of the occluder database are drawn as occluders (Zhang et al. 1997, Section 5.3.2).
 
+use std::cmp::Ordering;
+
 use super::index::Databases;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, Projection, Space, Vector, View, nearest_depth};
 use crate::method::words;
@@ -30,8 +32,6 @@ pub(crate) struct Candidate {
     pub size: f32,
     /// The angle under which the grid points about the eye see it, weighted; 0 where they do not.
     pub angle: f32,
-    /// The depth (`1/w`) of its nearest point.
-    pub nearest: f32,
     /// Primitives that are drawn of it.
     pub polygons: u32,
     /// Whether it comes before its turn: it was an occluder, or could be seen, in the last frame.
@@ -59,112 +59,214 @@ const KEEPS: f32 = 1.25;
 
 /// A leaf by what puts it in order.
 struct Ranked {
-    /// Whether it comes before all that does not.
-    is_first: bool,
     /// Less is earlier.
     key: f32,
     node: NodeId,
 }
 
-/// The leaves of the occluder database in the frustum, in the order in which they are taken, as far as they
-/// can be within the limit; and how many there are.
-pub(crate) fn candidates<S: Drawable>(
-    index: &Databases<S>,
-    view: &View<S>,
-    (frustum, projection): (&Frustum<S::Vector>, &Projection<S::Vector>),
-    order: Order,
-    limit: u32,
-    known: &Known<'_>,
-) -> (Vec<Candidate>, u32) {
-    let mut ranked = Vec::new();
-    let angle = |node: NodeId| known.angles.get(node.at()).copied().unwrap_or(0.0);
-    let is_first = |node: NodeId| match order {
-        Order::By(Selection::Visible) => known.drawn[node.at()],
-        // What moves is in no list (Section 5.5: "no pre-processing"): it follows by its distance, as does
-        // all else that the grid points do not see.
-        Order::By(Selection::Grid) => angle(node) > 0.0,
-        _ => false,
-    };
-    let key = |node: NodeId, bounds: &Aabb<S::Vector>| match order {
-        Order::By(Selection::Size) => -size_of(bounds, view),
-        Order::By(Selection::Grid) if is_first(node) => -angle(node),
-        Order::By(Selection::Distance | Selection::Visible | Selection::Grid) => distance_of(bounds, view),
-        // Larger depths are nearer.
-        Order::Nearest => -nearest_depth(projection, bounds, view.eye.near),
-    };
-    let polygons = |node: NodeId| index.occluder_prims(node, view, projection);
-    let may_be_none = index.stand_ins().is_some();
-    gather(index, frustum, (NodeId(0), Frustum::<S::Vector>::ALL), &mut |node| {
-        // Where nothing may be drawn for it, it is none.
-        if !may_be_none || polygons(node) > 0 {
-            let key = key(node, index.occluder_bounds(node));
-            ranked.push(Ranked { is_first: is_first(node), key, node });
+impl Ranked {
+    /// Equal ones by number, so that every run takes the same.
+    fn order(&self, other: &Self) -> Ordering {
+        self.key.total_cmp(&other.key).then(self.node.cmp(&other.node))
+    }
+}
+
+/// More than rounding may take from the least distance to a box, or add to its depth.
+const ROUNDING: f32 = 1.0 - 1e-6;
+
+/// How much farther than the last frame's candidates those of the next are looked for at first.
+const FARTHER: f32 = 1.25;
+
+/// What candidates are chosen from, and how they are put in order.
+pub(crate) struct Choosing<'a, S: Space> {
+    pub index: &'a Databases<S>,
+    pub view: &'a View<S>,
+    pub frustum: &'a Frustum<S::Vector>,
+    pub projection: &'a Projection<S::Vector>,
+    pub order: Order,
+    pub known: Known<'a>,
+}
+
+impl<S: Drawable> Choosing<'_, S> {
+    /// The leaves of the occluder database in the frustum, in the order in which they are taken, as far as
+    /// they can be within the limit. `last`: the key of the last of them, kept from frame to frame to look no
+    /// farther than needed, which changes nothing of what is found.
+    pub fn candidates(&self, limit: u32, last: &mut Option<f32>) -> Vec<Candidate> {
+        let most = KEEPS * limit as f32;
+        let mut ranked = self.first();
+        ranked.sort_unstable_by(Ranked::order);
+        let mut sum = self.cut(&mut ranked, most);
+        let firsts = ranked.len();
+        if sum <= most {
+            // Keys are distances, or angles and depths with the sign turned.
+            let farther =
+                last.map_or(f32::INFINITY, |key| if key < 0.0 { key / FARTHER } else { key * FARTHER });
+            let mut others = self.others(farther);
+            if farther.is_finite() && sum + self.sum(&others) <= most {
+                others = self.others(f32::INFINITY);
+            }
+            self.sort_first(&mut others, most - sum);
+            sum += self.sum(&others);
+            *last = others.last().filter(|_| sum > most).map(|r| r.key);
+            ranked.append(&mut others);
         }
-    });
-    let in_view = ranked.len() as u32;
-    sort_first(&mut ranked, KEEPS * limit as f32, polygons);
-    let found = ranked.iter().map(|r| {
-        let is_kept = match order {
-            // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
-            Order::By(Selection::Distance) => known.occluders[r.node.at()],
-            Order::By(Selection::Visible) => r.is_first,
-            _ => false,
+        let found = ranked.iter().enumerate().map(|(i, r)| {
+            let is_kept = match self.order {
+                // "Temporal coherence": while it is about as near as what is chosen, a set does not flicker.
+                Order::By(Selection::Distance) => self.known.occluders[r.node.at()],
+                Order::By(Selection::Visible) => i < firsts,
+                _ => false,
+            };
+            self.candidate(r.node, is_kept)
+        });
+        let mut found: Vec<Candidate> = found.collect();
+        found.sort_by_key(|c| !c.is_kept);
+        found
+    }
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        (self.first().len() + self.others(f32::INFINITY).len()) as u32
+    }
+
+    /// Those that come before all others.
+    fn first(&self) -> Vec<Ranked> {
+        let flagged: Vec<usize> = match self.order {
+            Order::By(Selection::Visible) => {
+                (0..self.known.drawn.len()).filter(|&at| self.known.drawn[at]).collect()
+            }
+            // What moves is in no list (Section 5.5: "no pre-processing"): it follows by its distance, as
+            // does all else that the grid points do not see.
+            Order::By(Selection::Grid) => {
+                (0..self.known.angles.len()).filter(|&at| self.known.angles[at] > 0.0).collect()
+            }
+            _ => Vec::new(),
         };
-        candidate(index, view, projection, r.node, (angle(r.node), is_kept))
-    });
-    let mut found: Vec<Candidate> = found.collect();
-    found.sort_by_key(|c| !c.is_kept);
-    (found, in_view)
-}
-
-/// Leaves those that come first, in order, and hold more than `most` primitives together, or all.
-fn sort_first(ranked: &mut Vec<Ranked>, most: f32, polygons: impl Fn(NodeId) -> u32) {
-    // Equal ones by number, so that every run takes the same.
-    let in_order = |a: &Ranked, b: &Ranked| {
-        b.is_first.cmp(&a.is_first).then(a.key.total_cmp(&b.key)).then(a.node.cmp(&b.node))
-    };
-    // To put all in order would take longer than to draw what is chosen of them.
-    let (mut count, mut sorted, mut sum) = (64, 0, 0.0);
-    while sorted < ranked.len() {
-        count = count.min(ranked.len());
-        if count < ranked.len() {
-            ranked[sorted..].select_nth_unstable_by(count - sorted, in_order);
-        }
-        ranked[sorted..count].sort_unstable_by(in_order);
-        for at in sorted..count {
-            sum += polygons(ranked[at].node) as f32;
-            if sum > most {
-                return ranked.truncate(at + 1);
+        let leaves = flagged.into_iter().map(|at| NodeId(at as u32)).filter(|&node| {
+            self.index.tree().nodes()[node.at()].children().is_none()
+                && self.cutting(node, Frustum::<S::Vector>::ALL).is_some()
+                && self.may_be_one(node)
+        });
+        let key = |node: NodeId| match self.order {
+            Order::By(Selection::Grid) => -self.angle(node),
+            _ => self.key(self.index.occluder_bounds(node)),
+        };
+        leaves.map(|node| Ranked { key: key(node), node }).collect()
+    }
+    /// All others whose key is not beyond one.
+    fn others(&self, farthest: f32) -> Vec<Ranked> {
+        let mut to = Vec::new();
+        self.gather((NodeId(0), Frustum::<S::Vector>::ALL), farthest, &mut to);
+        to
+    }
+    /// Frustum culling of the occluder database (Section 3, phase 1).
+    fn gather(&self, (id, planes): (NodeId, u8), farthest: f32, to: &mut Vec<Ranked>) {
+        let Some(cutting) = self.cutting(id, planes) else { return };
+        let bounds = self.index.occluder_bounds(id);
+        match self.index.tree().nodes()[id.at()].children() {
+            Some(children) => {
+                if self.floor(bounds) <= farthest {
+                    children.into_iter().for_each(|child| self.gather((child, cutting), farthest, to));
+                }
+            }
+            None => {
+                let key = self.key(bounds);
+                if key <= farthest && !self.is_first(id) && self.may_be_one(id) {
+                    to.push(Ranked { key, node: id });
+                }
             }
         }
-        sorted = count;
-        count *= 4;
     }
-}
-
-/// Frustum culling of the occluder database (Section 3, phase 1).
-fn gather<S: Drawable>(
-    index: &Databases<S>,
-    frustum: &Frustum<S::Vector>,
-    (id, planes): (NodeId, u8),
-    to: &mut impl FnMut(NodeId),
-) {
-    if !index.has_occluders(id) {
-        return;
+    fn sum(&self, ranked: &[Ranked]) -> f32 {
+        ranked.iter().map(|r| self.polygons(r.node) as f32).sum()
     }
-    let node = &index.tree().nodes()[id.at()];
-    let cutting = match frustum.test(index.occluder_bounds(id), planes) {
-        FrustumTest::Outside(_) => return,
-        FrustumTest::Partial(cutting) => cutting,
-        FrustumTest::Inside => 0,
-    };
-    match node.children() {
-        Some(children) => {
-            for child in children {
-                gather(index, frustum, (child, cutting), to);
+    /// Leaves those that come first, as they stand, until they hold more than `most` primitives. Their sum.
+    fn cut(&self, ranked: &mut Vec<Ranked>, most: f32) -> f32 {
+        let mut sum = 0.0;
+        let is_past = |r: &Ranked| {
+            sum += self.polygons(r.node) as f32;
+            sum > most
+        };
+        let end = ranked.iter().position(is_past).map_or(ranked.len(), |at| at + 1);
+        ranked.truncate(end);
+        sum
+    }
+    /// Leaves those that come first, in order, and hold more than `most` primitives together, or all.
+    fn sort_first(&self, ranked: &mut Vec<Ranked>, most: f32) {
+        // To put all in order would take longer than to draw what is chosen of them.
+        let (mut count, mut sorted, mut sum) = (64, 0, 0.0);
+        while sorted < ranked.len() {
+            count = count.min(ranked.len());
+            if count < ranked.len() {
+                ranked[sorted..].select_nth_unstable_by(count - sorted, Ranked::order);
             }
+            ranked[sorted..count].sort_unstable_by(Ranked::order);
+            for at in sorted..count {
+                sum += self.polygons(ranked[at].node) as f32;
+                if sum > most {
+                    return ranked.truncate(at + 1);
+                }
+            }
+            sorted = count;
+            count *= 4;
         }
-        None => to(id),
+    }
+    /// The planes of the frustum that cut a node with occluders in it; `None` if it has none or is outside.
+    fn cutting(&self, id: NodeId, planes: u8) -> Option<u8> {
+        if !self.index.has_occluders(id) {
+            return None;
+        }
+        match self.frustum.test(self.index.occluder_bounds(id), planes) {
+            FrustumTest::Outside(_) => None,
+            FrustumTest::Partial(cutting) => Some(cutting),
+            FrustumTest::Inside => Some(0),
+        }
+    }
+    /// Where nothing may be drawn for a leaf, it is no candidate.
+    fn may_be_one(&self, leaf: NodeId) -> bool {
+        self.index.stand_ins().is_none() || self.polygons(leaf) > 0
+    }
+    fn polygons(&self, leaf: NodeId) -> u32 {
+        self.index.occluder_prims(leaf, self.view, self.projection)
+    }
+    fn angle(&self, leaf: NodeId) -> f32 {
+        self.known.angles.get(leaf.at()).copied().unwrap_or(0.0)
+    }
+    fn is_first(&self, leaf: NodeId) -> bool {
+        match self.order {
+            Order::By(Selection::Visible) => self.known.drawn[leaf.at()],
+            Order::By(Selection::Grid) => self.angle(leaf) > 0.0,
+            _ => false,
+        }
+    }
+    fn key(&self, bounds: &Aabb<S::Vector>) -> f32 {
+        match self.order {
+            Order::By(Selection::Size) => -size_of(bounds, distance_of(bounds, self.view)),
+            Order::By(_) => distance_of(bounds, self.view),
+            // Larger depths are nearer.
+            Order::Nearest => -nearest_depth(self.projection, bounds, self.view.eye.near),
+        }
+    }
+    /// No key of a box inside is less.
+    fn floor(&self, bounds: &Aabb<S::Vector>) -> f32 {
+        let eye = self.view.eye.position;
+        let least = (eye.max(bounds.min).min(bounds.max) - eye).length() * ROUNDING;
+        match self.order {
+            Order::By(Selection::Size) => -size_of(bounds, least) / ROUNDING,
+            Order::By(_) => least,
+            Order::Nearest => -nearest_depth(self.projection, bounds, self.view.eye.near) / ROUNDING,
+        }
+    }
+    fn candidate(&self, node: NodeId, is_kept: bool) -> Candidate {
+        let bounds = self.index.occluder_bounds(node);
+        let distance = distance_of(bounds, self.view);
+        Candidate {
+            node,
+            distance,
+            size: size_of(bounds, distance),
+            angle: self.angle(node),
+            polygons: self.polygons(node),
+            is_kept,
+        }
     }
 }
 
@@ -172,27 +274,8 @@ fn gather<S: Drawable>(
 fn distance_of<S: Space>(bounds: &Aabb<S::Vector>, view: &View<S>) -> f32 {
     (bounds.center() - view.eye.position).length()
 }
-/// About its solid angle.
-fn size_of<S: Space>(bounds: &Aabb<S::Vector>, view: &View<S>) -> f32 {
-    let across = bounds.diagonal() / distance_of(bounds, view).max(f32::MIN_POSITIVE);
+/// About the solid angle of a box at a distance.
+fn size_of<V: Vector>(bounds: &Aabb<V>, distance: f32) -> f32 {
+    let across = bounds.diagonal() / distance.max(f32::MIN_POSITIVE);
     across * across
-}
-
-fn candidate<S: Drawable>(
-    index: &Databases<S>,
-    view: &View<S>,
-    projection: &Projection<S::Vector>,
-    node: NodeId,
-    (angle, is_kept): (f32, bool),
-) -> Candidate {
-    let bounds = index.occluder_bounds(node);
-    Candidate {
-        node,
-        distance: distance_of(bounds, view),
-        size: size_of(bounds, view),
-        angle,
-        nearest: nearest_depth(projection, bounds, view.eye.near),
-        polygons: index.occluder_prims(node, view, projection),
-        is_kept,
-    }
 }

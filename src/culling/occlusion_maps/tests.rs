@@ -5,9 +5,13 @@ use glam::{Vec2, vec2};
 use super::budget::Work;
 use super::depth::DepthBuffer;
 use super::overlap::{Hears, MapRead, Outcome, Overlap, Step, overlap_test};
+use super::parts::Mapper;
+use super::selection::{Candidate, Choosing, Known, Order};
 use super::*;
 use crate::geometry::dice::Dice;
-use crate::geometry::{Eye, Flat, PixelRect, PrimId, Solid, View};
+use crate::geometry::{
+    Eye, Flat, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Solid, View, nearest_depth,
+};
 use crate::method::{Recorder, Verdict, Words};
 use crate::raster::PyramidCell;
 use crate::scene::{Face, LoadOptions, Parts, Quiet};
@@ -558,6 +562,138 @@ fn a_building_is_whole_with_every_depth_and_choice() {
             assert!(culled > scene.live().len(), "{depth:?}, {selection:?}: {culled} culled");
         }
     }
+}
+
+/// Candidates in order, as far as they can be within a limit; those that stay first.
+fn within(mut all: Vec<Candidate>, limit: u32, key: impl Fn(&Candidate) -> (u8, f32)) -> Vec<Candidate> {
+    all.sort_by(|a, b| {
+        let (a_key, b_key) = (key(a), key(b));
+        a_key.0.cmp(&b_key.0).then(a_key.1.total_cmp(&b_key.1)).then(a.node.cmp(&b.node))
+    });
+    let mut sum = 0;
+    let end = all.iter().position(|c| {
+        sum += c.polygons;
+        sum as f32 > 1.25 * limit as f32
+    });
+    all.truncate(end.map_or(all.len(), |at| at + 1));
+    all.sort_by_key(|c| !c.is_kept);
+    all
+}
+
+/// As far as is looked, what is found is what all in order would be: with any choice, limit and memory.
+fn chosen_in_order<S: Faces>(scene: &Arc<Scene<S>>, views: &[View<S>], dice: &mut Dice) -> usize {
+    let params = Params { leaf_primitives: 4, occluder_size: 0, ..Params::default() };
+    let Tried { index, .. } = Tried::new(scene.clone(), params);
+    let nodes = index.tree().nodes();
+    let mut taken = 0;
+    for (round, view) in views.iter().enumerate() {
+        let (frustum, projection) = (view.frustum(), view.projection());
+        let mut flags = || (0..nodes.len()).map(|_| dice.below(3) == 0).collect::<Vec<_>>();
+        let (occluders, drawn, seen) = (flags(), flags(), flags());
+        let angles: Vec<f32> = seen.iter().map(|s| if *s { dice.between(0.0, 1.0) } else { 0.0 }).collect();
+        let order = match round % 5 {
+            4 => Order::Nearest,
+            k => Order::By([Selection::Distance, Selection::Size, Selection::Visible, Selection::Grid][k]),
+        };
+        let known = Known { occluders: &occluders, drawn: &drawn, angles: &angles };
+        let choosing =
+            Choosing { index: &index, view, frustum: &frustum, projection: &projection, order, known };
+        let key = |c: &Candidate| match order {
+            Order::Nearest => (1, -nearest_depth(&projection, index.occluder_bounds(c.node), view.eye.near)),
+            Order::By(Selection::Size) => (1, -c.size),
+            Order::By(Selection::Visible) if drawn[c.node.at()] => (0, c.distance),
+            Order::By(Selection::Grid) if c.angle > 0.0 => (0, -c.angle),
+            Order::By(_) => (1, c.distance),
+        };
+        let limit = [0, 7, 50, 400, 1_000_000][dice.below(5) as usize];
+        let mut last = (dice.below(2) == 0).then(|| dice.between(-1.0, 60.0));
+        let found = choosing.candidates(limit, &mut last);
+        let everything = choosing.candidates(1_000_000, &mut None);
+        assert_eq!(everything.len(), choosing.count() as usize);
+        let is_in_view = |at: &usize| {
+            index.has_occluders(NodeId(*at as u32))
+                && nodes[*at].children().is_none()
+                && !matches!(
+                    frustum.test(&nodes[*at].bounds, Frustum::<S::Vector>::ALL),
+                    FrustumTest::Outside(_)
+                )
+        };
+        assert_eq!(everything.len(), (0..nodes.len()).filter(is_in_view).count());
+        let within = within(everything, limit, key);
+        assert_eq!(found, within, "round {round}, limit {limit}");
+        taken += found.len();
+    }
+    taken
+}
+
+#[test]
+fn occluders_are_chosen_in_order() {
+    let mut dice = Dice::new(151);
+    let crate::scene::AnyScene::Solid(scene) =
+        crate::scene::load("generate:city?polygons=4000", &LoadOptions::default(), &Quiet).expect("made")
+    else {
+        panic!("a city is in space")
+    };
+    let views: Vec<View<Solid>> = scene.paths()[0].views.iter().copied().step_by(3).collect();
+    let mut taken = chosen_in_order(&scene, &views, &mut dice);
+    let (scene, view) = flat_file("forest");
+    let views: Vec<View<Flat>> = (0..60)
+        .map(|_| {
+            let mut view = view;
+            let bounds = scene.bounds();
+            let mut at =
+                || vec2(dice.between(bounds.min.x, bounds.max.x), dice.between(bounds.min.y, bounds.max.y));
+            (view.eye.position, view.eye.target) = (at(), at());
+            view
+        })
+        .collect();
+    taken += chosen_in_order(&scene, &views, &mut dice);
+    assert!(taken > 2_000, "{taken}");
+}
+
+/// What is counted of a frame is what it draws and leaves out, primitive by primitive.
+#[test]
+fn counts_of_a_frame_are_those_of_its_list() {
+    let crate::scene::AnyScene::Solid(scene) =
+        crate::scene::load("generate:city?polygons=4000", &LoadOptions::default(), &Quiet).expect("made")
+    else {
+        panic!("a city is in space")
+    };
+    let settings = crate::method::Settings::of(&[("adapt", "false"), ("occluder-budget", "500")]);
+    let mut mapper = Mapper::new(&scene, &settings, &Quiet).expect("fine").expect("not cancelled");
+    let mut alone = 0;
+    for view in scene.paths()[0].views.iter().step_by(20) {
+        let (list, counted) = mapper.cull(view);
+        let mut culled: Vec<PrimId> = mapper.culled().collect();
+        assert_eq!(counted.hidden + counted.presumed, culled.len());
+        assert_eq!(counted.in_view, culled.len() + list.prims.len());
+        let occluders = mapper.occluders();
+        alone += culled.iter().filter(|p| occluders.contains(p)).count();
+        culled.extend(&list.prims);
+        culled.sort_unstable();
+        culled.dedup();
+        assert_eq!(culled.len(), counted.in_view, "each once");
+    }
+    assert!(alone > 100, "{alone} of occluders alone");
+}
+
+/// What was drawn in one frame, and lies under a node that is culled in the next, is not first in the third.
+#[test]
+fn what_is_culled_as_a_whole_was_not_drawn() {
+    let (scene, view) = flat_file("forest");
+    let params = Params { selection: Selection::Visible, ..flat_params(100, DepthKind::Samples) };
+    let mut tried = Tried::new(scene, params);
+    tried.cull(&view);
+    let before = tried.memory.drawn.iter().filter(|d| **d).count();
+    let mut away = view;
+    away.eye.target = view.eye.position * 2.0 - view.eye.target;
+    let (drawn, ..) = tried.cull(&away);
+    let after = tried.memory.drawn.iter().filter(|d| **d).count();
+    assert!(
+        before > 0 && after <= drawn.len(),
+        "{before}, then {after} leaves of {} that are drawn",
+        drawn.len()
+    );
 }
 
 /// The table of Section 5.4's example: 25 of 16 × 16 samples.

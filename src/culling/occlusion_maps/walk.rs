@@ -7,13 +7,14 @@ use super::evidence::{Answered, Built, Choice, Cover, DepthCompared, Evidence, G
 use super::index::Databases;
 use super::maps::{MapStep, Maps};
 use super::overlap::{self, MapRead, Overlap, overlap_test};
-use super::selection::{Candidate, Known, Order, candidates};
+use super::selection::{Candidate, Choosing, Known, Order};
 use super::stand_ins::Kind;
 use super::{DepthKind, Memory, Params, Samples};
 use crate::culling::depth::{Asking, DepthNote, Faces, Rasterized, Stage, deciding, footprint};
 use crate::drawing::Subject;
 use crate::geometry::{
-    BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View, farthest_depth,
+    Aabb, BoxImage, Footprint, Frustum, FrustumTest, NodeId, PixelRect, PrimId, Projection, View,
+    farthest_depth, nearest_depth,
 };
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
@@ -27,6 +28,8 @@ pub(super) struct Scratch {
     occluders: Vec<NodeId>,
     /// Of each node the angle under which the grid points about the eye see it.
     angles: Vec<f32>,
+    /// The key of the last candidate of the frame before.
+    last: Option<f32>,
 }
 
 impl Clone for Scratch {
@@ -72,6 +75,23 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// Section 3: phase 1 makes the maps, phase 2 culls by them.
     pub(super) fn run(&mut self) {
+        let is_on = self.make_maps();
+        // Not node by node: of what is culled as a whole no leaf is entered.
+        self.memory.drawn.fill(false);
+        self.watch.stage("cull");
+        self.line(line::ROOT);
+        let prims = self.scene.live().len();
+        self.work.in_view = prims as u32;
+        self.cull(NodeId(0), Frustum::<S::Vector>::ALL, false);
+        if self.params.adapts {
+            self.line(line::ADAPT);
+            let budget = &mut self.memory.budget;
+            let adapted = if is_on { budget.adapt::<S>(self.work, prims) } else { budget.pause(self.work) };
+            self.watch.note(move || Evidence::Adapted(adapted));
+        }
+    }
+    /// Phase 1; whether occlusion culling is on.
+    pub(super) fn make_maps(&mut self) -> bool {
         self.line(line::FRAME);
         let (nodes, prims) = (self.index.tree().nodes().len(), self.scene.live().len());
         self.memory.occluders.resize(nodes, false);
@@ -96,16 +116,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             let left = self.memory.budget.off;
             self.watch.note(move || Evidence::Paused(left));
         }
-        self.watch.stage("cull");
-        self.line(line::ROOT);
-        self.work.in_view = prims as u32;
-        self.cull(NodeId(0), Frustum::<S::Vector>::ALL, false);
-        if self.params.adapts {
-            self.line(line::ADAPT);
-            let budget = &mut self.memory.budget;
-            let adapted = if is_on { budget.adapt::<S>(self.work, prims) } else { budget.pause(self.work) };
-            self.watch.note(move || Evidence::Adapted(adapted));
-        }
+        is_on
     }
 
     /// Occluder selection (Section 5.3.2).
@@ -119,11 +130,13 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.look_up();
         let Memory { occluders, drawn, scratch, .. } = &*self.memory;
         let known = Known { occluders, drawn, angles: &scratch.angles };
-        let cameras = (&self.frustum, &self.projection);
-        let (all, count) = candidates(self.index, self.view, cameras, order, limit, &known);
-        self.line(line::SORT);
-        let counts = self.index.counts();
-        self.watch.note(move || Evidence::Gathered(count, counts));
+        let (index, view, frustum, projection) = (self.index, self.view, &self.frustum, &self.projection);
+        let choosing = Choosing { index, view, frustum, projection, order, known };
+        let mut last = scratch.last;
+        let all = choosing.candidates(limit, &mut last);
+        self.watch.event(Event::Line(line::SORT));
+        self.watch.note(|| Evidence::Gathered(choosing.count(), index.counts()));
+        self.memory.scratch.last = last;
         self.memory.occluders.fill(false);
         self.memory.scratch.occluders.clear();
         let reach = self.memory.budget.reach * self.scene.bounds().diagonal();
@@ -142,7 +155,8 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.line(line::EXCEEDS);
             if sum + candidate.polygons > limit {
                 self.refuse(candidate, sum + candidate.polygons, reach);
-                plane = candidate.nearest;
+                let bounds = self.index.occluder_bounds(candidate.node);
+                plane = nearest_depth(&self.projection, bounds, self.view.eye.near);
                 break;
             }
             sum += candidate.polygons;
@@ -249,6 +263,15 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         });
     }
 
+    /// Whether boxes of any kind are culled by the maps of the frame, in order; `None` if one is out of view.
+    pub(super) fn hides_all(&mut self, boxes: &[Aabb<S::Vector>]) -> Vec<Option<bool>> {
+        let hides = |bounds: &Aabb<S::Vector>| match self.frustum.test(bounds, Frustum::<S::Vector>::ALL) {
+            FrustumTest::Outside(_) => None,
+            _ => Some(matches!(self.test(NodeId(0), bounds, false), Found::Culled { .. })),
+        };
+        boxes.iter().map(hides).collect()
+    }
+
     /// Culls a node and all below it. `is_known`: whether a node above passed the first of both tests, and so
     /// this one does: it is behind the occluders, or, where depths of samples are compared, covered.
     fn cull(&mut self, id: NodeId, planes: u8, is_known: bool) {
@@ -262,17 +285,16 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let cutting = match test {
             FrustumTest::Outside(_) => {
                 self.work.in_view -= self.index.tree().prims_below(id).len() as u32;
-                self.memory.drawn[id.at()] = false;
                 return self.leave(id, Verdict::Outside);
             }
             FrustumTest::Partial(cutting) => cutting,
             FrustumTest::Inside => 0,
         };
-        let found = if self.memory.budget.is_on() { self.test(id, is_known) } else { Found::Open(false) };
+        let found =
+            if self.memory.budget.is_on() { self.test(id, bounds, is_known) } else { Found::Open(false) };
         let is_known = match found {
             Found::Culled { is_proven } => {
                 self.work.culled += self.index.tree().prims_below(id).len() as u32;
-                self.memory.drawn[id.at()] = false;
                 return self.leave(id, if is_proven { Verdict::Hidden } else { Verdict::Presumed });
             }
             Found::Open(is_known) => is_known,
@@ -301,7 +323,7 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     }
     /// Section 3, phase 2: "only objects that fail one of the latter two tests (depth or overlap) are
     /// rendered".
-    fn test(&mut self, id: NodeId, is_known: bool) -> Found {
+    fn test(&mut self, id: NodeId, bounds: &Aabb<S::Vector>, is_known: bool) -> Found {
         if self.params.depth != DepthKind::Samples {
             self.line(line::HOLDS);
             // Neither in the buffer nor before the plane could it be behind itself.
@@ -312,7 +334,6 @@ impl<'a, S: Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         self.work.tests += 1;
         self.line(line::RECTANGLE);
-        let bounds = &self.index.tree().nodes()[id.at()].bounds;
         let image = footprint(self.view, &self.projection, bounds);
         self.line(line::NEAR);
         let image = match image {

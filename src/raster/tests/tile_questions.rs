@@ -247,19 +247,20 @@ fn what_waits_is_drawn_in_the_end() {
     }
 }
 
-/// The same with a third of it still, and the rest in two objects that turn and go.
+/// The same with a third of it still, and the rest in two objects that come from far away and turn and go:
+/// what is known of where they were at first, and of how they faced, says nothing of where they are.
 fn moving<S: Space>(dice: &mut Dice, scene: Scene<S>) -> Scene<S> {
     let mut parts = scene.into_parts();
-    let pose = |dice: &mut Dice| {
+    let pose = |dice: &mut Dice, far: f32| {
         let (angle, axis) = (dice.between(-3.0, 3.0), glam::Vec3::new(0.0, 0.0, 1.0));
         let axis =
             if S::CORNERS == 2 { axis } else { (axis + Vec3::Y * dice.between(-1.0, 1.0)).normalize() };
-        let translation = [dice.between(-2.0, 2.0), dice.between(-2.0, 2.0), 0.0];
+        let translation = [dice.between(-2.0, 2.0) + far, dice.between(-2.0, 2.0) + far, 0.0];
         Pose { rotation: glam::Quat::from_axis_angle(axis, angle).to_array(), translation }
     };
     parts.objects.resize(3, parts.objects[0].clone());
     for object in &mut parts.objects[1..] {
-        object.motion = Some((0..4).map(|_| pose(dice)).collect());
+        object.motion = Some([90.0, 0.0, 0.0, 0.0].map(|far| pose(dice, far)).into());
     }
     for object in &mut parts.prim_object {
         *object = ObjectId(dice.below(3));
@@ -267,36 +268,51 @@ fn moving<S: Space>(dice: &mut Dice, scene: Scene<S>) -> Scene<S> {
     Scene::new(parts).expect("valid")
 }
 
-fn follows<S: Drawable>(scene: Scene<S>, view: &View<S>) {
+/// How many primitives showed.
+fn follows<S: Drawable>(scene: Scene<S>, view: &View<S>, surfaces: Surfaces) -> usize {
     let mut motion = Motion::new(&Arc::new(scene));
     let rest = motion.at(0);
-    // Groups that hold some of each object.
-    let groups: Vec<&[PrimId]> = rest.live().chunks(40).collect();
-    let mut clusters = Clusters::new(&rest, BOTH_SIDES, groups);
+    // Groups that hold some of each object, then one for each of them.
+    let of =
+        |object| rest.live().iter().copied().filter(|&p| rest.object_of(p) == ObjectId(object)).collect();
+    let objects: [Vec<PrimId>; 3] = [0, 1, 2].map(of);
+    let mixed: Vec<&[PrimId]> = rest.live().chunks(40).collect();
+    let (mut of_some, mut of_one) = (
+        Clusters::new(&rest, surfaces, mixed),
+        Clusters::new(&rest, surfaces, objects.iter().map(Vec::as_slice)),
+    );
+    let mut shown = 0;
     for frame in [2, 1, 3] {
         let scene = motion.at(frame);
-        clusters.follow(&scene);
-        let (mut tiles, truth) = (Tiles::default(), image(&scene, view, BOTH_SIDES));
-        tiles.clear(view, true);
-        tiles.draw(&clusters, false, Isa::best());
-        tiles.assert_claims(&truth.depth);
-        assert_eq!(tiles.depths(Isa::best()), truth.depth, "frame {frame}");
+        let truth = image(&scene, view, surfaces);
+        for clusters in [&mut of_some, &mut of_one] {
+            clusters.follow(&scene);
+            let mut tiles = Tiles::default();
+            tiles.clear(view, true);
+            tiles.draw(clusters, surfaces.one_sided, Isa::best());
+            tiles.assert_claims(&truth.depth);
+            assert_eq!(tiles.depths(Isa::best()), truth.depth, "frame {frame}");
+        }
+        shown += visible(&truth).len();
     }
+    shown
 }
 
 /// Clusters that follow a motion draw the image of the scene as it is then.
 #[test]
 fn clusters_follow_what_moves() {
-    let mut dice = Dice::new(85);
+    let (mut dice, mut shown) = (Dice::new(85), [0; 2]);
     for round in 0..ROUNDS {
+        let surfaces = if round % 2 == 0 { ONE_SIDED } else { BOTH_SIDES };
         let scene = mixed(&mut dice, 150);
         let scene = moving(&mut dice, scene);
         let (width, height) = sizes(round);
-        follows(scene, &random_view(&mut dice, width, height));
+        shown[0] += follows(scene, &random_view(&mut dice, width, height), surfaces);
         let scene = flat_mixed(&mut dice, 60, 1.0);
         let scene = moving(&mut dice, scene);
-        follows(scene, &flat_view(&mut dice, flat_size(round).0, 1.0));
+        shown[1] += follows(scene, &flat_view(&mut dice, flat_size(round).0, 1.0), surfaces);
     }
+    assert!(shown.iter().all(|n| *n > 100), "{shown:?} showed");
 }
 
 /// A group of what is drawn already: nothing is drawn again, and nothing more is said of it.

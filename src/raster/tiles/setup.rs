@@ -158,20 +158,27 @@ impl<L: Wide> Draw<'_, L> {
             let valid = l.first(c.prims.end - first);
             let (a, b) = (self.side(&v, first, 0), self.side(&v, first, 4));
             let both = l.both(valid, l.both(l.gt(a, l.splat(error)), l.gt(b, l.splat(error))));
-            let away = l.both(l.gt(l.splat(-error), a), l.gt(l.splat(-error), b));
-            let mut rest = l.without(valid, both);
+            let away = l.both(valid, l.both(l.gt(l.splat(-error), a), l.gt(l.splat(-error), b)));
+            let rest = l.without(l.without(valid, both), away);
+            let (mut whole, mut turned, mut rest) = (l.bits(both), l.bits(away), l.bits(rest));
             if self.one_sided && !all.any_two_sided {
-                rest = l.without(rest, away);
+                turned = 0;
             }
-            let (mut whole, mut rest) = (l.bits(both), l.bits(rest));
             if !self.skipped.is_empty() {
-                let drawn = self.drawn(first);
-                (whole, rest) = (whole & !drawn, rest & !drawn);
+                let open = !self.drawn(first);
+                (whole, turned, rest) = (whole & open, turned & open, rest & open);
             }
             while whole != 0 {
                 let prim = first + whole.trailing_zeros() as usize;
                 front.push(all.words[prim], prim, BOTH);
                 whole &= whole - 1;
+            }
+            while turned != 0 {
+                let prim = first + turned.trailing_zeros() as usize;
+                if !self.one_sided || all.words[prim] & TWO_SIDED != 0 {
+                    front.push(reversed(all.words[prim]), prim, BOTH);
+                }
+                turned &= turned - 1;
             }
             while rest != 0 {
                 self.front_parts(c, first + rest.trailing_zeros() as usize, front);
