@@ -619,8 +619,7 @@ fn chosen_in_order<S: Faces>(scene: &Arc<Scene<S>>, views: &[View<S>], dice: &mu
                 )
         };
         assert_eq!(everything.len(), (0..nodes.len()).filter(is_in_view).count());
-        let within = within(everything, limit, key);
-        assert_eq!(found, within, "round {round}, limit {limit}");
+        assert_eq!(found, within(everything, limit, key), "limit {limit}");
         taken += found.len();
     }
     taken
