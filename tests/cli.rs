@@ -535,7 +535,7 @@ fn a_paper_lists_its_figures_and_tables() {
     assert!(names.contains(&"coorg-teller-figure-12") && names.contains(&"coorg-teller-table-3"), "{said}");
     // Every name that a list shows is shown by one paper.
     let listed = done(&here, &["figure", "--list"]) + &done(&here, &["paper", "--list"]);
-    let papers = ["baselines", "coorg-teller", "georges", "klosowski-silva", "zhang"];
+    let papers = ["baselines", "coorg-teller", "georges", "klosowski-silva", "zhang", "chamberlain"];
     let shown: Vec<String> = papers.iter().map(|key| done(&here, &["paper", key])).collect();
     for name in listed.lines().filter_map(|l| l.split_whitespace().next()) {
         let count = shown.iter().filter(|text| text.contains(&format!("  {name} "))).count();

@@ -14,8 +14,8 @@ use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, each};
 use crate::measure::timed;
-use crate::method::surfaces_of;
-use crate::raster::{Options, Target, shade};
+use crate::method::{Words, surfaces_of};
+use crate::raster::{Canvas, Light, Options, Target};
 use crate::render::{Theme, png_pixels};
 use crate::scene::{Progress, Scene};
 use crate::truth::Truth;
@@ -36,6 +36,10 @@ pub(super) struct Args {
     /// Write an image of what was drawn; several views give NAME-000.png, NAME-001.png, …
     #[arg(long, value_name = "FILE.png")]
     image: Option<PathBuf>,
+    /// Light of the image, of all methods alike: headlight, at the eye, or fixed in the world. Without it, that
+    /// of the method
+    #[arg(long, value_name = "LIGHT", value_parser = clap::builder::PossibleValuesParser::new(Light::WORDS))]
+    light: Option<String>,
     /// Write the result to a file instead of standard output
     #[arg(long, value_name = "FILE.json")]
     out: Option<PathBuf>,
@@ -64,6 +68,9 @@ struct Report {
 struct Frame {
     view: usize,
     drawn_triangles: usize,
+    /// What was drawn in place of others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drawn_stand_ins: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
     drawn_ids: Option<Vec<u32>>,
     /// What moving the scene took, and bringing the index to it; of scenes that move.
@@ -125,7 +132,8 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
     let surfaces = surfaces_of(&ready.run.knobs());
     let background = Theme::Print.flat_linear(Role::Paper);
     let mut truth = args.truth.then(|| Truth::new(scene, surfaces, args.threads as usize, background));
-    let mut target = Target::default();
+    let (mut target, mut canvas) = (Target::default(), Canvas::default());
+    let light = args.light.as_ref().and_then(|word| Light::ALL.iter().find(|l| l.word() == word));
     let options =
         Options { threads: args.threads as usize, surfaces: surfaces.both_sides(), ..Options::default() };
     let mut frames = Vec::with_capacity(count);
@@ -138,9 +146,13 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         let (scene, pose_ms) = timed(|| ready.pose(i));
         let (scene, view) = (&*scene?, &ready.path.views[i]);
         let ((list, stages_ms), cull_ms) = timed(|| ready.run.stages_ms(view));
-        let ((), draw_ms) = timed(|| list.redraw(&mut target, scene, view, &options));
+        let ((), draw_ms) = timed(|| {
+            list.redraw(&mut target, scene, view, &options);
+            list.composite(&mut canvas, &target, view, &options);
+        });
         if let Some(path) = &args.image {
-            let rgba = shade(&target, scene, view, background);
+            let light = *light.unwrap_or(&list.light);
+            let rgba = list.picture(scene, view, (&target, &canvas), (light, background));
             let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
             let place = output::numbered(path, i, count);
             output::write_file(&place, |to| to.write_all(&png_pixels(&picture)).map(|()| true))?;
@@ -149,6 +161,7 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         frames.push(Frame {
             view: i,
             drawn_triangles: list.prims.len(),
+            drawn_stand_ins: Some(list.stand_ins.len()).filter(|n| *n > 0),
             drawn_ids: args.ids.then(|| numbers(&list.ascending())),
             pose_ms: scene.frame().map(|_| rounded(pose_ms)),
             cull_ms: rounded(cull_ms),

@@ -6,6 +6,7 @@
 //! `mod` line and its line in the list below.
 
 pub(crate) mod baseline;
+pub(crate) mod color_cubes;
 mod cubes;
 pub(crate) mod depth;
 pub(crate) mod hierarchical_z;
@@ -41,6 +42,7 @@ methods! {
     parallel_hierarchical_z::ParallelHierarchicalZ,
     layered_projection::LayeredProjection,
     occlusion_maps::OcclusionMaps,
+    color_cubes::ColorCubes,
 }
 
 /// Key of the method that a new session begins with: the simplest one that leaves something out.

@@ -222,6 +222,14 @@ pub enum Mark<P> {
     },
     /// A filled convex polygon with its outline.
     Area(Vec<P>),
+    /// A filled convex polygon in a color that is data, such as a cube face's; its outline is that of its role,
+    /// so that nothing is told by color alone.
+    Swatch {
+        /// Its corners.
+        points: Vec<P>,
+        /// sRGB, and opacity; not premultiplied.
+        rgba: [u8; 4],
+    },
     /// A line with an arrow head at its end.
     Arrow(P, P),
     /// A filled circle.
@@ -258,7 +266,9 @@ impl<P: Copy> Mark<P> {
     pub fn mapped(&self, f: impl Fn(P) -> P) -> Self {
         let mut mark = self.clone();
         match &mut mark {
-            Self::Line { points, .. } | Self::Area(points) => points.iter_mut().for_each(|p| *p = f(*p)),
+            Self::Line { points, .. } | Self::Area(points) | Self::Swatch { points, .. } => {
+                points.iter_mut().for_each(|p| *p = f(*p));
+            }
             Self::Arrow(a, b) => (*a, *b) = (f(*a), f(*b)),
             Self::Dot { at, .. } | Self::Text { at, .. } => *at = f(*at),
             Self::Image { corners, .. } => *corners = corners.map(f),

@@ -46,6 +46,10 @@ impl Frame {
             Mark::Area(points) => {
                 Some(self.area(points)).filter(|p| p.len() > 2).map(Mark::Area).into_iter().collect()
             }
+            Mark::Swatch { points, rgba } => {
+                let parts = Some(self.area(points)).filter(|p| p.len() > 2);
+                parts.map(|points| Mark::Swatch { points, rgba }).into_iter().collect()
+            }
             Mark::Arrow(a, b) if self.holds(a) && self.holds(b) => vec![Mark::Arrow(a, b)],
             Mark::Arrow(a, b) => match self.segment(a, b) {
                 Some((c, d)) if d == b => vec![Mark::Arrow(c, d)],

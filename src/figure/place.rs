@@ -52,6 +52,7 @@ fn map<P: Copy>(mark: &Mark<P>, f: &impl Fn(P) -> Vec2) -> Mark<Vec2> {
     match mark {
         Mark::Line { points, closed } => Mark::Line { points: all(points), closed: *closed },
         Mark::Area(points) => Mark::Area(all(points)),
+        Mark::Swatch { points, rgba } => Mark::Swatch { points: all(points), rgba: *rgba },
         Mark::Arrow(a, b) => Mark::Arrow(f(*a), f(*b)),
         Mark::Dot { at, radius_pt } => Mark::Dot { at: f(*at), radius_pt: *radius_pt },
         Mark::Text { at, text, size_pt, anchor, font } => {
@@ -139,6 +140,9 @@ impl Camera {
             Mark::Area(points) => {
                 lines(points, true).filter(|(_, p)| p.len() > 2).map(|(d, p)| (d, Mark::Area(p)))
             }
+            Mark::Swatch { points, rgba } => lines(points, true)
+                .filter(|(_, p)| p.len() > 2)
+                .map(|(d, points)| (d, Mark::Swatch { points, rgba: *rgba })),
             Mark::Arrow(a, b) => lines(&[*a, *b], false).map(|(d, p)| (d, Mark::Arrow(p[0], p[1]))),
             Mark::Dot { at, radius_pt } => {
                 Some((depth(*at), Mark::Dot { at: self.point(*at)?, radius_pt: *radius_pt }))

@@ -1,5 +1,6 @@
 //! Spatial indexes: built once, then frozen but for the boxes of what moves.
 
+mod cell_tree;
 mod delaunay;
 mod kd_tree;
 mod moving;
@@ -9,9 +10,10 @@ pub mod tessellation;
 mod tests;
 mod whole;
 
+pub use cell_tree::{CellNode, CellTree};
 pub use delaunay::{Delaunay, Tetrahedron};
 pub use kd_tree::{KdNode, KdTree};
-pub use octree::{Octree, OctreeNode, Redistribution, Shape};
+pub use octree::{Octree, OctreeNode, Redistribution, Shape, octant_of};
 pub use whole::Whole;
 
 use std::ops::Range;

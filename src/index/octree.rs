@@ -362,7 +362,7 @@ impl<V: Vector> OctreeNode<V> {
 }
 
 /// The cube about a box, with the same center as far as f32 allows.
-fn cube_around<V: Vector>(bounds: &Aabb<V>) -> Aabb<V> {
+pub(super) fn cube_around<V: Vector>(bounds: &Aabb<V>) -> Aabb<V> {
     if bounds.is_empty() {
         return Aabb { min: V::default(), max: V::default() };
     }
@@ -380,7 +380,9 @@ fn octant_at<V: Vector>(point: V, center: V) -> usize {
     (0..V::AXES).map(|a| usize::from(point.get(a) > center.get(a)) << a).sum()
 }
 
-fn octant_of<V: Vector>(cube: &Aabb<V>, octant: usize) -> Aabb<V> {
+/// The child cell of an octant: bit `a` says upper on axis `a`.
+#[inline]
+pub fn octant_of<V: Vector>(cube: &Aabb<V>, octant: usize) -> Aabb<V> {
     let center = cube.center();
     let pick = |upper: bool, a: usize| octant >> a & 1 == usize::from(upper);
     let min = V::from_fn(|a| if pick(true, a) { center.get(a) } else { cube.min.get(a) });

@@ -6,7 +6,7 @@ use super::{Card, Knobs, Note, Observer};
 use crate::drawing::Drawing;
 use crate::geometry::{PrimId, Space, View};
 use crate::index::Hierarchy;
-use crate::raster::{DepthScale, Drawable, Options, StandIn, Target};
+use crate::raster::{Canvas, DepthScale, Drawable, Light, Options, StandIn, Target, paint, paint_in_order};
 use crate::scene::{Progress, Scene};
 
 /// What a frame draws.
@@ -14,13 +14,18 @@ use crate::scene::{Progress, Scene};
 pub struct DrawList<S: Space> {
     /// Primitives in the order in which they are drawn; each at most once.
     pub prims: Vec<PrimId>,
-    /// What is drawn in place of others, over them and in this order.
+    /// What is drawn in place of others, the nearest first: tested against the depths of the primitives, which
+    /// it leaves as they are.
     pub stand_ins: Vec<StandIn<S::Vector>>,
+    /// Not so, but both lists in one order, the farthest first, and stand-ins write depths.
+    pub in_order: bool,
+    /// The light under which it is to be seen.
+    pub light: Light,
 }
 
 impl<S: Space> Default for DrawList<S> {
     fn default() -> Self {
-        Self { prims: Vec::new(), stand_ins: Vec::new() }
+        Self { prims: Vec::new(), stand_ins: Vec::new(), in_order: false, light: Light::default() }
     }
 }
 
@@ -38,6 +43,42 @@ impl<S: Drawable> DrawList<S> {
     /// item buffer: whoever shades the image paints them over it.
     pub fn redraw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
         S::redraw(target, scene, view, &self.prims, options);
+    }
+    /// Makes a canvas what the stand-ins put over that image; of no size where there are none, and where they
+    /// are drawn in one order with the primitives.
+    pub fn composite(&self, canvas: &mut Canvas, image: &Target, view: &View<S>, options: &Options) {
+        if self.stand_ins.is_empty() || self.in_order {
+            return canvas.empty();
+        }
+        canvas.clear(view);
+        canvas.composite(&self.stand_ins, image, view, options);
+    }
+    /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: the images of its two parts from that
+    /// view; `shown`: the light and the background (linear).
+    pub fn picture(
+        &self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        drawn: (&Target, &Canvas),
+        shown: (Light, [f32; 3]),
+    ) -> Vec<u8> {
+        if self.in_order && !self.stand_ins.is_empty() {
+            return paint_in_order(scene, view, (&self.prims, &self.stand_ins), shown);
+        }
+        paint(drawn.0, drawn.1, scene, view, shown)
+    }
+    /// The same under its own light, drawn anew.
+    pub fn paint(
+        &self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        options: &Options,
+        background: [f32; 3],
+    ) -> Vec<u8> {
+        let (mut image, mut canvas) = (Target::default(), Canvas::default());
+        self.redraw(&mut image, scene, view, options);
+        self.composite(&mut canvas, &image, view, options);
+        self.picture(scene, view, (&image, &canvas), (self.light, background))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Choices: enums whose values have a word each, for files, menus and the command line.
 
+use crate::raster::Light;
+
 /// A choice among words.
 pub trait Words: Copy + PartialEq + 'static {
     /// Every value, in the order of menus.
@@ -14,6 +16,11 @@ pub trait Words: Copy + PartialEq + 'static {
     fn word(self) -> &'static str {
         Self::WORDS[self.number()]
     }
+}
+
+impl Words for Light {
+    const ALL: &'static [Self] = &[Self::Headlight, Self::Fixed];
+    const WORDS: &'static [&'static str] = &["headlight", "fixed"];
 }
 
 /// Declares an enum with a word for each value; the first is the default.

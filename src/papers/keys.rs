@@ -17,3 +17,5 @@ pub const PARALLEL_HIERARCHICAL_Z: &str = "parallel-hierarchical-z";
 pub const LAYERED_PROJECTION: &str = "layered-projection";
 /// Zhang, Manocha, Hudson and Hoff.
 pub const OCCLUSION_MAPS: &str = "occlusion-maps";
+/// Chamberlain, DeRose, Lischinski, Salesin and Snyder.
+pub const COLOR_CUBES: &str = "color-cubes";

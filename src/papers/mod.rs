@@ -6,6 +6,7 @@
 //! the card of its method.
 
 mod baselines;
+mod chamberlain;
 mod coorg_teller;
 mod georges;
 pub mod keys;
@@ -20,8 +21,14 @@ pub use paper::{Figure, Paper, Source};
 use crate::measure::Experiment;
 
 /// All papers, in the order of lists.
-pub const PAPERS: &[&Paper] =
-    &[&baselines::PAPER, &coorg_teller::PAPER, &georges::PAPER, &klosowski_silva::PAPER, &zhang::PAPER];
+pub const PAPERS: &[&Paper] = &[
+    &baselines::PAPER,
+    &coorg_teller::PAPER,
+    &georges::PAPER,
+    &klosowski_silva::PAPER,
+    &zhang::PAPER,
+    &chamberlain::PAPER,
+];
 
 /// All figures, in the order of lists.
 pub fn figures() -> impl Iterator<Item = &'static Figure> {

@@ -14,6 +14,7 @@
 //!
 //! Cost: O(points + primitives + covered pixels).
 
+mod blend;
 mod blocks;
 mod closing;
 mod fill;
@@ -35,13 +36,16 @@ mod tiles;
 mod turns;
 mod vertex;
 
+pub use blend::Canvas;
 pub use opacity::Opacity;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use setup::DEPTH_SLACK;
-pub use shade::{DepthScale, shade, shade_depth, shade_with};
+pub use shade::{
+    DepthScale, Light, VEIL, fixed_light, paint, paint_in_order, shade, shade_depth, shade_with,
+};
 pub use simd::Isa;
-pub use srgb::{srgb, srgb_bytes};
-pub use stand_in::StandIn;
+pub use srgb::{linear, srgb, srgb_bytes};
+pub use stand_in::{CubeFaces, StandIn};
 pub use through::look_through;
 pub use tiles::{Answer, Boxes, Clusters, Fate, Hears, How, Outcome, Question, Read, Tiles};
 pub use turns::Turns;

@@ -1,19 +1,92 @@
-//! A color image of an item image: flat-shaded, one color a primitive.
+//! A color image of an item image: flat-shaded, one color a primitive; and of color cubes over it.
 //!
 //! See-through primitives are laid over it. How much of what is behind shows through one is not asked: files
 //! say it by textures as often as by numbers. Each takes [`VEIL`] of a pixel, and their colors are averaged,
 //! so that their order does not matter (Bavoil and Myers 2008, "Order Independent Transparency with Dual
 //! Depth Peeling", Section 4: weighted average).
 
-use super::{Drawable, Options, Target, look_through, srgb_bytes};
-use crate::geometry::{PrimId, Vector, View};
+use super::blend::draw_in_order;
+use super::{Canvas, Drawable, Options, StandIn, Target, linear, look_through, srgb_bytes};
+use crate::geometry::{PrimId, Space, Vector, View};
 use crate::scene::Scene;
 
 /// Share of a material's color that faces seen edge-on keep; the rest grows with the cosine.
 const AMBIENT: f32 = 0.35;
 
 /// Share of a pixel that one see-through primitive covers.
-const VEIL: f32 = 0.4;
+pub const VEIL: f32 = 0.4;
+
+/// Where the light comes from. Brightness is `0.35 + 0.65 |cos|` of the angle between a primitive's normal and
+/// the direction to it, both sides alike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Light {
+    /// From the eye: what faces it is bright.
+    #[default]
+    Headlight,
+    /// From above and aside, the same from wherever it is seen: what is to be kept in a color has to be lit so.
+    Fixed,
+}
+
+/// Direction to the fixed light, of unit length: for each space the first axes.
+const FIXED: [[f32; 3]; 2] = [[0.6, 0.8, 0.0], [0.36, 0.8, 0.48]];
+
+/// Brightness of a primitive under the fixed light.
+pub fn fixed_light<S: Space>(scene: &Scene<S>, prim: PrimId) -> f32 {
+    brightness(scene.normal(prim), S::Vector::from_fn(|a| FIXED[S::Vector::AXES - 2][a]))
+}
+
+/// Brightness of a face with this normal in light from there.
+fn brightness<V: Vector>(normal: V, toward: V) -> f32 {
+    let lengths = normal.length() * toward.length();
+    // A primitive without area, or one at the eye, counts as facing it.
+    let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
+    AMBIENT + (1.0 - AMBIENT) * cosine
+}
+
+impl Light {
+    /// Brightness of a primitive.
+    fn on<S: Space>(self, scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
+        match self {
+            Self::Headlight => headlight(scene, view, prim),
+            Self::Fixed => fixed_light(scene, prim),
+        }
+    }
+}
+
+/// The image of what was drawn and, over it, what a canvas holds (nothing, if that is of no size). RGBA,
+/// sRGB-encoded, row by row; with an empty canvas, under a headlight, the same as [`shade`].
+pub fn paint<S: Drawable>(
+    image: &Target,
+    canvas: &Canvas,
+    scene: &Scene<S>,
+    view: &View<S>,
+    (light, background): (Light, [f32; 3]),
+) -> Vec<u8> {
+    let mut pixels = shade_lit(image, scene, view, (light, background), |prim| scene.color_of(prim));
+    for (pixel, &[r, g, b, left]) in pixels.chunks_exact_mut(4).zip(canvas.samples()) {
+        if left < 1.0 {
+            let behind = [pixel[0], pixel[1], pixel[2]].map(linear);
+            let mixed = std::array::from_fn(|c| [r, g, b][c] + left * behind[c]);
+            pixel.copy_from_slice(&srgb_bytes(mixed));
+        }
+    }
+    pixels
+}
+
+/// The image of primitives and boxes in the order of a list, the farthest first; see [`draw_in_order`]. RGBA,
+/// sRGB-encoded, row by row.
+pub fn paint_in_order<S: Drawable>(
+    scene: &Scene<S>,
+    view: &View<S>,
+    list: (&[PrimId], &[StandIn<S::Vector>]),
+    (light, background): (Light, [f32; 3]),
+) -> Vec<u8> {
+    let color = |prim| {
+        let light = light.on(scene, view, prim);
+        scene.color_of(prim).map(|c| c * light)
+    };
+    draw_in_order(scene, view, list, background, color).into_iter().flat_map(srgb_bytes).collect()
+}
 
 /// The image in the scene's own colors under a light at the eye: material color times `0.35 + 0.65 |cos|` of
 /// the angle between the face's normal and the direction to the eye, both sides alike. `background` (linear)
@@ -33,10 +106,20 @@ pub fn shade_with<S: Drawable>(
     scene: &Scene<S>,
     view: &View<S>,
     background: [f32; 3],
+    color: impl FnMut(PrimId) -> [f32; 3],
+) -> Vec<u8> {
+    shade_lit(target, scene, view, (Light::Headlight, background), color)
+}
+
+fn shade_lit<S: Drawable>(
+    target: &Target,
+    scene: &Scene<S>,
+    view: &View<S>,
+    (light, background): (Light, [f32; 3]),
     mut color: impl FnMut(PrimId) -> [f32; 3],
 ) -> Vec<u8> {
     let mut lit = |prim: PrimId| {
-        let light = headlight(scene, view, prim);
+        let light = light.on(scene, view, prim);
         color(prim).map(|c| c * light)
     };
     let empty = srgb_bytes(background);
@@ -102,15 +185,11 @@ fn veils<S: Drawable>(
 }
 
 /// Brightness of a face under a light at the eye.
-fn headlight<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
+fn headlight<S: Space>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> f32 {
     // One direction a primitive, that from its middle: flat shading needs no more.
     let middle =
         scene.prim_points(prim).fold(S::Vector::default(), |sum, p| sum + p) * (1.0 / S::CORNERS as f32);
-    let (normal, toward) = (scene.normal(prim), view.eye.position - middle);
-    let lengths = normal.length() * toward.length();
-    // A primitive without area, or one at the eye, counts as facing it.
-    let cosine = if lengths > 0.0 { (normal.dot(toward) / lengths).abs().min(1.0) } else { 1.0 };
-    AMBIENT + (1.0 - AMBIENT) * cosine
+    brightness(scene.normal(prim), view.eye.position - middle)
 }
 
 /// How depths become gray.

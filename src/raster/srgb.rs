@@ -11,3 +11,9 @@ pub fn srgb_bytes(linear: [f32; 3]) -> [u8; 4] {
     let [r, g, b] = linear.map(|c| (srgb(c) * 255.0 + 0.5) as u8);
     [r, g, b, 255]
 }
+
+/// The linear light of an sRGB byte.
+pub fn linear(byte: u8) -> f32 {
+    let c = f32::from(byte) / 255.0;
+    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}

@@ -5,7 +5,7 @@
 //! applied to linear RGB). Differences are CIE 1976 ΔE*ab under D65. Used for the preview and by the
 //! tests of the theme.
 
-use crate::raster::srgb;
+use crate::raster::{self, srgb};
 
 /// An sRGB color.
 pub type Rgb = [u8; 3];
@@ -78,10 +78,7 @@ const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// An sRGB color in linear light, as shaders blend it.
 pub fn linear(color: Rgb) -> [f32; 3] {
-    color.map(|c| {
-        let c = f32::from(c) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-    })
+    color.map(raster::linear)
 }
 
 /// Relative luminance, 0 for black and 1 for white.

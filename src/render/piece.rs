@@ -18,6 +18,8 @@ pub(super) enum Part {
     Area,
     /// An area of the scene that is no occluder: one of thousands, so its outline is a hair.
     Face,
+    /// An area in a color of its own.
+    Swatch,
     Hatch,
     Line,
     Head,
@@ -33,6 +35,7 @@ impl Part {
             Part::Halo => "halo",
             Part::Area => "area",
             Part::Face => "face",
+            Part::Swatch => "swatch",
             Part::Hatch => "hatch",
             Part::Line => "line",
             Part::Head => "head",
@@ -101,7 +104,11 @@ pub(super) fn each_piece(
         found.clear();
         pieces(item, style, &mut found);
         for piece in &found {
-            put(item, piece, &paint(piece.part, style));
+            let mut paint = paint(piece.part, style);
+            if let (Part::Swatch, Mark::Swatch { rgba: [r, g, b, alpha], .. }) = (piece.part, &item.mark) {
+                paint.fill = Some((look.vision.see([*r, *g, *b]), f32::from(*alpha) / 255.0));
+            }
+            put(item, piece, &paint);
         }
     }
 }
@@ -117,6 +124,7 @@ pub(super) fn paint(part: Part, style: &Style) -> Paint {
         }
         Part::Area => Paint { fill: style.fill, stroke: Some(line), ..none },
         Part::Face => Paint { fill: style.fill, stroke: Some(Stroke { width_pt: HAIR_PT, ..line }), ..none },
+        Part::Swatch => Paint { stroke: Some(Stroke { width_pt: HAIR_PT, ..line }), ..none },
         Part::Hatch => Paint { hatch: Some((style.hatch, style.stroke)), ..none },
         Part::Line => Paint { stroke: Some(line), ..none },
         Part::Head => Paint { fill: Some((style.stroke, 1.0)), ..none },
@@ -161,6 +169,10 @@ fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piece<'a>>) {
             if style.hatch != Hatch::None {
                 push(Part::Hatch, path());
             }
+            middle(points, true)
+        }
+        Mark::Swatch { points, rgba: _ } => {
+            push(Part::Swatch, Shape::Path { points: Cow::Borrowed(points), closed: true });
             middle(points, true)
         }
         Mark::Arrow(from, to) => {
@@ -246,7 +258,7 @@ fn finite(mark: &Mark<Vec2>) -> bool {
     let near = |p: &Vec2| p.is_finite() && p.abs().max_element() < 1e7;
     match mark {
         Mark::Line { points, closed: _ } => points.len() > 1 && points.iter().all(near),
-        Mark::Area(points) => points.len() > 2 && points.iter().all(near),
+        Mark::Area(points) | Mark::Swatch { points, .. } => points.len() > 2 && points.iter().all(near),
         Mark::Arrow(a, b) => near(a) && near(b),
         Mark::Dot { at, radius_pt } => near(at) && radius_pt.is_finite() && *radius_pt > 0.0,
         Mark::Text { at, text, size_pt, .. } => {

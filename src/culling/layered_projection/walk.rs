@@ -781,7 +781,7 @@ impl<'a, S: Cellular + Faces, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let waiting = self.front.first(usize::MAX);
         let (mut front, mut seen) = (self.front.clone(), Projections::default());
         // The rest of the cell in which the budget ended comes first.
-        let mut list = DrawList { prims: self.cut_off.clone(), stand_ins: Vec::new() };
+        let mut list = DrawList { prims: self.cut_off.clone(), ..DrawList::default() };
         let mut further = self.unlimited(&mut front, &mut list, &mut seen);
         further.hand_on(&last);
         while further.spread().is_none() && further.begin_again().is_some() {}

@@ -1,5 +1,6 @@
 //! Tests of the z-buffer: against the plain reference, against rays, and of the rules it keeps.
 
+mod blend;
 mod equal;
 mod limits;
 pub(crate) mod moved_edge;

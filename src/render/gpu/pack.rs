@@ -199,6 +199,9 @@ fn words(a: Vec3, b: Vec3, word: u32) -> SegmentWords {
     [a[0], a[1], a[2], b[0], b[1], b[2], word]
 }
 
+/// An area in a color of its own, instead of a role's.
+const SWATCH: u32 = 1 << 31;
+
 /// Marks by layer, in the order in which they are painted.
 #[derive(Default)]
 pub(super) struct MarkWords {
@@ -237,6 +240,16 @@ pub(super) fn marks(drawing: &Drawing<Vec3>) -> MarkWords {
             Mark::Area(points) => {
                 polyline(points, true);
                 let corner = |p: Vec3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), item.role as u32];
+                for i in 2..points.len() {
+                    to.areas.extend([points[0], points[i - 1], points[i]].map(corner));
+                }
+            }
+            Mark::Swatch { points, rgba } => {
+                polyline(points, true);
+                // In the place of a role: the color, seven bits of opacity, and a mark that says so.
+                let [r, g, b, alpha] = rgba.map(u32::from);
+                let color = SWATCH | (alpha >> 1) << 24 | r << 16 | g << 8 | b;
+                let corner = |p: Vec3| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits(), color];
                 for i in 2..points.len() {
                     to.areas.extend([points[0], points[i - 1], points[i]].map(corner));
                 }

@@ -1,0 +1,141 @@
+//! Pseudocode of the method, which events stand where in it, and where it departs from the paper. The paper's
+//! own figure of it is lost; this is its text (Sections 3 and 4) in lines.
+
+use super::{Order, Params};
+use crate::method::{CodeLine, Departure, When};
+
+/// Pseudocode.
+pub(super) const CODE: &[CodeLine] = &[
+    CodeLine::new("Render:1", "Render(cell C, planes P)"),
+    CodeLine::new("Render:2", "  if C lies outside a plane of P"),
+    CodeLine::new("Render:3", "    return"),
+    CodeLine::new("Render:4", "  P' := the planes of P that cut C"),
+    CodeLine::new("Render:5", "  if C is no larger on the screen than the pixel threshold"),
+    CodeLine::new("Render:6", "    draw the faces of C's color cube that face the eye"),
+    CodeLine::departing(
+        "Render:7",
+        "  else if C is a leaf, or P' is empty and no cell below C can be so small",
+        "else if C is a leaf",
+    ),
+    CodeLine::new("Render:8", "    DrawGeometry(C)"),
+    CodeLine::departing(
+        "Render:9",
+        "  else for each child C' of C, front to back",
+        "for each child C' of C, back to front",
+    ),
+    CodeLine::new("Render:10", "  else for each child C' of C, back to front"),
+    CodeLine::new("Render:11", "    Render(C', P')"),
+    CodeLine::departing("Render:12", "  each primitive that C's children share is now settled:", "not said"),
+    CodeLine::departing("Render:13", "    drawn, in color cubes alone, or out of view", "not said"),
+    CodeLine::new("DrawGeometry:1", "DrawGeometry(C)"),
+    CodeLine::new("DrawGeometry:2", "  for each primitive p of C"),
+    CodeLine::new("DrawGeometry:3", "    if p was drawn with another cell: next p"),
+    CodeLine::new("DrawGeometry:4", "    if p faces away from the eye: next p"),
+    CodeLine::new("DrawGeometry:5", "    draw p"),
+];
+
+/// Lines of [`CODE`] that the run reaches.
+pub(super) mod line {
+    use super::CODE;
+    use crate::method::line;
+    pub const RENDER: u8 = line(CODE, "Render:1");
+    pub const TEST: u8 = line(CODE, "Render:2");
+    pub const OUTSIDE: u8 = line(CODE, "Render:3");
+    pub const CUTTING: u8 = line(CODE, "Render:4");
+    pub const SIZE: u8 = line(CODE, "Render:5");
+    pub const CUBE: u8 = line(CODE, "Render:6");
+    pub const LEAF: u8 = line(CODE, "Render:7");
+    pub const CALL_DRAW: u8 = line(CODE, "Render:8");
+    pub const CHILDREN: u8 = line(CODE, "Render:9");
+    pub const FROM_BACK: u8 = line(CODE, "Render:10");
+    pub const CHILD: u8 = line(CODE, "Render:11");
+    pub const SHARED: u8 = line(CODE, "Render:12");
+    pub const SETTLED: u8 = line(CODE, "Render:13");
+    pub const DRAW: u8 = line(CODE, "DrawGeometry:1");
+    pub const EACH: u8 = line(CODE, "DrawGeometry:2");
+    pub const ONCE: u8 = line(CODE, "DrawGeometry:3");
+    pub const FACES_AWAY: u8 = line(CODE, "DrawGeometry:4");
+    pub const DRAW_PRIM: u8 = line(CODE, "DrawGeometry:5");
+}
+
+/// At which lines each kind of event stands.
+pub(super) const STANDS: &[(&str, &[&str])] = &[
+    ("NodeClassified", &["Render:2"]),
+    ("CellSized", &["Render:5"]),
+    ("CubeDrawn", &["Render:6"]),
+    ("GeometryDrawn", &["Render:8"]),
+    ("OrientationTested", &["DrawGeometry:4"]),
+    ("PrimitiveDrawn", &["DrawGeometry:5"]),
+    ("SharedSettled", &["Render:13"]),
+    ("NodeDecided outside", &["Render:3"]),
+    ("NodeDecided approximated", &["Render:6"]),
+    ("NodeDecided partial", &["Render:9", "Render:10"]),
+    ("NodeDecided visible", &["Render:8"]),
+    ("PrimDecided visible", &["DrawGeometry:5"]),
+    ("PrimDecided faces-away", &["DrawGeometry:4"]),
+    ("PrimDecided approximated", &["Render:13"]),
+    ("PrimDecided hidden", &["Render:13"]),
+];
+
+/// Where it differs from the paper.
+pub(super) const DEPARTURES: &[Departure] = &[
+    Departure {
+        section: "3",
+        what: "cells are visited front to back and cubes put under what is there; geometry is drawn first, \
+               and cubes are tested against its depths, which they leave as they are",
+        why: "the picture is that of the paper's back to front wherever cubes and geometry do not mix, and \
+              depends on no order where they do (Section 5.1); what is full is left alone",
+        when: When::Without("order", "paper"),
+    },
+    Departure {
+        section: "3",
+        what: "a cell's size on the screen is that of a side at the depth of its center",
+        why: "the paper gives no measure; this one halves from level to level and does not change as a cell \
+              is seen from another side",
+        when: When::Always,
+    },
+    Departure {
+        section: "3",
+        what: "where no cell below one in full view can be small enough, its geometry is drawn at once",
+        why: "the same is drawn, and a view that needs geometry alone costs no more than geometry",
+        when: When::Always,
+    },
+    Departure {
+        section: "3",
+        what: "the light is fixed in the world",
+        why: "what is kept on faces cannot depend on the eye; the paper does not speak of light",
+        when: When::Always,
+    },
+    Departure {
+        section: "4",
+        what: "a primitive's cost is shared equally by the children that it goes to, cell by cell",
+        why: "the number of cells that the paper divides by changes while the tree grows",
+        when: When::Always,
+    },
+    Departure {
+        section: "4",
+        what: "a primitive goes to the cells that it meets, not to those that its box meets",
+        why: "slanted primitives meet far fewer",
+        when: When::Always,
+    },
+    Departure {
+        section: "4",
+        what: "with interior=direct faces of inner cells are made as those of leaves",
+        why: "the paper names it, at the price of more preprocessing: half-covered faces in a row then come \
+              out right",
+        when: When::With("interior", "direct"),
+    },
+];
+
+/// Whether a line belongs to these parameters.
+pub(super) fn has_line(params: &Params, at: u8) -> bool {
+    let has_children = params.tree_levels > 1;
+    match at {
+        line::CUBE => params.pixel_threshold > 0.0,
+        line::CHILDREN => has_children && params.order == Order::Exact,
+        line::FROM_BACK => has_children && params.order == Order::Paper,
+        line::CHILD | line::SHARED | line::SETTLED | line::ONCE => has_children,
+        line::FACES_AWAY => params.surfaces.one_sided,
+        _ => true,
+    }
+}

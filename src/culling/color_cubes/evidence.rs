@@ -1,0 +1,270 @@
+//! The evidence of this method: as fields, as sentences, and as marks in the world.
+
+use crate::drawing::{Drawing, Layer, Role, Subject};
+use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector, View};
+use crate::index::CellTree;
+use crate::method::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
+use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally, Value};
+use crate::raster::CubeFaces;
+use crate::scene::Scene;
+
+/// What the method records.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Evidence<S: Space> {
+    /// A cell against the frustum.
+    Tested(Tested<S>),
+    /// A cell's size on the screen against the threshold.
+    Sized(Sized),
+    /// A color cube was drawn for a cell.
+    Cube(CubeDrawn<S::Vector>),
+    /// A cell's primitives were drawn, those that no other cell had drawn before.
+    Geometry { node: NodeId, references: u32 },
+    /// A primitive's orientation.
+    Facing(Facing),
+    /// What became of a primitive.
+    Settled(Settled),
+}
+
+/// A cell's size on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sized {
+    pub node: NodeId,
+    /// View depth of its center, world units.
+    pub depth: f32,
+    /// Its side at that depth, pixels; infinite about the eye.
+    pub size: f32,
+    /// Pixels up to which it is drawn as a cube.
+    pub threshold: f32,
+}
+
+/// A color cube in place of what a cell holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CubeDrawn<V> {
+    pub node: NodeId,
+    pub cell: Aabb<V>,
+    pub faces: CubeFaces,
+}
+
+/// What became of a primitive: with which cell it was drawn, or below which cell all its cells lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Settled {
+    /// It was drawn with the geometry of a cell.
+    Drawn { prim: PrimId, node: NodeId },
+    /// Of its cells some were drawn as cubes, and none as geometry.
+    InCubes { prim: PrimId, node: NodeId },
+    /// All of its cells are out of view.
+    OutOfView { prim: PrimId, node: NodeId },
+}
+
+impl Settled {
+    fn about(&self) -> (PrimId, NodeId) {
+        match *self {
+            Self::Drawn { prim, node } | Self::InCubes { prim, node } | Self::OutOfView { prim, node } => {
+                (prim, node)
+            }
+        }
+    }
+}
+
+/// What the faces of a space's cubes are called, in the order of [`CubeFaces`].
+pub(super) const FACE_NAMES: [&str; 6] = ["−x", "+x", "−y", "+y", "−z", "+z"];
+
+impl<V: Vector> CubeDrawn<V> {
+    /// The numbers of the faces that an eye sees.
+    pub fn facing(&self, eye: V) -> impl Iterator<Item = usize> + '_ {
+        (0..2 * V::AXES).filter(move |face| {
+            let axis = face / 2;
+            match face % 2 {
+                0 => eye.get(axis) < self.cell.min.get(axis),
+                _ => eye.get(axis) > self.cell.max.get(axis),
+            }
+        })
+    }
+}
+
+impl<S: Space> Evidence<S> {
+    /// The primitive that was drawn, if it says that one was.
+    pub(super) fn drawn(&self) -> Option<PrimId> {
+        if let Self::Settled(Settled::Drawn { prim, .. }) = self { Some(*prim) } else { None }
+    }
+    /// Draws the evidence in the world.
+    pub(super) fn draw(
+        &self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        tree: &CellTree<S::Vector>,
+        to: &mut Drawing<S::Vector>,
+    ) {
+        match self {
+            Self::Tested(n) => n.draw(view, to),
+            Self::Facing(n) => n.draw(scene, view, to),
+            Self::Settled(n) => outline(scene, n.about().0, to),
+            Self::Cube(n) => {
+                to.bounds(Layer::Emphasis, Role::Current, Subject::Node(n.node), &n.cell);
+            }
+            Self::Sized(n) => n.draw(&tree.cell(n.node), to),
+            Self::Geometry { node, .. } => {
+                to.bounds(Layer::Emphasis, Role::Current, Subject::Node(*node), &tree.cell(*node));
+            }
+        }
+    }
+}
+
+impl Sized {
+    /// Draws the size as text beside the middle of the cell.
+    fn draw<V: Vector>(&self, cell: &Aabb<V>, to: &mut Drawing<V>) {
+        to.bounds(Layer::Emphasis, Role::Current, Subject::Node(self.node), cell);
+        label(to, cell.center(), format!("{} px", pixels(self.size)));
+    }
+}
+
+/// A size for people: infinite about the eye.
+fn pixels(size: f32) -> String {
+    if size.is_finite() { short(size) } else { "∞".into() }
+}
+
+impl<S: Space> Tallied for Evidence<S> {
+    fn tally(&self, tally: &mut Tally) {
+        match self {
+            Self::Tested(n) => n.tally(tally),
+            Self::Sized(_) => tally.add("cells_sized", 1),
+            Self::Cube(_) => tally.add("cubes_drawn", 1),
+            Self::Geometry { references, .. } => {
+                tally.add("cells_drawn_as_geometry", 1);
+                tally.add("references_read", (*references).into());
+            }
+            Self::Facing(_) => Facing::tally(tally),
+            Self::Settled(Settled::Drawn { .. }) => {}
+            Self::Settled(Settled::InCubes { .. }) => tally.add("shared_primitives_in_cubes", 1),
+            Self::Settled(Settled::OutOfView { .. }) => tally.add("shared_primitives_unseen", 1),
+        }
+    }
+}
+
+impl<S: Space> Note<S> for Evidence<S> {
+    fn kind(&self) -> &'static str {
+        match self {
+            Self::Tested(n) => n.kind(),
+            Self::Sized(_) => "CellSized",
+            Self::Cube(_) => "CubeDrawn",
+            Self::Geometry { .. } => "GeometryDrawn",
+            Self::Facing(_) => "OrientationTested",
+            Self::Settled(Settled::Drawn { .. }) => "PrimitiveDrawn",
+            Self::Settled(_) => "SharedSettled",
+        }
+    }
+    fn subject(&self) -> Subject {
+        match self {
+            Self::Tested(n) => n.subject(),
+            Self::Sized(n) => Subject::Node(n.node),
+            Self::Cube(n) => Subject::Node(n.node),
+            Self::Geometry { node, .. } => Subject::Node(*node),
+            Self::Facing(n) => n.subject(),
+            Self::Settled(n) => Subject::Prim(n.about().0),
+        }
+    }
+    fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
+        match self {
+            Self::Tested(n) => n.claim(context),
+            Self::Facing(n) => n.claim(context),
+            // Nothing of it lies in the view volume, so nothing of it shows.
+            Self::Settled(Settled::OutOfView { .. }) => Some(Claim::Hidden),
+            // A cube stands for what it stands for; that proves nothing.
+            _ => None,
+        }
+    }
+    fn compared(&self, context: &Context<'_, S>) -> Option<Compared> {
+        match self {
+            Self::Tested(n) => n.compared(context),
+            Self::Facing(n) => n.compared(context),
+            Self::Sized(n) => {
+                Some(Compared::of(("size in pixels", n.size.into()), ("threshold", n.threshold.into())))
+            }
+            _ => None,
+        }
+    }
+    fn fields(&self, context: &Context<'_, S>) -> Vec<Field> {
+        match self {
+            Self::Tested(n) => n.fields(context),
+            Self::Facing(n) => n.fields(context),
+            Self::Sized(n) => vec![
+                integer("node", n.node.0),
+                number("depth_units", n.depth.into()),
+                number("size_px", n.size.into()),
+                number("threshold_px", n.threshold.into()),
+            ],
+            Self::Cube(n) => {
+                let channels = |face: usize| n.faces.get(face).map(f64::from);
+                let faces = (0..2 * S::Vector::AXES).flat_map(channels).collect();
+                vec![
+                    integer("node", n.node.0),
+                    Field { name: "box_min", value: axes(n.cell.min) },
+                    Field { name: "box_max", value: axes(n.cell.max) },
+                    Field { name: "faces_rgba", value: Value::List(faces) },
+                ]
+            }
+            Self::Geometry { node, references } => {
+                vec![integer("node", node.0), integer("references", *references)]
+            }
+            Self::Settled(n) => {
+                let (prim, node) = n.about();
+                vec![integer("prim", prim.0), integer("node", node.0)]
+            }
+        }
+    }
+    fn sentence(&self, context: &Context<'_, S>) -> String {
+        let name = S::PRIM;
+        match self {
+            Self::Tested(n) => n.sentence(context),
+            Self::Facing(n) => n.sentence(context),
+            Self::Sized(n) => size_sentence(n),
+            Self::Cube(n) => {
+                let facing: Vec<usize> = n.facing(context.view.eye.position).collect();
+                let covers =
+                    |f: &usize| format!("{} covers {:.0} %", FACE_NAMES[*f], n.faces.get(*f)[3] * 100.0);
+                let list = facing.iter().map(covers).collect::<Vec<_>>().join(", ");
+                let faces = if facing.len() == 1 { "face faces" } else { "faces face" };
+                format!(
+                    "The color cube of node {} is drawn: {} of its {faces} the eye. {list}.",
+                    n.node,
+                    facing.len()
+                )
+            }
+            Self::Geometry { node, references: 1 } => format!("Node {node} is drawn as geometry: 1 {name}."),
+            Self::Geometry { node, references } => format!(
+                "Node {node} is drawn as geometry: {references} {name}s, but for those that other nodes had \
+                 drawn before."
+            ),
+            Self::Settled(Settled::Drawn { prim, node }) => {
+                format!("The {name} {prim} is drawn, with node {node}; other nodes do not draw it again.")
+            }
+            Self::Settled(Settled::InCubes { prim, node }) => format!(
+                "The {name} {prim} lies in several nodes below node {node}, of which none was drawn as \
+                 geometry: it is in color cubes alone."
+            ),
+            Self::Settled(Settled::OutOfView { prim, node }) => format!(
+                "The {name} {prim} lies in several nodes below node {node}, and all of these are outside the \
+                 view."
+            ),
+        }
+    }
+}
+
+fn size_sentence(n: &Sized) -> String {
+    let (node, threshold) = (n.node, short(n.threshold));
+    if !n.size.is_finite() {
+        return format!(
+            "Node {node} is about the eye or behind its near plane, so it is as large as can be."
+        );
+    }
+    let (verb, then) = match n.size <= n.threshold {
+        true => ("no larger than", "its color cube stands for it"),
+        false => ("larger than", "a color cube would show"),
+    };
+    format!(
+        "A side of node {node} is {} of a pixel wide on the screen, at depth {}: {verb} the threshold of \
+         {threshold}, so {then}.",
+        pixels(n.size),
+        short(n.depth)
+    )
+}

@@ -1,0 +1,101 @@
+//! What is built once: the tree of cells, and the faces of each cell's color cube.
+
+use std::ops::Range;
+
+use super::Params;
+use super::faces::Baking;
+use super::saved;
+use super::space::Projected;
+use crate::geometry::{Aabb, NodeId, PrimId, Space};
+use crate::index::{CellTree, Hierarchy};
+use crate::raster::CubeFaces;
+use crate::scene::{Part, Progress, Scene};
+
+/// The tree of cells with the faces of their color cubes.
+#[derive(Debug)]
+pub struct CubeTree<S: Space> {
+    tree: CellTree<S::Vector>,
+    /// Of each node.
+    faces: Vec<CubeFaces>,
+    key: saved::Key,
+}
+
+impl<S: Projected> CubeTree<S> {
+    /// Builds it, or reads it from the bytes of [`Hierarchy::save`]; `Ok(None)` when cancelled.
+    ///
+    /// # Errors
+    /// Why what was saved does not fit.
+    pub fn build(
+        scene: &Scene<S>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self>, String> {
+        let key = saved::key(scene, params);
+        if let Some(bytes) = saved {
+            let (tree, faces) = saved::read(bytes, &key, scene)?;
+            return Ok(Some(Self { tree, faces, key }));
+        }
+        progress.report(0.0, "dividing cells");
+        let Some(tree) = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled())
+        else {
+            return Ok(None);
+        };
+        let baking = Baking {
+            scene,
+            surfaces: params.surfaces,
+            side: params.face_samples,
+            composes: params.composes(),
+        };
+        let faces = baking.bake(&tree, &Part { whole: progress, start: 0.5, length: 0.5 });
+        Ok(faces.map(|faces| Self { tree, faces, key }))
+    }
+}
+
+/// Section 4: a leaf is small enough when its primitives cost no more than the cubes of the children that it
+/// would have. Of a cube three faces at most face the eye, in flatland two.
+pub fn is_small<S: Projected>(shares: f64, children: u32) -> bool {
+    shares <= f64::from(S::CUBE_COST * children)
+}
+
+impl<S: Space> CubeTree<S> {
+    /// The tree of cells.
+    pub fn tree(&self) -> &CellTree<S::Vector> {
+        &self.tree
+    }
+    /// The faces of a cell's color cube.
+    #[inline]
+    pub fn faces(&self, node: NodeId) -> &CubeFaces {
+        &self.faces[node.at()]
+    }
+}
+
+impl<S: Space> Hierarchy<S> for CubeTree<S> {
+    fn node_count(&self) -> usize {
+        Hierarchy::<S>::node_count(&self.tree)
+    }
+    fn bounds(&self, node: NodeId) -> Aabb<S::Vector> {
+        self.tree.cell(node)
+    }
+    fn parent(&self, node: NodeId) -> Option<NodeId> {
+        Hierarchy::<S>::parent(&self.tree, node)
+    }
+    fn children(&self, node: NodeId) -> Range<u32> {
+        Hierarchy::<S>::children(&self.tree, node)
+    }
+    fn level(&self, node: NodeId) -> u32 {
+        Hierarchy::<S>::level(&self.tree, node)
+    }
+    fn prims(&self, node: NodeId) -> &[PrimId] {
+        Hierarchy::<S>::prims(&self.tree, node)
+    }
+    fn held(&self, node: NodeId) -> usize {
+        Hierarchy::<S>::held(&self.tree, node)
+    }
+    fn bytes(&self) -> usize {
+        self.tree.bytes() + size_of_val(&*self.faces)
+    }
+    fn save(&self) -> Option<Vec<u8>> {
+        Some(saved::write(&self.key, &self.tree, &self.faces))
+    }
+}

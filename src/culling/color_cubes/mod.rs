@@ -1,0 +1,201 @@
+//! `color-cubes`: cells that are small on the screen are drawn as cubes of a few colors.
+//!
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, "Fast Rendering of Complex Environments Using a Spatial
+//! Hierarchy", Graphics Interface 1996, <https://doi.org/10.20380/GI1996.15>. Once (Section 4):
+//!
+//! 1. an octree is built, until drawing a leaf costs no more than drawing cubes for its parts
+//!    ([`crate::index::CellTree`]);
+//! 2. each cell gets a color cube: six faces, a color and an opacity each, as what is in the cell looks along
+//!    the axes ([`faces`]).
+//!
+//! A frame (Section 3, [`walk`]): a cell outside the frustum is culled; one that is no larger than the
+//! threshold on the screen is drawn as its cube; a larger leaf is drawn as geometry, each primitive once; any
+//! other is visited child by child. What the cubes look like over each other and over geometry:
+//! [`crate::raster::Canvas`].
+//!
+//! It leaves nothing out, but stands cubes for what they are [`crate::method::Verdict::Approximated`] by; with a
+//! threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`]. Cost: O(cells
+//! visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
+
+mod code;
+mod evidence;
+mod faces;
+mod index;
+mod picture;
+mod saved;
+mod space;
+#[cfg(test)]
+mod tests;
+mod walk;
+
+use std::sync::Arc;
+
+use self::code::{CODE, DEPARTURES, STANDS, has_line};
+pub(crate) use self::evidence::Evidence;
+use self::index::CubeTree;
+pub(crate) use self::space::Projected;
+use self::walk::Walk;
+use crate::drawing::Drawing;
+use crate::index::CellTree;
+use crate::method::{
+    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, surface_knobs, words,
+};
+use crate::raster::{DepthScale, Light};
+use crate::scene::{Progress, Scene, Surfaces};
+
+/// The method.
+pub(crate) struct ColorCubes;
+
+/// Parameters of [`ColorCubes`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Params {
+    pixel_threshold: f32,
+    tree_levels: u32,
+    face_samples: u32,
+    interior: Interior,
+    order: Order,
+    surfaces: Surfaces,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            // Section 3: "no more than a pixel on the display".
+            pixel_threshold: 1.0,
+            tree_levels: CellTree::<glam::Vec3>::MOST_LEVELS,
+            // Section 4: "typically, 4×4 pixels".
+            face_samples: 4,
+            interior: Interior::default(),
+            order: Order::default(),
+            surfaces: Surfaces::default(),
+        }
+    }
+}
+
+words! {
+    /// How faces of inner cells are made (Section 4).
+    pub(crate) enum Interior {
+        /// From those of the children (Figure 3).
+        Composed = "composed",
+        /// From the primitives, as those of leaves.
+        Direct = "direct",
+    }
+}
+
+words! {
+    /// In which order cubes and geometry are drawn.
+    pub(crate) enum Order {
+        /// Geometry first, then cubes front to back, which hide nothing from each other: one right picture.
+        Exact = "exact",
+        /// All back to front, by cells, and cubes write depths (Section 5.1).
+        Paper = "paper",
+    }
+}
+
+impl Params {
+    fn composes(&self) -> bool {
+        self.interior == Interior::Composed
+    }
+}
+
+impl<S: Projected> Method<S> for ColorCubes {
+    type Params = Params;
+    type Index = CubeTree<S>;
+    type Memory = ();
+    // What is drawn follows from the evidence of each step alone; the picture is composited from it.
+    type State = ();
+    type Note = Evidence<S>;
+    const CARD: Card = Card {
+        key: "color-cubes",
+        name: "Color cubes: an octree whose small cells are drawn as cubes",
+        summary: "Draws cells of an octree that are small on the screen as cubes with a color and an opacity \
+                  for each face, and only large leaves as geometry.",
+        paper: "Chamberlain, DeRose, Lischinski, Salesin and Snyder. Fast Rendering of Complex Environments \
+                Using a Spatial Hierarchy. Graphics Interface 1996.",
+        doi: "10.20380/GI1996.15",
+        conservative: false,
+        code: CODE,
+        stands: STANDS,
+        departures: DEPARTURES,
+    };
+
+    fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+        let threshold = Knob::new(
+            "pixel-threshold",
+            "pixels",
+            "a cell no larger on the screen is drawn as its color cube; 0: none is, and the image is that of \
+             the z-buffer",
+            "Chamberlain et al. 1996, Section 3",
+        );
+        // Larger ones are for looking at the cubes.
+        knobs.real(threshold, 0.0..=256.0, &mut params.pixel_threshold);
+        let levels = Knob::new(
+            "tree-levels",
+            "levels",
+            "levels of the octree at most; where cells are small enough is found by what drawing them costs",
+            "Chamberlain et al. 1996, Section 4",
+        );
+        knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
+        let samples = Knob::new(
+            "face-samples",
+            "samples",
+            "samples along a side of a face, of which its color is the mean: 4 gives 4×4, in flatland 4",
+            "Chamberlain et al. 1996, Section 4",
+        );
+        knobs.integer(samples, 1..=64, &mut params.face_samples);
+        let interior = Knob::new(
+            "interior",
+            "",
+            "faces of inner cells: composed, those of the front children over those of the back ones, \
+             averaged; direct, made from the primitives as those of leaves, in more time",
+            "Chamberlain et al. 1996, Section 4",
+        );
+        knobs.words(interior, &mut params.interior);
+        let order = Knob::new(
+            "order",
+            "",
+            "exact: geometry first, and cubes tested against it, front to back; paper: cell by cell, back to \
+             front, cubes writing depths, so that geometry within a cube shows or not by the order of cells",
+            "Chamberlain et al. 1996, Section 5.1",
+        );
+        knobs.words(order, &mut params.order);
+        surface_knobs(knobs, &mut params.surfaces);
+    }
+    fn build(
+        scene: &Arc<Scene<S>>,
+        params: &Params,
+        saved: Option<&[u8]>,
+        progress: &dyn Progress,
+    ) -> Result<Option<Self::Index>, String> {
+        CubeTree::build(scene, params, saved, progress)
+    }
+    fn cull<O: Observer<Evidence<S>>>(
+        frame: &Frame<'_, S, Self>,
+        (): &mut (),
+        (): &mut (),
+        out: &mut DrawList<S>,
+        watch: &mut O,
+    ) {
+        watch.event(Event::FrameBegan);
+        // Faces were made in this light.
+        out.light = Light::Fixed;
+        out.in_order = frame.params.order == Order::Paper;
+        Walk::new(frame, out, watch).run();
+    }
+    fn is_conservative(params: &Params) -> bool {
+        params.pixel_threshold == 0.0
+    }
+    fn has_line(params: &Params, line: u8) -> bool {
+        has_line(params, line)
+    }
+}
+
+impl<S: Projected> Shown<S> for ColorCubes {
+    fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
+        picture::explain(moment, to);
+    }
+    const PICTURES: &'static [&'static str] = picture::PICTURES;
+    fn picture(moment: &Moment<'_, S, Self>, which: usize, _: DepthScale) -> Drawing {
+        picture::picture(moment, which)
+    }
+}

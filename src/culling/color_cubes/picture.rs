@@ -1,0 +1,248 @@
+//! What is seen of the method: cubes in their colors in the world; and the image so far, how a face was made,
+//! and the sizes of cells against the threshold.
+
+use glam::{Vec2, vec2};
+
+use super::evidence::{Evidence, FACE_NAMES};
+use super::faces::{Baking, over};
+use super::space::Projected;
+use super::{ColorCubes, Params};
+use crate::culling::depth::picture::{WIDTH_PT, finished};
+use crate::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
+use crate::geometry::{Aabb, NodeId, Vector};
+use crate::method::Moment;
+use crate::raster::{Canvas, Light, Options, StandIn, paint, render, srgb_bytes};
+
+/// The pictures that are not of the world.
+pub(super) const PICTURES: &[&str] = &["Image so far", "How a face is made", "Sizes of cells"];
+
+type At<'a, 'b, S> = &'a Moment<'b, S, ColorCubes>;
+
+/// Draws the cubes that were drawn so far in the world, the farthest first, and the note's own evidence.
+pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
+    let eye = moment.frame.view.eye.position;
+    let cubes =
+        moment.notes.iter().rev().filter_map(|n| if let Evidence::Cube(c) = n { Some(c) } else { None });
+    for cube in cubes {
+        for face in cube.facing(eye) {
+            let rgba = bytes(cube.faces.get(face));
+            let mark = Mark::Swatch { points: corners(&cube.cell, face), rgba };
+            to.push(Layer::Areas, Role::Approximated, Subject::Node(cube.node), mark);
+        }
+    }
+    if let Some(note) = moment.note {
+        note.draw(moment.frame.scene, moment.frame.view, moment.frame.index.tree(), to);
+    }
+}
+
+/// A premultiplied linear color as it is painted: sRGB, not premultiplied.
+fn bytes([r, g, b, alpha]: [f32; 4]) -> [u8; 4] {
+    let [r, g, b, _] = srgb_bytes([r, g, b].map(|c| c / alpha.max(1e-6)));
+    [r, g, b, (alpha * 255.0 + 0.5) as u8]
+}
+
+/// The corners of a face of a box in order; of an edge of flatland a band a tenth of the box wide, inside it.
+fn corners<V: Vector>(cell: &Aabb<V>, face: usize) -> Vec<V> {
+    let (axis, is_upper) = (face / 2, face % 2 == 1);
+    let (low, high) = (cell.min.get(axis), cell.max.get(axis));
+    let depth = if V::AXES == 2 { 0.1 * (high - low) } else { 0.0 };
+    let (outer, inner) = if is_upper { (high, high - depth) } else { (low, low + depth) };
+    let along: Vec<usize> = (0..V::AXES).filter(|a| *a != axis).collect();
+    let place = |at: [f32; 2]| {
+        V::from_fn(|a| match along.iter().position(|k| *k == a) {
+            None if V::AXES == 2 && at[1] > 0.5 => inner,
+            None => outer,
+            Some(k) => cell.min.get(a) + at[k] * (cell.max.get(a) - cell.min.get(a)),
+        })
+    };
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(place).to_vec()
+}
+
+/// Draws picture `which`.
+pub(super) fn picture<S: Projected>(moment: At<'_, '_, S>, which: usize) -> Drawing {
+    match which {
+        0 => so_far(moment),
+        1 => making(moment),
+        _ => sizes(moment),
+    }
+}
+
+/// Height of a line of pixels.
+const LINE_PT: f32 = 24.0;
+/// Size of text.
+const TEXT_PT: f32 = 8.5;
+
+/// Puts a line of text into a picture.
+fn say(to: &mut Drawing, at: Vec2, text: impl Into<String>) {
+    to.text(Layer::Labels, Role::Ink, at, TEXT_PT, Anchor::Start, text);
+}
+
+/// What has been drawn up to the step: geometry, and cubes over it.
+fn so_far<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
+    let (scene, view) = (moment.frame.scene, moment.frame.view);
+    let (mut prims, mut boxes) = (Vec::new(), Vec::<StandIn<S::Vector>>::new());
+    for note in moment.notes {
+        prims.extend(note.drawn());
+        if let Evidence::Cube(c) = note {
+            boxes.push(StandIn { node: c.node, bounds: c.cell, faces: c.faces, after: prims.len() as u32 });
+        }
+    }
+    let (mut to, mut canvas, white) = (Drawing::default(), Canvas::default(), [1.0; 3]);
+    let image = render(scene, view, &prims);
+    canvas.clear(view);
+    canvas.composite(&boxes, &image, view, &Options::default());
+    let both = paint(&image, &canvas, scene, view, (Light::Fixed, white));
+    let nothing = render(scene, view, &[]);
+    let cubes = paint(&nothing, &canvas, scene, view, (Light::Fixed, white));
+    let half = WIDTH_PT * 0.5 - 4.0;
+    let width = if view.height == 1 { WIDTH_PT } else { half };
+    let height = if view.height == 1 { LINE_PT } else { width * view.height as f32 / view.width as f32 };
+    let mut y = 12.0;
+    for (text, rgba) in [("All that is drawn", both), ("The cubes alone", cubes)] {
+        say(&mut to, vec2(0.0, y - 3.0), text);
+        let pixels = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
+        let corners = [vec2(0.0, y), vec2(width, y + height)];
+        to.push(Layer::Ground, Role::Paper, Subject::None, Mark::Image { corners, pixels });
+        y += height + 16.0;
+    }
+    let described = format!("{} primitives and {} cubes are drawn", prims.len(), boxes.len());
+    say(&mut to, vec2(0.0, y - 6.0), described.clone());
+    finished(to, y, &described)
+}
+
+/// The cell that the step is about, or the last one that was.
+fn cell_of<S: Projected>(moment: At<'_, '_, S>) -> Option<NodeId> {
+    let of = |note: &Evidence<S>| match note {
+        Evidence::Sized(n) => Some(n.node),
+        Evidence::Cube(n) => Some(n.node),
+        Evidence::Geometry { node, .. } => Some(*node),
+        _ => None,
+    };
+    moment.note.and_then(of).or_else(|| moment.notes.iter().rev().find_map(of))
+}
+
+/// How each face of the cell at hand was made: of a leaf its samples, of an inner cell the faces of its
+/// children, front over back, and their mean (Figure 3).
+fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
+    let mut to = Drawing::default();
+    let Some(id) = cell_of(moment) else {
+        say(&mut to, vec2(0.0, 12.0), "No cell has been looked at yet.");
+        return finished(to, 20.0, "No cell yet");
+    };
+    let tree = moment.frame.index.tree();
+    let node = &tree.nodes()[id.at()];
+    let is_composed = !node.is_leaf() && moment.frame.params.composes();
+    let way = if is_composed { "composed of its children" } else { "its primitives, sampled" };
+    let title = format!("Node {id}, level {}: {way}", node.level);
+    say(&mut to, vec2(0.0, 10.0), title.clone());
+    let mut y = 20.0;
+    let samples = (!is_composed).then(|| {
+        let (scene, params) = (moment.frame.scene, moment.frame.params);
+        let mut prims = tree.references(id).to_vec();
+        prims.sort_unstable();
+        prims.dedup();
+        let baking = Baking { scene, surfaces: params.surfaces, side: params.face_samples, composes: true };
+        baking.samples(&tree.cell(id), &prims)
+    });
+    for (face, name) in FACE_NAMES.iter().enumerate().take(2 * S::Vector::AXES) {
+        say(&mut to, vec2(0.0, y + 0.6 * SIDE_PT), *name);
+        let height = match &samples {
+            Some(samples) => sampled::<S>(&mut to, y, &samples[face], moment.frame.params),
+            None => columns(moment, id, face, y, &mut to),
+        };
+        let mean = moment.frame.index.faces(id).get(face);
+        patch(&mut to, vec2(MEAN_PT, y), SIDE_PT, mean);
+        say(&mut to, vec2(MEAN_PT + SIDE_PT + 4.0, y + 0.6 * SIDE_PT), format!("mean: {}", words(mean)));
+        y += height + 6.0;
+    }
+    finished(to, y, &title)
+}
+
+/// Side of a patch of color.
+const SIDE_PT: f32 = 24.0;
+/// Where the mean of a face stands.
+const MEAN_PT: f32 = 210.0;
+
+/// A patch of color, with its coverage as its opacity.
+fn patch(to: &mut Drawing, at: Vec2, side: f32, color: [f32; 4]) {
+    let points =
+        [vec2(0.0, 0.0), vec2(side, 0.0), vec2(side, side), vec2(0.0, side)].map(|p| at + p).to_vec();
+    to.push(Layer::Areas, Role::Approximated, Subject::None, Mark::Swatch { points, rgba: bytes(color) });
+}
+
+/// A coverage in words.
+fn words(color: [f32; 4]) -> String {
+    format!("{:.0} % covered", color[3] * 100.0)
+}
+
+/// The samples of a face; how high they are.
+fn sampled<S: Projected>(to: &mut Drawing, top: f32, samples: &[[f32; 4]], params: &Params) -> f32 {
+    let side = params.face_samples as usize;
+    let cell = (60.0 / side as f32).min(SIDE_PT * 0.6);
+    for (at, color) in samples.iter().enumerate() {
+        // Rows go up, as axes do.
+        let row = if samples.len() > side { side - 1 - at / side } else { 0 };
+        patch(to, vec2(30.0 + (at % side) as f32 * cell, top + row as f32 * cell), cell, *color);
+    }
+    (if samples.len() > side { side as f32 * cell } else { cell }).max(SIDE_PT)
+}
+
+/// The columns of a face: the front child's face over the back one's. How high they are.
+fn columns<S: Projected>(moment: At<'_, '_, S>, id: NodeId, face: usize, top: f32, to: &mut Drawing) -> f32 {
+    let (axis, is_upper) = (face / 2, face % 2);
+    let node = &moment.frame.index.tree().nodes()[id.at()];
+    let of = |octant: usize| {
+        node.child(octant).map_or([0.0; 4], |child| moment.frame.index.faces(child).get(face))
+    };
+    let fronts = (0..1usize << S::Vector::AXES).filter(|octant| octant >> axis & 1 == is_upper);
+    for (column, octant) in fronts.enumerate() {
+        let (front, back) = (of(octant), of(octant ^ 1 << axis));
+        let x = 30.0 + column as f32 * (SIDE_PT + 12.0);
+        patch(to, vec2(x, top), SIDE_PT * 0.5, front);
+        patch(to, vec2(x, top + SIDE_PT * 0.55), SIDE_PT * 0.5, back);
+        patch(to, vec2(x + SIDE_PT * 0.6, top + SIDE_PT * 0.25), SIDE_PT * 0.5, over(front, back));
+    }
+    SIDE_PT * 1.1
+}
+
+/// The sizes of the cells that were visited so far, level by level, and the threshold.
+fn sizes<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
+    let (mut to, tree, threshold) =
+        (Drawing::default(), moment.frame.index.tree(), moment.frame.params.pixel_threshold);
+    // Pixels from a hundredth to ten thousand, by factors.
+    let x = |size: f32| 40.0 + (size.clamp(0.01, 1e4).log10() + 2.0) / 6.0 * (WIDTH_PT - 50.0);
+    let row = |level: u8| 22.0 + 9.0 * f32::from(level);
+    let mut deepest = 0;
+    let mut cells = 0;
+    for note in moment.notes {
+        let Evidence::Sized(n) = note else { continue };
+        let node = &tree.nodes()[n.node.at()];
+        deepest = deepest.max(node.level);
+        cells += 1;
+        let role = match (n.size <= threshold, node.is_leaf()) {
+            (true, _) => Role::Approximated,
+            (false, true) => Role::Visible,
+            (false, false) => Role::Partial,
+        };
+        let mark = Mark::Dot { at: vec2(x(n.size), row(node.level)), radius_pt: 1.8 };
+        to.push(Layer::Scene, role, Subject::Node(n.node), mark);
+    }
+    let bottom = row(deepest) + 8.0;
+    for level in 0..=deepest {
+        say(&mut to, vec2(0.0, row(level) + 3.0), format!("level {level}"));
+    }
+    for decade in -2..=4 {
+        let at = x(10f32.powi(decade));
+        to.line(Layer::Ground, Role::Faint, Subject::None, [vec2(at, 14.0), vec2(at, bottom)]);
+        let text = format!("{}", 10f64.powi(decade));
+        to.text(Layer::Labels, Role::Faint, vec2(at, bottom + 9.0), 7.0, Anchor::Middle, text);
+    }
+    if threshold > 0.0 {
+        let at = x(threshold);
+        to.line(Layer::Evidence, Role::Evidence, Subject::None, [vec2(at, 10.0), vec2(at, bottom)]);
+        to.text(Layer::Labels, Role::Evidence, vec2(at, 8.0), 7.5, Anchor::Middle, "threshold");
+    }
+    say(&mut to, vec2(40.0, bottom + 20.0), "side of the cell on the screen, pixels");
+    let title = format!("Sizes of {cells} cells against the threshold of {threshold} pixels");
+    finished(to, bottom + 26.0, &title)
+}

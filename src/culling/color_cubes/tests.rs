@@ -1,0 +1,432 @@
+//! Worked examples of the paper's rules, and whole frames.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use glam::{vec2, vec3};
+
+use super::faces::{Baking, Faces, composed, over};
+use super::index::is_small;
+use super::walk::pixels_at_depth_1;
+use super::*;
+use crate::geometry::dice::Dice;
+use crate::geometry::{Aabb, Eye, Flat, NodeId, PrimId, Solid, Vector, View};
+use crate::index::Hierarchy;
+use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
+use crate::raster::{Canvas, Options, Target, fixed_light, paint, render};
+use crate::scene::{Parts, Quiet, framing_view, random_views, samples};
+
+fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
+    (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6)
+}
+
+/// Section 4, "front four over back four, average".
+#[test]
+fn faces_are_composed_column_by_column() {
+    // Over, premultiplied (Porter and Duff 1984).
+    let (front, back) = ([0.5, 0.0, 0.0, 0.5], [0.0, 0.25, 0.0, 0.25]);
+    assert_eq!(over(front, back), [0.5, 0.125, 0.0, 0.625]);
+    assert_eq!(over([0.2, 0.3, 0.4, 1.0], back), [0.2, 0.3, 0.4, 1.0], "nothing shows behind what is opaque");
+    assert_eq!(over([0.0; 4], back), back, "all shows behind what is clear");
+    // That column at the lower x face, and three clear ones: the lower x half of the cell is in front.
+    let column = |octant: usize, _: usize| match octant {
+        0 => front,
+        1 => back,
+        _ => [0.0; 4],
+    };
+    assert!(is_near(composed::<glam::Vec3>(column)[0], [0.125, 0.031_25, 0.0, 0.156_25]));
+    assert!(is_near(composed::<glam::Vec2>(column)[0], [0.25, 0.0625, 0.0, 0.3125]), "two columns");
+    // From the upper side the other one is in front.
+    assert!(is_near(composed::<glam::Vec3>(column)[1], over(back, front).map(|c| c / 4.0)));
+}
+
+/// A wall across x that crosses a cell covers its x faces, level by level, and no other.
+#[test]
+fn a_wall_covers_the_faces_along_it_alone() {
+    let wall = |columns: &'static [usize]| {
+        move |octant: usize, face: usize| {
+            if face < 2 && columns.contains(&octant) { [1.0; 4] } else { [0.0; 4] }
+        }
+    };
+    let alphas = |faces: Faces| faces.map(|f| f[3]);
+    let whole = composed::<glam::Vec3>(wall(&[0, 2, 4, 6]));
+    assert_eq!(alphas(whole), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+    let up = composed::<glam::Vec3>(|octant, face| if octant & 1 == 0 { whole[face] } else { [0.0; 4] });
+    assert_eq!(alphas(up), alphas(whole), "the next level");
+    // In the lower columns alone.
+    assert_eq!(alphas(composed::<glam::Vec3>(wall(&[0, 4])))[..3], [0.5, 0.5, 0.0]);
+    // And the wall itself, of two triangles: the cell's own faces.
+    let corners = [vec3(0.3, 0.0, 0.0), vec3(0.3, 1.0, 0.0), vec3(0.3, 1.0, 1.0), vec3(0.3, 0.0, 1.0)];
+    let parts = Parts::simple("wall", corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+    let scene = Scene::<Solid>::new(parts).expect("a wall");
+    let faces = baked(&scene, &Aabb { min: vec3(0.0, 0.0, 0.0), max: vec3(1.0, 1.0, 1.0) }, 4);
+    assert_eq!(alphas(faces), [1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
+fn baked<S: Projected>(scene: &Scene<S>, cell: &Aabb<S::Vector>, side: u32) -> Faces {
+    let baking = Baking { scene, surfaces: Surfaces::default(), side, composes: true };
+    baking.projected(cell, scene.live())
+}
+
+/// Section 4: the mean of 4×4 samples, premultiplied. A diagonal belongs to one of the triangles beside it.
+#[test]
+fn a_leaf_is_the_mean_of_its_samples() {
+    let points = vec![vec3(0.0, 0.0, 0.5), vec3(1.0, 0.0, 0.5), vec3(1.0, 1.0, 0.5), vec3(0.0, 1.0, 0.5)];
+    let cell = Aabb { min: vec3(0.0, 0.0, 0.0), max: vec3(1.0, 1.0, 1.0) };
+    let alphas = [[0, 1, 3], [1, 2, 3]].map(|triangle| {
+        let mut parts = Parts::<Solid>::simple("half", points.clone(), vec![triangle]);
+        parts.materials[0].color = [1.0, 0.0, 0.0];
+        let scene = Scene::new(parts).expect("a triangle");
+        let (faces, light) = (baked(&scene, &cell, 4), fixed_light(&scene, PrimId(0)));
+        assert!(is_near(faces[4], [faces[4][3] * light, 0.0, 0.0, faces[4][3]]), "{:?}", faces[4]);
+        assert_eq!((faces[4], faces[0], faces[3]), (faces[5], [0.0; 4], [0.0; 4]), "edge-on it is nothing");
+        // One sample lies on the diagonal, as do 64 of 64×64.
+        let one = baked(&scene, &cell, 1)[4][3];
+        assert!((baked(&scene, &cell, 64)[4][3] - 0.5).abs() <= 1.0 / 128.0);
+        [faces[4][3], one]
+    });
+    assert_eq!(alphas, [[0.375, 0.0], [0.625, 1.0]]);
+    // What lies outside the cell is not seen.
+    let scene = Scene::<Solid>::new(Parts::simple("half", points, vec![[0, 1, 3]])).expect("a triangle");
+    let above = Aabb { min: vec3(0.0, 0.0, 0.6), max: vec3(1.0, 1.0, 1.6) };
+    assert_eq!(baked(&scene, &above, 4), [[0.0; 4]; 6]);
+}
+
+/// The paper's over takes coverage in a row as unrelated: of two halves it makes three quarters, whether they
+/// are the same or fill each other up. Made from the primitives they are right.
+#[test]
+fn composing_takes_coverage_as_unrelated() {
+    let opacity = |behind: f32| {
+        // Cells of side 1, each with a segment half as wide across its middle; the back ones are moved.
+        let (mut points, mut prims) = (Vec::new(), Vec::new());
+        for (x, y) in [(0.0, 0.5), (1.0, 0.5), (behind, 1.5), (1.0 + behind, 1.5)] {
+            prims.push([points.len() as u32, points.len() as u32 + 1]);
+            points.extend([vec2(x, y), vec2(x + 0.5, y)]);
+        }
+        let scene = Scene::<Flat>::new(Parts::simple("halves", points, prims)).expect("segments");
+        let whole = Aabb { min: vec2(0.0, 0.0), max: vec2(2.0, 2.0) };
+        let of =
+            |octant: usize, face: usize| baked(&scene, &crate::index::octant_of(&whole, octant), 4)[face];
+        [composed::<glam::Vec2>(of)[2][3], baked(&scene, &whole, 4)[2][3]]
+    };
+    assert_eq!((opacity(0.0), opacity(0.5)), ([0.75, 0.5], [0.75, 1.0]));
+}
+
+/// Four times as many trees on a square (Section 5.2): seen from the side two in a row cover half the face.
+#[test]
+fn a_square_of_four_cells_from_its_sides() {
+    let mut cell: Faces = [[0.0, 0.0, 0.0, 0.5]; 6];
+    let mut sides = vec![];
+    for _ in 0..3 {
+        let of = |octant: usize, face: usize| if octant & 2 == 0 { cell[face] } else { [0.0; 4] };
+        cell = composed::<glam::Vec3>(of);
+        sides.push([cell[0][3], cell[5][3], cell[2][3]]);
+    }
+    let want = [0.375, 0.304_687_5, 0.258_270_26];
+    for (got, want) in sides.iter().zip(want) {
+        assert!(is_near([got[0], got[1], got[2], 0.0], [want, want, 0.5, 0.0]), "{sides:?}");
+    }
+}
+
+/// Section 4: no more than the cubes of the children would cost.
+#[test]
+fn a_cell_is_a_leaf_by_what_its_childrens_cubes_cost() {
+    // Eight cubes of six triangles each, then four.
+    assert_eq!([48.0, 49.0].map(|cost| is_small::<Solid>(cost, 8)), [true, false]);
+    assert_eq!([24.0, 25.0].map(|cost| is_small::<Solid>(cost, 4)), [true, false]);
+    // In flatland two segments face the eye.
+    assert_eq!([8.0, 9.0].map(|cost| is_small::<Flat>(cost, 4)), [true, false]);
+    // A sphere of 800 triangles in even parts: small enough in 34 cells, not in 33.
+    assert_eq!([33.0, 34.0].map(|cells| is_small::<Solid>(800.0 / cells, 4)), [false, true]);
+}
+
+/// The share of each primitive in each node, from the tree alone.
+fn shares<S: Projected>(tree: &CellTree<S::Vector>, scene: &Scene<S>) -> Vec<BTreeMap<PrimId, f64>> {
+    let held =
+        |node: NodeId| tree.references(node).iter().copied().collect::<std::collections::BTreeSet<_>>();
+    let mut all = vec![BTreeMap::new(); tree.nodes().len()];
+    all[0] = scene.live().iter().map(|&p| (p, 1.0)).collect();
+    for at in 0..all.len() {
+        let children: Vec<_> = Hierarchy::<S>::children(tree, NodeId(at as u32)).map(NodeId).collect();
+        for child in &children {
+            for prim in held(*child) {
+                let among = children.iter().filter(|c| held(**c).contains(&prim)).count();
+                let share = all[at][&prim] / among as f64;
+                all[child.at()].insert(prim, share);
+            }
+        }
+    }
+    all
+}
+
+/// What the stop rule is asked is the sum of shares, of each node in turn; over the leaves they sum up to the
+/// primitives.
+fn shares_add_up<S: Projected>() {
+    let mut leaves_sharing = 0;
+    for seed in 0..3 {
+        let scene = samples::soup::<S>(seed, 500);
+        let sums = RefCell::new(Vec::new());
+        let stop = |sum: f64, children: u32| {
+            // Asked of each node before anything is parted: would one child be too many?
+            if children == 1 {
+                sums.borrow_mut().push(sum);
+            }
+            is_small::<S>(sum, children)
+        };
+        let tree = CellTree::build(&scene, 20, &stop, &|| false).expect("not cancelled");
+        let (all, mut open, mut want) = (shares(&tree, &scene), vec![NodeId(0)], Vec::new());
+        while let Some(node) = open.pop() {
+            want.push(all[node.at()].values().sum::<f64>());
+            open.extend(Hierarchy::<S>::children(&tree, node).rev().map(NodeId));
+        }
+        let asked = sums.into_inner();
+        assert_eq!(asked.len(), want.len(), "seed {seed}");
+        assert!(
+            asked.iter().zip(&want).all(|(a, b)| (a - b).abs() < 1e-4),
+            "seed {seed}: {asked:?} {want:?}"
+        );
+        let is_leaf = |at: &usize| tree.nodes()[*at].is_leaf();
+        let sum: f64 = (0..all.len()).filter(is_leaf).flat_map(|at| all[at].values()).sum();
+        assert!((sum - 500.0).abs() < 1e-6, "{sum}");
+        leaves_sharing +=
+            (0..all.len()).filter(is_leaf).filter(|at| all[*at].values().any(|s| *s < 1.0)).count();
+    }
+    assert!(leaves_sharing > 10, "{leaves_sharing}");
+}
+
+#[test]
+fn shares_add_up_to_the_primitives() {
+    shares_add_up::<Flat>();
+    shares_add_up::<Solid>();
+}
+
+/// A view of an image of `px` pixels a side, 60° high, from a distance along a direction.
+fn view_from(toward: glam::Vec3, px: u32) -> View<Solid> {
+    let eye = Eye {
+        position: toward,
+        target: glam::Vec3::ZERO,
+        up: vec3(0.1, 1.0, 0.2),
+        fov: 60f32.to_radians(),
+        near: 0.01,
+        far: 1e4,
+    };
+    View { eye, width: px, height: px }
+}
+
+/// Table 2 at 14 radii: the cells of level 4 are those that are drawn.
+#[test]
+fn a_whole_view_is_drawn_at_one_level() {
+    let pixels = pixels_at_depth_1(&view_from(vec3(0.0, 0.0, 14.0), 124));
+    assert!((pixels - 107.387).abs() < 0.01, "{pixels}");
+    let sizes = [3, 4, 5].map(|level| 2.0 / f32::from(1u16 << level) * pixels / 14.0);
+    assert!(sizes.iter().zip([1.918, 0.959, 0.479]).all(|(s, want)| (s - want).abs() < 1e-3), "{sizes:?}");
+}
+
+fn ready<S: Projected>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn crate::method::Run<S>> {
+    Of::<ColorCubes>::NEW
+        .ready(scene, &Settings::of(pairs), &Quiet)
+        .expect("settings")
+        .expect("not cancelled")
+}
+
+/// Whether no cube of a list hides one before it: some plane parts each two, with the eye on the side of the
+/// first, or in it.
+fn is_front_to_back<V: Vector>(cells: &[Aabb<V>], eye: V) -> bool {
+    let parts = |a: &Aabb<V>, b: &Aabb<V>| {
+        (0..V::AXES).any(|k| {
+            a.max.get(k) <= b.min.get(k) && eye.get(k) <= b.min.get(k)
+                || a.min.get(k) >= b.max.get(k) && eye.get(k) >= b.max.get(k)
+        })
+    };
+    (0..cells.len()).all(|i| (0..i).all(|before| parts(&cells[before], &cells[i])))
+}
+
+fn frames_are_in_order<S: Projected>() {
+    let (mut cubes, mut mixed) = (0, 0);
+    for seed in 0..4 {
+        let scene = samples::soup::<S>(seed, 4000);
+        let mut run = ready(&scene, &[("pixel-threshold", "60")]);
+        for view in random_views(&scene, 6, seed) {
+            let list = run.cull(&view);
+            let cells: Vec<_> = list.stand_ins.iter().map(|s| s.bounds).collect();
+            assert!(is_front_to_back(&cells, view.eye.position), "seed {seed}");
+            let back: Vec<_> = cells.iter().rev().copied().collect();
+            assert!(
+                cells.len() < 8 || !is_front_to_back(&back, view.eye.position),
+                "the check sees an order"
+            );
+            cubes += cells.len();
+            mixed += usize::from(!cells.is_empty() && !list.prims.is_empty());
+        }
+    }
+    assert!(cubes > 200 && mixed > 4, "{cubes} cubes, {mixed} views with both");
+}
+
+#[test]
+fn cubes_come_front_to_back() {
+    frames_are_in_order::<Flat>();
+    frames_are_in_order::<Solid>();
+}
+
+/// Seen along the diagonal each face shows a third of a cube, and 30° from an axis sin and cos of their sum.
+#[test]
+fn faces_show_by_their_projected_areas() {
+    let shares = |toward: glam::Vec3| {
+        let view =
+            View { eye: Eye { fov: 0.006, ..view_from(toward * 400.0, 300).eye }, ..view_from(toward, 300) };
+        let mut faces = [[0.0; 4]; 6];
+        [1, 3, 5].into_iter().enumerate().for_each(|(c, face)| (faces[face][c], faces[face][3]) = (1.0, 1.0));
+        let cube = crate::raster::StandIn {
+            node: NodeId(0),
+            bounds: Aabb { min: vec3(-0.5, -0.5, -0.5), max: vec3(0.5, 0.5, 0.5) },
+            faces: crate::raster::CubeFaces::new(&faces),
+            after: 0,
+        };
+        let mut canvas = Canvas::default();
+        canvas.clear(&view);
+        canvas.composite(&[cube], &Target::new(&view), &view, &Options::default());
+        let sums = [0, 1, 2].map(|c| canvas.samples().iter().map(|s| s[c]).sum::<f32>());
+        sums.map(|s| s / sums.iter().sum::<f32>())
+    };
+    let diagonal = shares(vec3(1.0, 1.0, 1.0).normalize());
+    assert!(diagonal.iter().all(|s| (s - 1.0 / 3.0).abs() < 0.01), "{diagonal:?}");
+    let (sine, cosine) = 30f32.to_radians().sin_cos();
+    let aside = shares(vec3(cosine, 0.0, sine));
+    assert!((aside[0] - 0.634).abs() < 0.01 && (aside[2] - 0.366).abs() < 0.01, "{aside:?}");
+}
+
+/// Without cubes it is the z-buffer, and the picture of one, byte for byte. With a high threshold all of a
+/// view is one cube.
+fn thresholds_bound_what_is_drawn<S: Projected>() {
+    for seed in 0..3 {
+        let scene = samples::soup::<S>(seed, 200);
+        let [mut exact, mut coarse] = ["0", "256"].map(|t| ready(&scene, &[("pixel-threshold", t)]));
+        for view in random_views(&scene, 4, seed) {
+            let list = exact.cull(&view);
+            let options = Options::default();
+            let white = [1.0; 3];
+            let whole = paint(
+                &render(&scene, &view, scene.live()),
+                &Canvas::default(),
+                &scene,
+                &view,
+                (Light::Fixed, white),
+            );
+            assert_eq!((list.stand_ins.len(), list.paint(&scene, &view, &options, white)), (0, whole));
+        }
+        let mut far = framing_view(&scene.bounds(), 64, 64);
+        far.eye.position = far.eye.position * 4.0;
+        far.eye.far *= 4.0;
+        let list = coarse.cull(&far);
+        assert_eq!((list.prims.len(), list.stand_ins.len()), (0, 1));
+    }
+}
+
+#[test]
+fn thresholds_bound_what_is_drawn_in_both_spaces() {
+    thresholds_bound_what_is_drawn::<Flat>();
+    thresholds_bound_what_is_drawn::<Solid>();
+}
+
+/// A primitive in several cells: drawn once if one of them is drawn as geometry, else in cubes alone.
+#[test]
+fn what_cells_share_is_drawn_once() {
+    let (mut drawn, mut in_cubes) = (0, 0);
+    for seed in 0..3 {
+        let scene = samples::soup::<Solid>(seed, 3000);
+        let params = Params { pixel_threshold: 80.0, ..Params::default() };
+        let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
+        let view = &random_views(&scene, 1, seed)[0];
+        let frame: Frame<'_, Solid, ColorCubes> =
+            Frame { index: &index, scene: &scene, view, params: &params, limit: None };
+        let (mut list, mut film) = (DrawList::default(), Recorder::new(usize::MAX));
+        ColorCubes::cull(&frame, &mut (), &mut (), &mut list, &mut film);
+        let mut plain = DrawList::default();
+        ColorCubes::cull(&frame, &mut (), &mut (), &mut plain, &mut Unobserved);
+        assert_eq!(plain, list);
+        let verdict = |prim: PrimId| {
+            film.events.iter().find_map(|e| match *e {
+                Event::DecidedPrim(p, v) if p == prim => Some(v),
+                _ => None,
+            })
+        };
+        // The cells that each primitive meets, by how they were drawn.
+        let cube_cells: Vec<_> = list.stand_ins.iter().map(|s| s.node).collect();
+        let is_in_cube =
+            |prim: &PrimId| cube_cells.iter().any(|n| index.tree().references(*n).contains(prim));
+        for &prim in scene.live().iter().filter(|p| is_in_cube(p)) {
+            let times = list.prims.iter().filter(|p| **p == prim).count();
+            assert!(times <= 1);
+            match verdict(prim) {
+                Some(Verdict::Visible) => (drawn, _) = (drawn + 1, assert_eq!(times, 1)),
+                Some(Verdict::Approximated) => (in_cubes, _) = (in_cubes + 1, assert_eq!(times, 0)),
+                None => assert_eq!(times, 0, "it lies in that cube wholly"),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+    assert!(drawn > 5 && in_cubes > 5, "{drawn} drawn, {in_cubes} in cubes alone");
+}
+
+/// A preprocess comes back as it was, and one that does not fit is refused in one line.
+#[test]
+fn what_was_saved_comes_back_or_is_refused() {
+    fn check<S: Projected>(other: &Scene<S>, scene: &Scene<S>) {
+        let params = Params { interior: Interior::Direct, ..Params::default() };
+        let built = CubeTree::build(scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
+        let bytes = built.save().expect("it is kept");
+        let read = |scene: &Scene<S>, params: &Params, bytes: &[u8]| {
+            CubeTree::build(scene, params, Some(bytes), &Quiet).map(|tree| tree.expect("not cancelled"))
+        };
+        let again = read(scene, &params, &bytes).expect("it fits");
+        assert_eq!(again.save(), Some(bytes.clone()));
+        assert_eq!(again.tree().nodes(), built.tree().nodes());
+        let refused = |scene: &Scene<S>, params: &Params, bytes: &[u8]| {
+            let why = read(scene, params, bytes).expect_err("refused");
+            assert!(!why.is_empty() && !why.contains('\n'), "{why}");
+            why
+        };
+        assert_eq!(refused(other, &params, &bytes), "it was made for another scene");
+        let others = Params { face_samples: 3, ..params };
+        assert!(refused(scene, &others, &bytes).contains("face-samples=4 interior=direct"));
+        let mut dice = Dice::new(5);
+        for _ in 0..40 {
+            let mut damaged = bytes.clone();
+            damaged[12 + dice.below(bytes.len() as u32 - 12) as usize] ^= 1 << dice.below(8);
+            refused(scene, &params, &damaged);
+            refused(scene, &params, &bytes[..dice.below(bytes.len() as u32) as usize]);
+        }
+    }
+    check(&samples::soup::<Flat>(1, 60), &samples::soup::<Flat>(2, 60));
+    check(&samples::soup::<Solid>(1, 90), &samples::soup::<Solid>(2, 90));
+}
+
+/// Tables that are no tree are no tree, whatever sum stands under them.
+#[test]
+fn tables_of_no_tree_are_refused() {
+    let scene = samples::soup::<Solid>(3, 3000);
+    let tree = CellTree::build(&scene, 20, &is_small::<Solid>, &|| false).expect("not cancelled");
+    let [nodes, references] = tree.tables();
+    let is_taken = |nodes: &[u32], references: &[u32]| {
+        CellTree::of_tables(&*scene, nodes, references.to_vec()).is_some()
+    };
+    assert!(is_taken(&nodes, &references) && nodes.len() > 50);
+    let mut dice = Dice::new(9);
+    for _ in 0..2000 {
+        let mut changed = nodes.clone();
+        let at = dice.below(nodes.len() as u32) as usize;
+        changed[at] = match dice.below(3) {
+            0 => dice.bits(),
+            1 => changed[at].wrapping_add(1),
+            _ => dice.below(64),
+        };
+        // The first child of a leaf says nothing.
+        let says_nothing = at % 5 == 1 && tree.nodes()[at / 5].is_leaf() || at == 0;
+        assert!(changed == nodes || says_nothing || !is_taken(&changed, &references), "word {at}");
+    }
+    assert!(!is_taken(&nodes, &references[1..]));
+    assert!(!is_taken(&nodes[..nodes.len() - 1], &references));
+    let mut strange = references.clone();
+    strange[7] = 3000;
+    assert!(!is_taken(&nodes, &strange));
+}

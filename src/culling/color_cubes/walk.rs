@@ -1,0 +1,246 @@
+//! The traversal of one frame (Section 3).
+
+use super::code::line;
+use super::evidence::{CubeDrawn, Evidence, Settled, Sized};
+use super::index::CubeTree;
+use super::{Order, Params};
+use crate::drawing::Subject;
+use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, PrimId, Space, Vector, View};
+use crate::index::{CellNode, CellTree, octant_of};
+use crate::method::evidence::{Facing, Tested};
+use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
+use crate::raster::StandIn;
+use crate::scene::Scene;
+
+/// A mark for each primitive.
+#[derive(Default)]
+struct Marks(Vec<u64>);
+
+impl Marks {
+    fn new(count: usize) -> Self {
+        Self(vec![0; count.div_ceil(64)])
+    }
+    /// Marks one; whether it was marked before.
+    #[inline]
+    fn mark(&mut self, prim: PrimId) -> bool {
+        let (word, bit) = (&mut self.0[prim.at() / 64], 1 << (prim.at() % 64));
+        let was = *word & bit != 0;
+        *word |= bit;
+        was
+    }
+    fn has(&self, prim: PrimId) -> bool {
+        self.0[prim.at() / 64] >> (prim.at() % 64) & 1 == 1
+    }
+}
+
+/// The traversal of one frame.
+pub(super) struct Walk<'a, S: Space, O> {
+    index: &'a CubeTree<S>,
+    tree: &'a CellTree<S::Vector>,
+    scene: &'a Scene<S>,
+    view: &'a View<S>,
+    params: &'a Params,
+    frustum: Frustum<S::Vector>,
+    /// Line of sight.
+    forward: S::Vector,
+    /// The sum of its components without their signs: half of it times a side is how far a cell reaches along
+    /// the line of sight from its center.
+    spread: f32,
+    /// Side of a cell of each level in pixels, were it at depth 1.
+    sides: [f32; 32],
+    /// What of that is half a unit of length.
+    pixels_of_half: f32,
+    /// Primitives that were drawn, or found to face away.
+    done: Marks,
+    /// Primitives that are in some cube that was drawn; kept only where somebody listens.
+    in_cubes: Marks,
+    out: &'a mut DrawList<S>,
+    watch: &'a mut O,
+}
+
+/// Pixels that a length takes up at depth 1.
+pub(super) fn pixels_at_depth_1<S: Space>(view: &View<S>) -> f32 {
+    // Flatland's angle is that across the image, and that of space up and down.
+    let pixels = if S::Vector::AXES == 2 { view.width } else { view.height };
+    (f64::from(pixels) * 0.5 / (f64::from(view.eye.fov) * 0.5).tan()) as f32
+}
+
+impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
+    /// A frame that is yet to be walked.
+    pub(super) fn new<M: Method<S, Params = Params, Index = CubeTree<S>>>(
+        frame: &Frame<'a, S, M>,
+        out: &'a mut DrawList<S>,
+        watch: &'a mut O,
+    ) -> Self {
+        let Frame { index, scene, view, params, .. } = *frame;
+        let (tree, forward) = (index.tree(), view.eye.forward());
+        let side = (0..S::Vector::AXES).map(|a| tree.root().size().get(a)).fold(0.0, f32::max);
+        let pixels = pixels_at_depth_1(view);
+        Self {
+            index,
+            tree,
+            scene,
+            view,
+            params,
+            frustum: view.frustum(),
+            forward,
+            spread: (0..S::Vector::AXES).map(|a| forward.get(a).abs()).sum(),
+            sides: std::array::from_fn(|level| side * pixels / (1u32 << level.min(31)) as f32),
+            pixels_of_half: 0.5 / pixels,
+            done: Marks::new(scene.prim_count()),
+            in_cubes: Marks::new(if O::LISTENS { scene.prim_count() } else { 0 }),
+            out,
+            watch,
+        }
+    }
+    /// The whole of it.
+    pub(super) fn run(&mut self) {
+        self.watch.stage("visit");
+        self.render(NodeId(0), *self.tree.root(), Frustum::<S::Vector>::ALL);
+    }
+    fn line(&mut self, line: u8) {
+        self.watch.event(Event::Line(line));
+    }
+
+    /// Render: a cell, and the planes that cut all cells above it.
+    fn render(&mut self, id: NodeId, cell: Aabb<S::Vector>, planes: u8) {
+        let node = &self.tree.nodes()[id.at()];
+        self.watch.event(Event::Entered(id));
+        self.line(line::RENDER);
+        self.line(line::TEST);
+        let test = self.frustum.test(&cell, planes);
+        self.watch.note(move || Evidence::Tested(Tested::of(Subject::Node(id), &cell, planes, test)));
+        let cutting = match test {
+            FrustumTest::Outside(_) => {
+                self.line(line::OUTSIDE);
+                return self.leave(id, Verdict::Outside);
+            }
+            FrustumTest::Partial(cutting) => cutting,
+            FrustumTest::Inside => 0,
+        };
+        self.line(line::CUTTING);
+        self.line(line::SIZE);
+        let depth = self.forward.dot(cell.center() - self.view.eye.position);
+        let side = self.sides[usize::from(node.level)];
+        // About the eye a cell has no size on the screen, and is as large as can be.
+        let size = if depth > self.view.eye.near { side / depth } else { f32::INFINITY };
+        let threshold = self.params.pixel_threshold;
+        self.watch.note(move || Evidence::Sized(Sized { node: id, depth, size, threshold }));
+        if size <= threshold {
+            return self.draw_cube(id, cell);
+        }
+        self.line(line::LEAF);
+        if node.is_leaf() || cutting == 0 && self.needs_geometry(node, depth) {
+            self.line(line::CALL_DRAW);
+            self.draw_geometry(id);
+            self.line(line::CALL_DRAW);
+            let prims = self.tree.references(id).len();
+            self.watch.note(move || Evidence::Geometry { node: id, references: prims as u32 });
+            return self.leave(id, Verdict::Visible);
+        }
+        self.visit_children(id, &cell, cutting);
+        self.watch.event(Event::Left(id));
+    }
+
+    /// A decision about a cell and all below it ends the visit.
+    fn leave(&mut self, id: NodeId, verdict: Verdict) {
+        self.watch.event(Event::DecidedNode(id, verdict));
+        self.watch.event(Event::Left(id));
+    }
+
+    /// Draws a cell's color cube in place of all that it holds.
+    fn draw_cube(&mut self, id: NodeId, cell: Aabb<S::Vector>) {
+        self.line(line::CUBE);
+        let faces = *self.index.faces(id);
+        let after = self.out.prims.len() as u32;
+        self.out.stand_ins.push(StandIn { node: id, bounds: cell, faces, after });
+        self.watch.note(move || Evidence::Cube(CubeDrawn { node: id, cell, faces }));
+        if O::LISTENS {
+            // What it shares with other cells is settled with the cell above them all.
+            let below = self.tree.references(id);
+            below.iter().for_each(|&prim| _ = self.in_cubes.mark(prim));
+        }
+        self.leave(id, Verdict::Approximated);
+    }
+
+    /// Whether even the smallest cell below one is larger than the threshold, wherever in it.
+    fn needs_geometry(&self, node: &CellNode, depth: f32) -> bool {
+        let side = self.sides[usize::from(node.level)];
+        // A cell's farthest point lies half a side on from its center, on each axis.
+        let farthest = depth + side * self.pixels_of_half * self.spread;
+        self.sides[usize::from(node.lowest)] > self.params.pixel_threshold * farthest
+    }
+
+    fn visit_children(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
+        let node = &self.tree.nodes()[id.at()];
+        let is_from_back = self.params.order == Order::Paper;
+        self.line(if is_from_back { line::FROM_BACK } else { line::CHILDREN });
+        self.watch.event(Event::DecidedNode(id, Verdict::Partial));
+        // Cells are disjoint, and a child is before another if the planes that part it from the eye's octant
+        // are among those that part the other: so by ascending number, seen from that octant, none is before
+        // one that it hides.
+        let (eye, center) = (self.view.eye.position, cell.center());
+        let nearest =
+            (0..S::Vector::AXES).map(|a| usize::from(eye.get(a) > center.get(a)) << a).sum::<usize>();
+        let farthest = (1 << S::Vector::AXES) - 1 - nearest;
+        for octant in (0..1 << S::Vector::AXES).map(|k| k ^ if is_from_back { farthest } else { nearest }) {
+            if let Some(child) = node.child(octant) {
+                self.line(line::CHILD);
+                self.render(child, octant_of(cell, octant), cutting);
+            }
+        }
+        if O::LISTENS {
+            self.settle(id);
+        }
+    }
+
+    /// DrawGeometry: what the leaves at and below a cell refer to, each once a frame.
+    fn draw_geometry(&mut self, id: NodeId) {
+        self.line(line::DRAW);
+        let (tree, scene, eye) = (self.tree, self.scene, self.view.eye.position);
+        for &prim in tree.references(id) {
+            self.line(line::EACH);
+            // With one cell nothing is shared.
+            if self.params.tree_levels > 1 {
+                self.line(line::ONCE);
+            }
+            if self.done.mark(prim) {
+                continue;
+            }
+            if self.params.surfaces.one_sided {
+                self.line(line::FACES_AWAY);
+                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+                if scene.faces_away(prim, eye) {
+                    self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
+                    continue;
+                }
+            }
+            self.line(line::DRAW_PRIM);
+            self.watch.note(move || Evidence::Settled(Settled::Drawn { prim, node: id }));
+            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+            self.out.prims.push(prim);
+        }
+    }
+
+    /// Says what became of the primitives that the children of a cell share, now that all of them are done.
+    fn settle(&mut self, id: NodeId) {
+        self.line(line::SHARED);
+        for &prim in self.tree.shared(id) {
+            if self.done.has(prim) {
+                continue;
+            }
+            self.line(line::SETTLED);
+            // No part of it lies in a cell that is in view; or none in one that was drawn as geometry.
+            let is_in_cube = self.in_cubes.has(prim);
+            self.watch.note(move || {
+                Evidence::Settled(if is_in_cube {
+                    Settled::InCubes { prim, node: id }
+                } else {
+                    Settled::OutOfView { prim, node: id }
+                })
+            });
+            let verdict = if is_in_cube { Verdict::Approximated } else { Verdict::Hidden };
+            self.watch.event(Event::DecidedPrim(prim, verdict));
+        }
+    }
+}

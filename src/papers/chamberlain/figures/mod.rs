@@ -1,0 +1,76 @@
+//! Figures of Chamberlain et al., "Fast Rendering of Complex Environments Using a Spatial Hierarchy", Graphics
+//! Interface 1996, made anew.
+
+mod notes;
+
+use self::notes::{cubes, leaves, step_of_inner_cell};
+use crate::drawing::{Drawing, Role};
+use crate::figure::page::legend;
+use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
+use crate::figure::{Look, Paper, Swatch, panels};
+use crate::geometry::View;
+use crate::papers::keys::COLOR_CUBES;
+use crate::papers::paper::Figure;
+use crate::raster::DepthScale;
+use crate::scene::{SceneError, example};
+
+/// The figures.
+pub const FIGURES: &[Figure] = &[
+    Figure {
+        name: "chamberlain-figure-1",
+        former: None,
+        summary: "A forest from above: leaves drawn as geometry, cells drawn as color cubes, cells culled",
+        make: traversal,
+    },
+    Figure {
+        name: "chamberlain-figure-3",
+        former: None,
+        summary: "Faces of a cell composed of those of its children",
+        make: composition,
+    },
+];
+
+/// The method's picture of how a face is made.
+const MAKING: usize = 1;
+
+pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("forest")?;
+    let view = View { width: 96, ..eye(&scene, 0) };
+    let film = maker.film(&scene, &view, COLOR_CUBES, &[]);
+    let (cubes, leaves) = (cubes(&*film), leaves(&*film));
+    let label = format!("{cubes} cells drawn as color cubes, {leaves} as geometry");
+    let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
+    let caption = format!(
+        "A forest from above, seen in a line of {} pixels. Near the eye cells are larger than a pixel and are \
+         divided down to leaves, which are drawn as geometry; farther off cells of ever greater size are \
+         drawn as their color cubes, in the colors of the edges that face the eye; what is outside the view is \
+         culled, a whole cell at a time. As in the paper's Figure 1 each level takes up a band about the eye.",
+        view.width
+    );
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Chamberlain et al. 1996, Figure 1: what is drawn of the hierarchy",
+        legend(&content),
+        caption,
+        &content,
+    ))
+}
+
+pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("forest")?;
+    let view = View { width: 96, ..eye(&scene, 0) };
+    let film = maker.film(&scene, &view, COLOR_CUBES, &[]);
+    let content = film.picture(step_of_inner_cell(&*film), MAKING, DepthScale::Linear);
+    let caption = "The faces of a cell of flatland, which has four children. For each face there are two \
+                   columns: the front child's face, above, goes over the back one's, below it, and the mean \
+                   of the two results is the face of the cell. Opacity is shown as such, so that paper shows \
+                   through what is partly covered. In space there are four columns of two for each of six \
+                   faces.";
+    Ok(maker.page(
+        Paper::TwoColumns,
+        "Chamberlain et al. 1996, Figure 3: composing and averaging faces of children",
+        vec![entry(Role::Approximated, Swatch::Area, "a face, in its color and opacity")],
+        caption,
+        &content,
+    ))
+}

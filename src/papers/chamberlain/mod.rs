@@ -1,0 +1,11 @@
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, 1996: what is drawn of the hierarchy (Figure 1), and
+//! how faces are composed (3).
+
+mod figures;
+
+use super::keys::COLOR_CUBES;
+use super::paper::Paper;
+
+/// The paper.
+pub const PAPER: Paper =
+    Paper { key: "chamberlain", methods: &[COLOR_CUBES], figures: figures::FIGURES, tables: &[] };
