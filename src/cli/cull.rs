@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -12,7 +12,7 @@ use super::methods::params_json;
 use super::task::{Ready, Task};
 use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
-use crate::geometry::{PrimId, each};
+use crate::geometry::{PrimId, View, each};
 use crate::measure::timed;
 use crate::method::{Words, surfaces_of};
 use crate::raster::{Canvas, Light, Options, Target};
@@ -36,8 +36,7 @@ pub(super) struct Args {
     /// Write an image of what was drawn; several views give NAME-000.png, NAME-001.png, …
     #[arg(long, value_name = "FILE.png")]
     image: Option<PathBuf>,
-    /// Light of the image, of all methods alike: headlight, at the eye, or fixed in the world. Without it, that
-    /// of the method
+    /// Light of the image: headlight, at the eye, or fixed in the world. Without it, that of the method
     #[arg(long, value_name = "LIGHT", value_parser = clap::builder::PossibleValuesParser::new(Light::WORDS))]
     light: Option<String>,
     /// Write the result to a file instead of standard output
@@ -133,7 +132,6 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
     let background = Theme::Print.flat_linear(Role::Paper);
     let mut truth = args.truth.then(|| Truth::new(scene, surfaces, args.threads as usize, background));
     let (mut target, mut canvas) = (Target::default(), Canvas::default());
-    let light = args.light.as_ref().and_then(|word| Light::ALL.iter().find(|l| l.word() == word));
     let options =
         Options { threads: args.threads as usize, surfaces: surfaces.both_sides(), ..Options::default() };
     let mut frames = Vec::with_capacity(count);
@@ -151,11 +149,9 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
             list.composite(&mut canvas, &target, view, &options);
         });
         if let Some(path) = &args.image {
-            let light = *light.unwrap_or(&list.light);
+            let light = light(args).unwrap_or(list.light);
             let rgba = list.picture(scene, view, (&target, &canvas), (light, background));
-            let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
-            let place = output::numbered(path, i, count);
-            output::write_file(&place, |to| to.write_all(&png_pixels(&picture)).map(|()| true))?;
+            write_image(&output::numbered(path, i, count), view, rgba)?;
         }
         let truth = truth.as_mut().map(|t| truth_report(args, t.judge(scene, view, &list.prims, &target)));
         frames.push(Frame {
@@ -179,6 +175,17 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         frame.counters = tally.named();
     }
     Ok(frames)
+}
+
+/// The light that was asked for.
+fn light(args: &Args) -> Option<Light> {
+    let word = args.light.as_ref()?;
+    Light::ALL.iter().copied().find(|light| light.word() == word)
+}
+
+fn write_image<S: World>(place: &Path, view: &View<S>, rgba: Vec<u8>) -> Result<(), CliError> {
+    let picture = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
+    output::write_file(place, |to| to.write_all(&png_pixels(&picture)).map(|()| true))
 }
 
 /// One object; each frame on a line of its own.

@@ -1,8 +1,8 @@
 //! A tree of cells that are halved: an octree, in flatland a quadtree, whose leaves refer to all primitives
 //! that meet them.
 //!
-//! Chamberlain, DeRose, Lischinski, Salesin and Snyder 1996, Section 4. Cells follow from halving the root, so
-//! a node is 20 bytes. Making it:
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder 1996, Section 4. Cells follow from halving the root,
+//! so a node is 20 bytes. Making it:
 //!
 //! 1. the root is a cube about the scene, and refers to every primitive, with a share of 1 each;
 //! 2. a primitive goes to each child that it meets, by exact contact; what lies on a dividing plane goes to
@@ -29,6 +29,7 @@ use crate::scene::Scene;
 #[repr(C)]
 pub struct CellNode {
     parent: u32,
+    /// Of a leaf: how many of its references, its first ones, are to primitives that no other leaf meets.
     first_child: u32,
     first: u32,
     count: u32,
@@ -85,8 +86,8 @@ impl CellNode {
 pub struct CellTree<V> {
     root: Aabb<V>,
     nodes: Vec<CellNode>,
-    /// Of the leaves in the order in which they are reached, so that those below a node are in one piece; of
-    /// each leaf ascending.
+    /// Of the leaves in the order in which they are reached, so that those below a node are in one piece. Of
+    /// each leaf those that no other leaf has come first, ascending, then the rest, ascending.
     references: Vec<PrimId>,
     /// Made when it is first asked for: a traversal does not need it.
     whole: OnceLock<Wholes>,
@@ -125,7 +126,8 @@ impl<V: Vector> CellTree<V> {
         // 1. A triangle or segment costs 1 to draw.
         let all = scene.live().iter().map(|&prim| Share { prim, share: 1.0 }).collect();
         making.divide(0, &root, all)?;
-        let Making { mut nodes, references, .. } = making;
+        let Making { mut nodes, mut references, .. } = making;
+        own_first(scene, &mut nodes, &mut references);
         // Children follow their parents.
         for at in (1..nodes.len()).rev() {
             let (parent, lowest) = (nodes[at].parent as usize, nodes[at].lowest);
@@ -145,6 +147,11 @@ impl<V: Vector> CellTree<V> {
     pub fn references(&self, node: NodeId) -> &[PrimId] {
         let node = &self.nodes[node.at()];
         &self.references[node.first as usize..][..node.count as usize]
+    }
+    /// What a leaf refers to: what no other leaf does, and the rest.
+    #[inline]
+    pub fn of_leaf(&self, leaf: NodeId) -> (&[PrimId], &[PrimId]) {
+        self.references(leaf).split_at(self.nodes[leaf.at()].first_child as usize)
     }
     /// The cell of a node, found from the root.
     pub fn cell(&self, node: NodeId) -> Aabb<V> {
@@ -192,9 +199,18 @@ impl<V: Vector> CellTree<V> {
         let references: Vec<PrimId> = references.into_iter().map(PrimId).collect();
         let is_whole = rest.is_empty() && are_a_tree(&nodes, V::AXES, references.len());
         let are_live = references.iter().all(|p| p.at() < scene.prim_count() && scene.corners(*p).is_some());
-        (is_whole && are_live).then(|| {
-            let root = cube_around(&scene.bounds());
-            Self { root, nodes, references, whole: OnceLock::new() }
+        if !(is_whole && are_live) {
+            return None;
+        }
+        // What is said to be met by one leaf alone must be so, or it would be drawn twice.
+        let (mut again, mut sorted) = (nodes.clone(), references.clone());
+        own_first(scene, &mut again, &mut sorted);
+        let root = cube_around(&scene.bounds());
+        (again == nodes && sorted == references).then(|| Self {
+            root,
+            nodes,
+            references,
+            whole: OnceLock::new(),
         })
     }
 }
@@ -234,6 +250,17 @@ fn are_a_tree(nodes: &[CellNode], axes: usize, references: usize) -> bool {
         }
     }
     next == nodes.len()
+}
+
+/// Sorts the references of each leaf: first those to primitives that no other leaf meets.
+fn own_first<S: Space>(scene: &Scene<S>, nodes: &mut [CellNode], references: &mut [PrimId]) {
+    let mut times = vec![0u32; scene.prim_count()];
+    references.iter().for_each(|prim| times[prim.at()] += 1);
+    for node in nodes.iter_mut().filter(|node| node.is_leaf()) {
+        let held = &mut references[node.first as usize..][..node.count as usize];
+        held.sort_unstable_by_key(|prim| (times[prim.at()] > 1, *prim));
+        node.first_child = held.partition_point(|prim| times[prim.at()] == 1) as u32;
+    }
 }
 
 /// A reference to a primitive with the part of its cost that the cell bears.

@@ -14,8 +14,8 @@ use crate::scene::{Progress, Scene};
 pub struct DrawList<S: Space> {
     /// Primitives in the order in which they are drawn; each at most once.
     pub prims: Vec<PrimId>,
-    /// What is drawn in place of others, the nearest first: tested against the depths of the primitives, which
-    /// it leaves as they are.
+    /// What is drawn in place of others, the nearest first: tested against the depths of the primitives,
+    /// which it leaves as they are.
     pub stand_ins: Vec<StandIn<S::Vector>>,
     /// Not so, but both lists in one order, the farthest first, and stand-ins write depths.
     pub in_order: bool,
@@ -53,8 +53,8 @@ impl<S: Drawable> DrawList<S> {
         canvas.clear(view);
         canvas.composite(&self.stand_ins, image, view, options);
     }
-    /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: the images of its two parts from that
-    /// view; `shown`: the light and the background (linear).
+    /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: the images of its two parts from
+    /// that view; `shown`: the light and the background (linear).
     pub fn picture(
         &self,
         scene: &Scene<S>,

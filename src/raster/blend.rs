@@ -16,7 +16,7 @@
 use rayon::prelude::*;
 
 use super::{Drawable, Options, StandIn, Target};
-use crate::geometry::{Aabb, PrimId, Projection, Space, Vector, View};
+use crate::geometry::{Aabb, PrimId, Space, Vector, View};
 use crate::scene::{Scene, Surfaces};
 
 /// A sample is full, and no more is put under it, when less than so much of the light comes through: a
@@ -92,8 +92,9 @@ fn put_under(sample: &mut [f32; 4], face: [f32; 4]) {
 }
 
 /// The rays of a view's samples. Flatland has no third axis and no rows: they are 0.
-struct Rays<V> {
-    projection: Projection<V>,
+struct Rays {
+    /// Image axes across and up, as the projection scales them, and the line of sight.
+    rows: [[f64; 3]; 3],
     eye: [f64; 3],
     near: f64,
     /// The direction of a sample is `origin + column · right + row · down`: along it the view depth grows by
@@ -109,21 +110,22 @@ fn widened<V: Vector>(v: V) -> [f64; 3] {
     std::array::from_fn(|a| if a < V::AXES { f64::from(v.get(a)) } else { 0.0 })
 }
 
-impl<V: Vector> Rays<V> {
-    fn new<S: Space<Vector = V>>(view: &View<S>) -> Self {
-        let projection = view.projection();
+impl Rays {
+    fn new<S: Space>(view: &View<S>) -> Self {
+        let (projection, axes) = (view.projection(), S::Vector::AXES);
         let half = [f64::from(view.width) * 0.5, f64::from(view.height) * 0.5];
         let mut rays = Self {
-            projection,
+            rows: [[0.0; 3], [0.0; 3], widened(projection.rows[axes - 1])],
             eye: widened(projection.eye),
             near: f64::from(view.eye.near),
-            origin: widened(projection.rows[V::AXES - 1]),
+            origin: widened(projection.rows[axes - 1]),
             right: [0.0; 3],
             down: [0.0; 3],
             half,
         };
-        for axis in 0..V::AXES - 1 {
+        for axis in 0..axes - 1 {
             let row = widened(projection.rows[axis]);
+            rays.rows[axis] = row;
             let length = row.iter().map(|c| c * c).sum::<f64>();
             // Rows are square to each other, so dividing by the squared length undoes their scale.
             let sign = if axis == 0 { 1.0 } else { -1.0 };
@@ -138,12 +140,12 @@ impl<V: Vector> Rays<V> {
     /// Columns and rows of a rectangle that no sample outside of which meets a box; it may stick out of the
     /// image.
     #[inline]
-    fn rectangle(&self, min: &[f64; 3], max: &[f64; 3]) -> [[f64; 2]; 2] {
+    fn rectangle<V: Vector>(&self, min: &[f64; 3], max: &[f64; 3]) -> [[f64; 2]; 2] {
         let (mut middle, mut reach) = ([0.0; 3], [0.0; 3]);
-        for a in 0..V::AXES {
+        for a in 0..3 {
             (middle[a], reach[a]) = ((min[a] + max[a]) * 0.5, (max[a] - min[a]) * 0.5);
         }
-        let forward = widened(self.projection.rows[V::AXES - 1]);
+        let forward = self.rows[2];
         let dot = |row: &[f64; 3]| row[0] * middle[0] + row[1] * middle[1] + row[2] * middle[2];
         let spread =
             |row: &[f64; 3]| row[0].abs() * reach[0] + row[1].abs() * reach[1] + row[2].abs() * reach[2];
@@ -153,11 +155,10 @@ impl<V: Vector> Rays<V> {
             return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
         }
         let mut spans = [[self.half[0]; 2], [self.half[1]; 2]];
-        for axis in 0..V::AXES - 1 {
-            let row = widened(self.projection.rows[axis]);
+        for (axis, row) in self.rows[..V::AXES - 1].iter().enumerate() {
             // A point `middle + d` lies at `(row · middle + row · d) / (depth + forward · d)`, which differs
             // from the middle's place `at` by `(row − at · forward) · d / (depth + forward · d)`.
-            let at = dot(&row) / depth;
+            let at = dot(row) / depth;
             let slope = std::array::from_fn(|a| row[a] - at * forward[a]);
             let most = spread(&slope) / nearest;
             let sign = if axis == 0 { 1.0 } else { -1.0 };
@@ -169,7 +170,13 @@ impl<V: Vector> Rays<V> {
 
     /// View depth at which a sample's ray enters a box (relative to the eye), and the number of the face.
     #[inline(always)]
-    fn enter(&self, column: f64, row: f64, min: &[f64; 3], max: &[f64; 3]) -> Option<(f64, usize)> {
+    fn enter<V: Vector>(
+        &self,
+        column: f64,
+        row: f64,
+        min: &[f64; 3],
+        max: &[f64; 3],
+    ) -> Option<(f64, usize)> {
         let (mut enters, mut leaves, mut face) = (f64::NEG_INFINITY, f64::INFINITY, 0);
         for a in 0..V::AXES {
             let along = self.origin[a] + column * self.right[a] + row * self.down[a];
@@ -247,7 +254,7 @@ impl<T, D: Depths> Band<'_, T, D> {
     #[inline]
     fn meet<V: Vector>(
         &mut self,
-        rays: &Rays<V>,
+        rays: &Rays,
         bounds: &Aabb<V>,
         skips: impl Fn(&T) -> bool,
         mut hit: impl FnMut(&mut T, usize),
@@ -257,7 +264,7 @@ impl<T, D: Depths> Band<'_, T, D> {
             min[a] -= rays.eye[a];
             max[a] -= rays.eye[a];
         }
-        let [across, down] = rays.rectangle(&min, &max);
+        let [across, down] = rays.rectangle::<V>(&min, &max);
         let first = self.first as f64;
         let rows = self.samples.len() / self.width.max(1);
         for row in samples_in([down[0] - first, down[1] - first], rows) {
@@ -267,7 +274,7 @@ impl<T, D: Depths> Band<'_, T, D> {
                     continue;
                 }
                 let place = (column as f64, (row + self.first) as f64);
-                let Some((depth, face)) = rays.enter(place.0, place.1, &min, &max) else { continue };
+                let Some((depth, face)) = rays.enter::<V>(place.0, place.1, &min, &max) else { continue };
                 let depth = (1.0 / depth) as f32;
                 if self.depths.is_before(at, depth) {
                     hit(&mut self.samples[at], face);
@@ -277,9 +284,9 @@ impl<T, D: Depths> Band<'_, T, D> {
     }
 }
 
-/// The image of primitives and boxes drawn in the order of a list, the farthest first: each box goes over what
-/// is there and writes its depths, so that what comes later and is farther is lost (Section 5.1). Light comes
-/// through nothing but boxes. Linear colors, row by row; `color` is that of a primitive.
+/// The image of primitives and boxes drawn in the order of a list, the farthest first: each box goes over
+/// what is there and writes its depths, so that what comes later and is farther is lost (Section 5.1). Light
+/// comes through nothing but boxes. Linear colors, row by row; `color` is that of a primitive.
 pub fn draw_in_order<S: Drawable>(
     scene: &Scene<S>,
     view: &View<S>,

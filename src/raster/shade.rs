@@ -16,14 +16,15 @@ const AMBIENT: f32 = 0.35;
 /// Share of a pixel that one see-through primitive covers.
 pub const VEIL: f32 = 0.4;
 
-/// Where the light comes from. Brightness is `0.35 + 0.65 |cos|` of the angle between a primitive's normal and
-/// the direction to it, both sides alike.
+/// Where the light comes from. Brightness is `0.35 + 0.65 |cos|` of the angle between a primitive's normal
+/// and the direction to it, both sides alike.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Light {
     /// From the eye: what faces it is bright.
     #[default]
     Headlight,
-    /// From above and aside, the same from wherever it is seen: what is to be kept in a color has to be lit so.
+    /// From above and aside, the same from wherever it is seen: what is to be kept in a color has to be lit
+    /// so.
     Fixed,
 }
 

@@ -1,8 +1,9 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
+use super::index::CubeTree;
 use crate::drawing::{Drawing, Layer, Role, Subject};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector, View};
-use crate::index::CellTree;
+use crate::index::{CellTree, Hierarchy};
 use crate::method::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
 use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally, Value};
 use crate::raster::CubeFaces;
@@ -15,6 +16,8 @@ pub(crate) enum Evidence<S: Space> {
     Tested(Tested<S>),
     /// A cell's size on the screen against the threshold.
     Sized(Sized),
+    /// How wrong a cell's cube is, against the bound.
+    Erring(Erring),
     /// A color cube was drawn for a cell.
     Cube(CubeDrawn<S::Vector>),
     /// A cell's primitives were drawn, those that no other cell had drawn before.
@@ -35,6 +38,25 @@ pub(crate) struct Sized {
     pub size: f32,
     /// Pixels up to which it is drawn as a cube.
     pub threshold: f32,
+}
+
+/// How wrong a cell's color cube is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Erring {
+    pub node: NodeId,
+    /// Greatest difference of a channel, 0 to 1, from where between the axes it is most wrong.
+    pub error: f32,
+    /// Side of the cell on the screen, pixels.
+    pub size: f32,
+    /// What error times area may be.
+    pub bound: f32,
+}
+
+impl Erring {
+    /// What is compared with the bound.
+    fn of_area(&self) -> f32 {
+        self.error * self.size * self.size
+    }
 }
 
 /// A color cube in place of what a cell holds.
@@ -83,9 +105,13 @@ impl<V: Vector> CubeDrawn<V> {
 }
 
 impl<S: Space> Evidence<S> {
-    /// The primitive that was drawn, if it says that one was.
-    pub(super) fn drawn(&self) -> Option<PrimId> {
-        if let Self::Settled(Settled::Drawn { prim, .. }) = self { Some(*prim) } else { None }
+    /// The primitives that it says were drawn: those of a cell wholly in it, unless each was looked at.
+    pub(super) fn drawn<'a>(&'a self, index: &'a CubeTree<S>, looks_at_each: bool) -> &'a [PrimId] {
+        match self {
+            Self::Settled(Settled::Drawn { prim, .. }) => std::slice::from_ref(prim),
+            Self::Geometry { node, .. } if !looks_at_each => index.prims(*node),
+            _ => &[],
+        }
     }
     /// Draws the evidence in the world.
     pub(super) fn draw(
@@ -103,6 +129,9 @@ impl<S: Space> Evidence<S> {
                 to.bounds(Layer::Emphasis, Role::Current, Subject::Node(n.node), &n.cell);
             }
             Self::Sized(n) => n.draw(&tree.cell(n.node), to),
+            Self::Erring(n) => {
+                to.bounds(Layer::Emphasis, Role::Current, Subject::Node(n.node), &tree.cell(n.node));
+            }
             Self::Geometry { node, .. } => {
                 to.bounds(Layer::Emphasis, Role::Current, Subject::Node(*node), &tree.cell(*node));
             }
@@ -128,6 +157,7 @@ impl<S: Space> Tallied for Evidence<S> {
         match self {
             Self::Tested(n) => n.tally(tally),
             Self::Sized(_) => tally.add("cells_sized", 1),
+            Self::Erring(n) => tally.add("cubes_refused", (n.of_area() > n.bound).into()),
             Self::Cube(_) => tally.add("cubes_drawn", 1),
             Self::Geometry { references, .. } => {
                 tally.add("cells_drawn_as_geometry", 1);
@@ -146,6 +176,7 @@ impl<S: Space> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.kind(),
             Self::Sized(_) => "CellSized",
+            Self::Erring(_) => "CubeMeasured",
             Self::Cube(_) => "CubeDrawn",
             Self::Geometry { .. } => "GeometryDrawn",
             Self::Facing(_) => "OrientationTested",
@@ -157,6 +188,7 @@ impl<S: Space> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.subject(),
             Self::Sized(n) => Subject::Node(n.node),
+            Self::Erring(n) => Subject::Node(n.node),
             Self::Cube(n) => Subject::Node(n.node),
             Self::Geometry { node, .. } => Subject::Node(*node),
             Self::Facing(n) => n.subject(),
@@ -177,6 +209,9 @@ impl<S: Space> Note<S> for Evidence<S> {
         match self {
             Self::Tested(n) => n.compared(context),
             Self::Facing(n) => n.compared(context),
+            Self::Erring(n) => {
+                Some(Compared::of(("error times area", n.of_area().into()), ("bound", n.bound.into())))
+            }
             Self::Sized(n) => {
                 Some(Compared::of(("size in pixels", n.size.into()), ("threshold", n.threshold.into())))
             }
@@ -192,6 +227,12 @@ impl<S: Space> Note<S> for Evidence<S> {
                 number("depth_units", n.depth.into()),
                 number("size_px", n.size.into()),
                 number("threshold_px", n.threshold.into()),
+            ],
+            Self::Erring(n) => vec![
+                integer("node", n.node.0),
+                number("error_ratio", n.error.into()),
+                number("size_px", n.size.into()),
+                number("bound_px", n.bound.into()),
             ],
             Self::Cube(n) => {
                 let channels = |face: usize| n.faces.get(face).map(f64::from);
@@ -218,6 +259,15 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.sentence(context),
             Self::Facing(n) => n.sentence(context),
             Self::Sized(n) => size_sentence(n),
+            Self::Erring(n) => format!(
+                "From where the color cube of node {} is most wrong, it is so by {:.0} % in a channel; times \
+                 its area on the screen that is {} against a bound of {}, so it is {}.",
+                n.node,
+                n.error * 100.0,
+                short(n.of_area()),
+                short(n.bound),
+                if n.of_area() <= n.bound { "drawn" } else { "not drawn" }
+            ),
             Self::Cube(n) => {
                 let facing: Vec<usize> = n.facing(context.view.eye.position).collect();
                 let covers =

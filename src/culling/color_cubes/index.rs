@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use super::Params;
-use super::faces::Baking;
+use super::faces::{Baked, Baking};
 use super::saved;
 use super::space::Projected;
-use crate::geometry::{Aabb, NodeId, PrimId, Space};
+use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::{CellTree, Hierarchy};
 use crate::raster::CubeFaces;
 use crate::scene::{Part, Progress, Scene};
@@ -16,7 +16,9 @@ use crate::scene::{Part, Progress, Scene};
 pub struct CubeTree<S: Space> {
     tree: CellTree<S::Vector>,
     /// Of each node.
-    faces: Vec<CubeFaces>,
+    baked: Baked,
+    /// How many references are in leaves of each level or deeper ones.
+    deep: Vec<u32>,
     key: saved::Key,
 }
 
@@ -33,8 +35,8 @@ impl<S: Projected> CubeTree<S> {
     ) -> Result<Option<Self>, String> {
         let key = saved::key(scene, params);
         if let Some(bytes) = saved {
-            let (tree, faces) = saved::read(bytes, &key, scene)?;
-            return Ok(Some(Self { tree, faces, key }));
+            let (tree, baked) = saved::read(bytes, &key, scene)?;
+            return Ok(Some(Self { deep: deep(&tree), tree, baked, key }));
         }
         progress.report(0.0, "dividing cells");
         let Some(tree) = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled())
@@ -47,9 +49,20 @@ impl<S: Projected> CubeTree<S> {
             side: params.face_samples,
             composes: params.composes(),
         };
-        let faces = baking.bake(&tree, &Part { whole: progress, start: 0.5, length: 0.5 });
-        Ok(faces.map(|faces| Self { tree, faces, key }))
+        let part = Part { whole: progress, start: 0.5, length: 0.5 };
+        let baked = baking.bake(&tree, params.measures(), &part);
+        Ok(baked.map(|baked| Self { deep: deep(&tree), tree, baked, key }))
     }
+}
+
+/// How many references are in leaves of each level or deeper ones.
+fn deep<V: Vector>(tree: &CellTree<V>) -> Vec<u32> {
+    let mut counts = vec![0; CellTree::<V>::MOST_LEVELS as usize];
+    for leaf in tree.nodes().iter().filter(|node| node.is_leaf()) {
+        let reached = &mut counts[..=usize::from(leaf.level)];
+        reached.iter_mut().for_each(|count| *count += leaf.reference_count() as u32);
+    }
+    counts
 }
 
 /// Section 4: a leaf is small enough when its primitives cost no more than the cubes of the children that it
@@ -63,10 +76,19 @@ impl<S: Space> CubeTree<S> {
     pub fn tree(&self) -> &CellTree<S::Vector> {
         &self.tree
     }
+    /// Which part of all references is in leaves of a level or deeper ones.
+    pub fn share_below(&self, level: usize) -> f32 {
+        self.deep.get(level).map_or(0.0, |count| *count as f32 / self.deep[0].max(1) as f32)
+    }
     /// The faces of a cell's color cube.
     #[inline]
     pub fn faces(&self, node: NodeId) -> &CubeFaces {
-        &self.faces[node.at()]
+        &self.baked.faces[node.at()]
+    }
+    /// How wrong it is, from where it is most so: 0 to 1. Nothing where that was not asked for.
+    #[inline]
+    pub fn error(&self, node: NodeId) -> Option<f32> {
+        self.baked.errors.get(node.at()).copied()
     }
 }
 
@@ -93,9 +115,9 @@ impl<S: Space> Hierarchy<S> for CubeTree<S> {
         Hierarchy::<S>::held(&self.tree, node)
     }
     fn bytes(&self) -> usize {
-        self.tree.bytes() + size_of_val(&*self.faces)
+        self.tree.bytes() + size_of_val(&*self.baked.faces) + size_of_val(&*self.baked.errors)
     }
     fn save(&self) -> Option<Vec<u8>> {
-        Some(saved::write(&self.key, &self.tree, &self.faces))
+        Some(saved::write(&self.key, &self.tree, &self.baked))
     }
 }

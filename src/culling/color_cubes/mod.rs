@@ -1,7 +1,7 @@
 //! `color-cubes`: cells that are small on the screen are drawn as cubes of a few colors.
 //!
-//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, "Fast Rendering of Complex Environments Using a Spatial
-//! Hierarchy", Graphics Interface 1996, <https://doi.org/10.20380/GI1996.15>. Once (Section 4):
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, "Fast Rendering of Complex Environments Using a
+//! Spatial Hierarchy", Graphics Interface 1996, <https://doi.org/10.20380/GI1996.15>. Once (Section 4):
 //!
 //! 1. an octree is built, until drawing a leaf costs no more than drawing cubes for its parts
 //!    ([`crate::index::CellTree`]);
@@ -13,9 +13,9 @@
 //! other is visited child by child. What the cubes look like over each other and over geometry:
 //! [`crate::raster::Canvas`].
 //!
-//! It leaves nothing out, but stands cubes for what they are [`crate::method::Verdict::Approximated`] by; with a
-//! threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`]. Cost: O(cells
-//! visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
+//! It leaves nothing out, but stands cubes for what they are [`crate::method::Verdict::Approximated`] by;
+//! with a threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`].
+//! Cost: O(cells visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
 
 mod code;
 mod evidence;
@@ -53,6 +53,7 @@ pub(crate) struct Params {
     tree_levels: u32,
     face_samples: u32,
     interior: Interior,
+    error_bound: f32,
     order: Order,
     surfaces: Surfaces,
 }
@@ -66,6 +67,8 @@ impl Default for Params {
             // Section 4: "typically, 4×4 pixels".
             face_samples: 4,
             interior: Interior::default(),
+            // The paper has no such bound.
+            error_bound: 0.0,
             order: Order::default(),
             surfaces: Surfaces::default(),
         }
@@ -93,6 +96,10 @@ words! {
 }
 
 impl Params {
+    /// Whether it is measured how wrong cubes are.
+    fn measures(&self) -> bool {
+        self.error_bound > 0.0
+    }
     fn composes(&self) -> bool {
         self.interior == Interior::Composed
     }
@@ -151,6 +158,15 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Section 4",
         );
         knobs.words(interior, &mut params.interior);
+        let bound = Knob::new(
+            "error-bound",
+            "pixels",
+            "a cell is drawn as its cube only if it is wrong by no more than this: its error, 0 to 1, from \
+             where between the axes it is most so, times its area in pixels. Surfaces that would be torn stay \
+             geometry; 0: errors are not measured, and no cell is refused",
+            "Chamberlain et al. 1996, Sections 5.1 and 6",
+        );
+        knobs.real(bound, 0.0..=100.0, &mut params.error_bound);
         let order = Knob::new(
             "order",
             "",

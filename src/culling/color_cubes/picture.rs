@@ -18,12 +18,16 @@ pub(super) const PICTURES: &[&str] = &["Image so far", "How a face is made", "Si
 
 type At<'a, 'b, S> = &'a Moment<'b, S, ColorCubes>;
 
+/// How many cubes are shown in the world, the nearest: more are too many to be drawn at every step.
+const MOST_SHOWN: usize = 3000;
+
 /// Draws the cubes that were drawn so far in the world, the farthest first, and the note's own evidence.
 pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
     let eye = moment.frame.view.eye.position;
-    let cubes =
-        moment.notes.iter().rev().filter_map(|n| if let Evidence::Cube(c) = n { Some(c) } else { None });
-    for cube in cubes {
+    let cubes = moment.notes.iter().filter_map(|n| if let Evidence::Cube(c) = n { Some(c) } else { None });
+    // Those that come later are behind.
+    let cubes: Vec<_> = cubes.take(MOST_SHOWN).collect();
+    for cube in cubes.into_iter().rev() {
         for face in cube.facing(eye) {
             let rgba = bytes(cube.faces.get(face));
             let mark = Mark::Swatch { points: corners(&cube.cell, face), rgba };
@@ -82,12 +86,15 @@ fn so_far<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let (scene, view) = (moment.frame.scene, moment.frame.view);
     let (mut prims, mut boxes) = (Vec::new(), Vec::<StandIn<S::Vector>>::new());
     for note in moment.notes {
-        prims.extend(note.drawn());
+        prims.extend_from_slice(note.drawn(moment.frame.index, moment.frame.params.surfaces.one_sided));
         if let Evidence::Cube(c) = note {
             boxes.push(StandIn { node: c.node, bounds: c.cell, faces: c.faces, after: prims.len() as u32 });
         }
     }
     let (mut to, mut canvas, white) = (Drawing::default(), Canvas::default(), [1.0; 3]);
+    // What leaves below one cell share is told twice.
+    prims.sort_unstable();
+    prims.dedup();
     let image = render(scene, view, &prims);
     canvas.clear(view);
     canvas.composite(&boxes, &image, view, &Options::default());

@@ -1,6 +1,8 @@
-//! The tree and its faces as bytes, so that they are made once: nodes, references, and six faces a node.
+//! The tree and its faces as bytes, so that they are made once: nodes, references, six faces a node, and their
+//! errors if they were measured.
 
 use super::Params;
+use super::faces::Baked;
 use crate::culling::saved::{self, Format, damaged};
 use crate::geometry::{Space, Vector};
 use crate::index::CellTree;
@@ -9,32 +11,36 @@ use crate::scene::Scene;
 
 const FORMAT: Format = Format { magic: b"cullscope-c1", method: "color-cubes", has_bytes: false };
 
-/// What a tree was made for: levels at most, samples of a face, whether inner faces are composed, and how
-/// surfaces are taken.
-pub type Key = saved::Key<4>;
+/// What a tree was made for: levels at most, samples of a face, whether inner faces are composed, whether
+/// errors are measured, and how surfaces are taken.
+pub type Key = saved::Key<5>;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     // Only what the tree depends on: the threshold is a matter of the frame.
     let surfaces = u32::from(params.surfaces.one_sided) | u32::from(params.surfaces.solid) << 1;
-    let params = [params.tree_levels, params.face_samples, params.composes().into(), surfaces];
+    let (composes, measures) = (params.composes().into(), params.measures().into());
+    let params = [params.tree_levels, params.face_samples, composes, measures, surfaces];
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, samples, composed, surfaces]: [u32; 4]) -> String {
+fn describe([levels, samples, composed, measured, surfaces]: [u32; 5]) -> String {
     format!(
-        "tree-levels={levels} face-samples={samples} interior={} backface-culling={} see-through={}",
+        "tree-levels={levels} face-samples={samples} interior={} error-bound={} backface-culling={} \
+         see-through={}",
         if composed == 1 { "composed" } else { "direct" },
+        if measured == 1 { "above 0" } else { "0" },
         surfaces & 1 == 1,
         if surfaces & 2 == 2 { "solid" } else { "clear" }
     )
 }
 
 /// Bytes of a tree with its faces.
-pub fn write<V: Vector>(key: &Key, tree: &CellTree<V>, faces: &[CubeFaces]) -> Vec<u8> {
+pub fn write<V: Vector>(key: &Key, tree: &CellTree<V>, baked: &Baked) -> Vec<u8> {
     let [nodes, references] = tree.tables();
-    let faces: Vec<u32> = faces.iter().flat_map(|f| f.bytes().map(u32::from_le_bytes)).collect();
-    FORMAT.write(key, &[&nodes, &references, &faces], &[])
+    let faces: Vec<u32> = baked.faces.iter().flat_map(|f| f.bytes().map(u32::from_le_bytes)).collect();
+    let errors: Vec<u32> = baked.errors.iter().map(|e| e.to_bits()).collect();
+    FORMAT.write(key, &[&nodes, &references, &faces, &errors], &[])
 }
 
 /// The tree of some bytes with its faces.
@@ -45,8 +51,8 @@ pub fn read<S: Space>(
     bytes: &[u8],
     key: &Key,
     scene: &Scene<S>,
-) -> Result<(CellTree<S::Vector>, Vec<CubeFaces>), String> {
-    let ([nodes, references, faces], _) = FORMAT.read::<4, 3>(bytes, key, describe)?;
+) -> Result<(CellTree<S::Vector>, Baked), String> {
+    let ([nodes, references, faces, errors], _) = FORMAT.read::<5, 4>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit.
     let tree = CellTree::of_tables(scene, &nodes, references).ok_or_else(damaged)?;
     let (cubes, rest) = faces.as_chunks::<6>();
@@ -54,5 +60,10 @@ pub fn read<S: Space>(
     let cubes: Option<Vec<CubeFaces>> = cubes.iter().map(of).collect();
     let fits = |cubes: &Vec<CubeFaces>| rest.is_empty() && cubes.len() == tree.nodes().len();
     let cubes = cubes.filter(fits).ok_or_else(damaged)?;
-    Ok((tree, cubes))
+    let errors: Vec<f32> = errors.into_iter().map(f32::from_bits).collect();
+    let count = if key.params[3] == 1 { cubes.len() } else { 0 };
+    if errors.len() != count || !errors.iter().all(|e| (0.0..=1.0).contains(e)) {
+        return Err(damaged());
+    }
+    Ok((tree, Baked { faces: cubes, errors }))
 }

@@ -10,8 +10,8 @@ pub trait Projected: Cellular + Drawable {
     const CUBE_COST: u32;
     /// Samples of a face that has so many along a side.
     fn sample_count(side: u32) -> usize;
-    /// Calls `visit` with each sample of a face of a cell that a primitive covers, seen along an axis, and how
-    /// far it is above the lower face there: 0 to the cell's size.
+    /// Calls `visit` with each sample of a face of a cell that a primitive covers, seen along an axis, and
+    /// how far it is above the lower face there: 0 to the cell's size.
     fn cover(
         corners: &[Self::Vector],
         cell: &Aabb<Self::Vector>,
@@ -21,7 +21,8 @@ pub trait Projected: Cellular + Drawable {
     );
 }
 
-/// The samples of a row of `side` over a face of this size whose centers can lie in a span from its lower end.
+/// The samples of a row of `side` over a face of this size whose centers can lie in a span from its lower
+/// end.
 fn samples_in([low, high]: [f64; 2], size: f64, side: u32) -> std::ops::Range<u32> {
     let at = |v: f64| (v / size * f64::from(side) - 0.5).clamp(-1.0, f64::from(side));
     // One more on each side, for the rounding: the centers themselves decide.

@@ -1,7 +1,7 @@
 //! The traversal of one frame (Section 3).
 
 use super::code::line;
-use super::evidence::{CubeDrawn, Evidence, Settled, Sized};
+use super::evidence::{CubeDrawn, Erring, Evidence, Settled, Sized};
 use super::index::CubeTree;
 use super::{Order, Params};
 use crate::drawing::Subject;
@@ -11,6 +11,10 @@ use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::StandIn;
 use crate::scene::Scene;
+
+/// What part of the scene must be in cells that can be drawn as cubes, for the visit to pay. To visit cells,
+/// and to draw each primitive of theirs once, costs about as much as drawing a tenth of the primitives.
+const WORTH_IT: f32 = 0.1;
 
 /// A mark for each primitive.
 #[derive(Default)]
@@ -126,12 +130,13 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let size = if depth > self.view.eye.near { side / depth } else { f32::INFINITY };
         let threshold = self.params.pixel_threshold;
         self.watch.note(move || Evidence::Sized(Sized { node: id, depth, size, threshold }));
-        if size <= threshold {
+        if size <= threshold && self.is_good(id, size) {
             return self.draw_cube(id, cell);
         }
         self.line(line::LEAF);
         if node.is_leaf() || cutting == 0 && self.needs_geometry(node, depth) {
             self.line(line::CALL_DRAW);
+            self.line(line::DRAW);
             self.draw_geometry(id);
             self.line(line::CALL_DRAW);
             let prims = self.tree.references(id).len();
@@ -146,6 +151,15 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn leave(&mut self, id: NodeId, verdict: Verdict) {
         self.watch.event(Event::DecidedNode(id, verdict));
         self.watch.event(Event::Left(id));
+    }
+
+    /// Whether a cell's cube is no more wrong than the bound says, where there is one.
+    fn is_good(&mut self, id: NodeId, size: f32) -> bool {
+        let Some(error) = self.index.error(id) else { return true };
+        self.line(line::ERROR);
+        let bound = self.params.error_bound;
+        self.watch.note(move || Evidence::Erring(Erring { node: id, error, size, bound }));
+        error * size * size <= bound
     }
 
     /// Draws a cell's color cube in place of all that it holds.
@@ -163,12 +177,19 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.leave(id, Verdict::Approximated);
     }
 
-    /// Whether even the smallest cell below one is larger than the threshold, wherever in it.
+    /// Whether it is no use to look below a cell that is wholly in view: even the smallest cells there are
+    /// larger than the threshold, wherever they are; or, of the whole scene, too few are not.
     fn needs_geometry(&self, node: &CellNode, depth: f32) -> bool {
         let side = self.sides[usize::from(node.level)];
         // A cell's farthest point lies half a side on from its center, on each axis.
         let farthest = depth + side * self.pixels_of_half * self.spread;
-        self.sides[usize::from(node.lowest)] > self.params.pixel_threshold * farthest
+        // A cell that is small enough may be refused, and so may all below it.
+        let most = self.params.pixel_threshold * farthest;
+        if node.level == 0 {
+            let level = self.sides.iter().position(|side| *side <= most).unwrap_or(usize::MAX);
+            return self.index.share_below(level) < WORTH_IT;
+        }
+        self.sides[usize::from(node.lowest)] > most
     }
 
     fn visit_children(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
@@ -196,30 +217,47 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
 
     /// DrawGeometry: what the leaves at and below a cell refer to, each once a frame.
     fn draw_geometry(&mut self, id: NodeId) {
-        self.line(line::DRAW);
-        let (tree, scene, eye) = (self.tree, self.scene, self.view.eye.position);
-        for &prim in tree.references(id) {
-            self.line(line::EACH);
-            // With one cell nothing is shared.
-            if self.params.tree_levels > 1 {
-                self.line(line::ONCE);
-            }
-            if self.done.mark(prim) {
-                continue;
-            }
-            if self.params.surfaces.one_sided {
-                self.line(line::FACES_AWAY);
-                self.watch.note(move || Evidence::Facing(Facing::of(prim)));
-                if scene.faces_away(prim, eye) {
-                    self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
-                    continue;
-                }
-            }
-            self.line(line::DRAW_PRIM);
-            self.watch.note(move || Evidence::Settled(Settled::Drawn { prim, node: id }));
-            self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
-            self.out.prims.push(prim);
+        let (tree, scene) = (self.tree, self.scene);
+        let node = &tree.nodes()[id.at()];
+        let looks_at_each = self.params.surfaces.one_sided;
+        if id == NodeId(0) && !looks_at_each {
+            // All of the scene: nothing is left to be shared.
+            self.line(line::OWN);
+            return self.out.prims.extend_from_slice(scene.live());
         }
+        if !node.is_leaf() {
+            return node.children().for_each(|child| self.draw_geometry(NodeId(child)));
+        }
+        // The verdict about the cell is about these as well: no other one can have drawn them.
+        let (own, shared) = tree.of_leaf(id);
+        if looks_at_each {
+            own.iter().for_each(|&prim| self.draw(prim, id));
+        } else {
+            self.line(line::OWN);
+            self.out.prims.extend_from_slice(own);
+        }
+        for &prim in shared {
+            self.line(line::EACH);
+            self.line(line::ONCE);
+            if !self.done.mark(prim) {
+                self.draw(prim, id);
+            }
+        }
+    }
+
+    /// Draws a primitive with a leaf, unless it faces away.
+    fn draw(&mut self, prim: PrimId, id: NodeId) {
+        if self.params.surfaces.one_sided {
+            self.line(line::FACES_AWAY);
+            self.watch.note(move || Evidence::Facing(Facing::of(prim)));
+            if self.scene.faces_away(prim, self.view.eye.position) {
+                return self.watch.event(Event::DecidedPrim(prim, Verdict::FacesAway));
+            }
+        }
+        self.line(line::DRAW_PRIM);
+        self.watch.note(move || Evidence::Settled(Settled::Drawn { prim, node: id }));
+        self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
+        self.out.prims.push(prim);
     }
 
     /// Says what became of the primitives that the children of a cell share, now that all of them are done.

@@ -50,8 +50,8 @@ fn cells_along_a_ray_are_composited_front_to_back() {
     assert!((0..3).all(|c| (back[c] - seen[c]).abs() < 1e-6) && (1.0 - back[3] - seen[3]).abs() < 1e-6);
 }
 
-/// An opaque wall of cells of 0.7 pixels, turned at random: no sample within its outline shows the background,
-/// and none is met twice.
+/// An opaque wall of cells of 0.7 pixels, turned at random: no sample within its outline shows the
+/// background, and none is met twice.
 #[test]
 fn a_wall_of_cells_has_no_crack_and_no_seam() {
     let (count, mut dice) = (24, Dice::new(7));
@@ -129,7 +129,8 @@ fn the_face_toward_the_eye_is_drawn() {
 }
 
 /// Section 5.1: what of a translucent cell is seen depends on the geometry about it. Green at depth 6, a red
-/// half-covered face at depth 5: half of each. A face at depth 7 is hidden, a green pane at depth 4 hides all.
+/// half-covered face at depth 5: half of each. A face at depth 7 is hidden, a green pane at depth 4 hides
+/// all.
 #[test]
 fn cells_are_tested_against_geometry_whatever_the_order() {
     let view = straight_view(5, 0.1, 100.0);
@@ -154,7 +155,8 @@ fn cells_are_tested_against_geometry_whatever_the_order() {
     let near = painted(5.0);
     assert!((0..3).all(|c| near[middle + c].abs_diff(half[c]) <= 1), "{:?}", &near[middle..middle + 4]);
     assert_eq!(painted(7.0), shade(&image, &scene, &view, [0.0; 3]), "a hidden cell leaves no trace");
-    // The paper's pass, back to front, the cube writing its depth: on black the green is lost if it comes later.
+    // The paper's pass, back to front, the cube writing its depth: on black the green is lost if it comes
+    // later.
     let in_order = |after: u32| {
         let boxes = [StandIn { after, ..face(5.0) }];
         draw_in_order(&scene, &view, (scene.live(), &boxes), [0.0; 3], |_| [0.0, 1.0, 0.0])[12]

@@ -147,7 +147,7 @@ const SWATCH: u32 = 0x80000000u;
 @fragment fn fs_area(in: Area) -> @location(0) vec4<f32> {
     if (in.role & SWATCH) != 0u {
         let c = vec3<f32>(vec3<u32>(in.role >> 16u, in.role >> 8u, in.role) & vec3<u32>(255u)) / 255.0;
-        let opacity = f32(in.role >> 24u & 127u) / 127.0;
+        let opacity = f32((in.role >> 24u) & 127u) / 127.0;
         return vec4<f32>(c * opacity, opacity);
     }
     let fill = f.area[in.role];

@@ -1,5 +1,5 @@
-//! Figures of Chamberlain et al., "Fast Rendering of Complex Environments Using a Spatial Hierarchy", Graphics
-//! Interface 1996, made anew.
+//! Figures of Chamberlain et al., "Fast Rendering of Complex Environments Using a Spatial Hierarchy",
+//! Graphics Interface 1996, made anew.
 
 mod notes;
 
@@ -36,15 +36,16 @@ const MAKING: usize = 1;
 pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("forest")?;
     let view = View { width: 96, ..eye(&scene, 0) };
-    let film = maker.film(&scene, &view, COLOR_CUBES, &[]);
+    let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "12")]);
     let (cubes, leaves) = (cubes(&*film), leaves(&*film));
     let label = format!("{cubes} cells drawn as color cubes, {leaves} as geometry");
     let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
     let caption = format!(
-        "A forest from above, seen in a line of {} pixels. Near the eye cells are larger than a pixel and are \
-         divided down to leaves, which are drawn as geometry; farther off cells of ever greater size are \
-         drawn as their color cubes, in the colors of the edges that face the eye; what is outside the view is \
-         culled, a whole cell at a time. As in the paper's Figure 1 each level takes up a band about the eye.",
+        "A forest from above, seen in a line of {} pixels. The threshold is 12 pixels, so that cubes are large \
+         enough to be looked at. Near the eye cells are larger and are divided down to leaves, which are drawn \
+         as geometry; farther off cells of ever greater size are drawn as their color cubes, in the colors of \
+         the edges that face the eye; what is outside the view is culled, a whole cell at a time. As in the \
+         paper's Figure 1 each level takes up a band about the eye.",
         view.width
     );
     Ok(maker.page(
@@ -59,7 +60,7 @@ pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("forest")?;
     let view = View { width: 96, ..eye(&scene, 0) };
-    let film = maker.film(&scene, &view, COLOR_CUBES, &[]);
+    let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "30")]);
     let content = film.picture(step_of_inner_cell(&*film), MAKING, DepthScale::Linear);
     let caption = "The faces of a cell of flatland, which has four children. For each face there are two \
                    columns: the front child's face, above, goes over the back one's, below it, and the mean \
