@@ -13,6 +13,8 @@ mod gltf;
 mod gltf_files;
 #[path = "broken/materials.rs"]
 mod materials;
+#[path = "broken/molecules.rs"]
+mod molecules;
 #[path = "broken/obj.rs"]
 mod obj;
 

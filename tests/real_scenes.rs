@@ -55,6 +55,24 @@ fn shipped_models_load_whole() {
     }
 }
 
+/// The protein of `scenes3d`: its SOURCE.txt counts 6,508 atoms in first positions, 93 in second ones, 636
+/// waters, and no hydrogen; its views are 60 around and 60 on an approach.
+#[test]
+fn the_shipped_molecule_is_a_ball_an_atom() {
+    let scene = solid(&home().join("scenes3d/pdb_3hsy/3hsy.pdb"));
+    assert_eq!((scene.objects().len(), scene.live().len()), (6_508, 6_508 * 800));
+    assert_eq!(scene.paths()[0].views.len(), 120);
+    let waters = scene.objects().iter().filter(|o| o.group == "water").count();
+    assert_eq!(waters, 636);
+    let said = &scene.report().notes;
+    assert!(said[0].ends_with("636 atoms of water, in the group `water`"), "{said:?}");
+    assert!(said[1].contains("93 atoms in alternate positions left out"), "{said:?}");
+    assert!(said[2].starts_with("6508 atoms: C ") && said[2].contains(", S "), "{said:?}");
+    // The box of the coordinates, and a radius of at most 1.8 Å around it.
+    let (low, high) = (scene.bounds().min, scene.bounds().max);
+    assert!(low.x > -26.7 - 1.8 && low.x < -26.6 - 1.5 && high.z > 24.0 + 1.5 && high.z < 24.1 + 1.8);
+}
+
 /// Corners of all triangles, in order.
 fn corners(scene: &Scene<Solid>) -> Vec<[f32; 3]> {
     let points = scene.live().iter().flat_map(|&p| scene.prim_points(p));

@@ -203,7 +203,7 @@ fn entries(folder: &Path) -> Vec<PathBuf> {
 
 fn is_scene(path: &Path) -> bool {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let is_model = [".obj", ".gltf", ".glb"].iter().any(|e| name.ends_with(e));
+    let is_model = [".obj", ".gltf", ".glb", ".pdb", ".xyz"].iter().any(|e| name.ends_with(e));
     is_model
         || (name.ends_with(".json") && !name.ends_with(".views.json") && !name.ends_with(".session.json"))
 }

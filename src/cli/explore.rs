@@ -15,7 +15,7 @@ use crate::scene::file_of;
                   cullscope explore model.obj --view walk.views.json"
 )]
 pub(super) struct Args {
-    /// Scene to open: .obj, .gltf, .glb, a flatland .json, or generate:NAME[?key=value&…]
+    /// Scene to open: .obj, .gltf, .glb, .pdb, .xyz, a flatland .json, or generate:NAME[?key=value&…]
     scene: Option<String>,
     /// Method to start with; `cullscope methods` lists them
     #[arg(long, value_name = "METHOD")]

@@ -42,8 +42,8 @@ impl<S: Methods + Drawable> World for S {}
     about = "A visual explorer and step-through debugger of visibility culling",
     after_help = "Examples:\n  cullscope                                     open the explorer\n  cullscope \
                   cull model.obj --method frustum --truth\n  cullscope step scenes2d/street.json --method \
-                  frustum | head\n\nA SCENE is a path to .obj, .gltf, .glb or a flatland .json, or \
-                  generate:NAME[?key=value&…].",
+                  frustum | head\n\nA SCENE is a path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, \
+                  or generate:NAME[?key=value&…].",
     disable_help_subcommand = true
 )]
 struct Cli {

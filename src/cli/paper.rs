@@ -33,8 +33,8 @@ pub(super) struct Args {
     /// List the tables instead
     #[arg(long)]
     list: bool,
-    /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]; may be given several
-    /// times [default: generated scenes that are likened to the paper's]
+    /// A path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME[?key=value&…]; may be
+    /// given several times [default: generated scenes that are likened to the paper's]
     #[arg(long, value_name = "SCENE")]
     scene: Vec<String>,
     /// Frames that are measured on each scene

@@ -19,7 +19,7 @@ use crate::scene::{
 /// What `cull` and `step` look at, and with what.
 #[derive(clap::Args)]
 pub(super) struct SceneArgs {
-    /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]
+    /// A path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME[?key=value&…]
     #[arg(value_name = "SCENE")]
     scene: String,
     /// A method; `cullscope methods` lists them
@@ -44,7 +44,7 @@ pub(super) enum Command {
         after_help = "Example:\n  cullscope scene info scenes3d/freedoom_e1m1/freedoom_e1m1.obj --json"
     )]
     Info {
-        /// A path to .obj, .gltf, .glb or a flatland .json, or generate:NAME[?key=value&…]
+        /// A path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME[?key=value&…]
         #[arg(value_name = "SCENE")]
         scene: String,
         /// Print JSON instead of text
@@ -128,7 +128,7 @@ fn explained(source: &str, error: SceneError) -> CliError {
             `{near}`?"
         )),
         None if missing => CliError::work(source, "there is no such file").with_help(
-            "a scene is a path to .obj, .gltf, .glb or a flatland .json, or generate:NAME (see \
+            "a scene is a path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME (see \
                         `cullscope scene generators`)",
         ),
         None => error.into(),

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::source::{JSON_LIMIT_BYTES, LoadOptions, MODEL_LIMIT_BYTES, stem};
+use super::source::{JSON_LIMIT_BYTES, LoadOptions, MODEL_LIMIT_BYTES, MOLECULE_LIMIT_BYTES, stem};
 use super::text::{read_file, stand_in};
-use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, views};
+use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, pdb, views, xyz};
 
-/// Loads a scene: a path to `.obj`, `.gltf`, `.glb` or a flatland `.json`, or `generate:NAME[?key=value&…]`.
+/// Loads a scene: a path to `.obj`, `.gltf`, `.glb`, a molecule (`.pdb`, `.xyz`) or a flatland `.json`, or
+/// `generate:NAME[?key=value&…]`.
 /// Of several scenes in a glTF file `PATH?scene=NUMBER` chooses one.
 ///
 /// # Errors
@@ -52,23 +53,30 @@ pub fn load_bytes(
     match kind_of(source) {
         Some(_) if let Some(why) = stand_in(bytes) => Err(format(why)),
         Some(kind) => read(kind, bytes, None, source, options, progress),
-        None => Err(SceneError::Format { path: source.to_owned(), why: unread(Path::new(source)) }),
+        None => Err(SceneError::Format { path: source.to_owned(), why: unread() }),
     }
 }
 
 /// What can be read.
-const KNOWN: &str = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
+const KNOWN: &str =
+    "a scene is a path to .obj, .gltf, .glb, .pdb, .xyz or .json (flatland), or generate:NAME";
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Obj,
     Gltf,
+    Pdb,
+    Xyz,
     Flat,
 }
 
 impl Kind {
     fn limit_bytes(self) -> u64 {
-        if self == Self::Flat { JSON_LIMIT_BYTES } else { MODEL_LIMIT_BYTES }
+        match self {
+            Self::Obj | Self::Gltf => MODEL_LIMIT_BYTES,
+            Self::Pdb | Self::Xyz => MOLECULE_LIMIT_BYTES,
+            Self::Flat => JSON_LIMIT_BYTES,
+        }
     }
 }
 
@@ -85,6 +93,8 @@ fn kind_of(source: &str) -> Option<Kind> {
     match extension.as_str() {
         "obj" => Some(Kind::Obj),
         "gltf" | "glb" => Some(Kind::Gltf),
+        "pdb" => Some(Kind::Pdb),
+        "xyz" => Some(Kind::Xyz),
         "json" => Some(Kind::Flat),
         _ => None,
     }
@@ -107,6 +117,8 @@ fn read(
         Kind::Flat => return flat::read(bytes, source, options).map(AnyScene::from),
         Kind::Obj => obj::read(bytes, folder, &name, source, options, progress)?,
         Kind::Gltf => gltf::read(bytes, folder, &name, source, scene, options, progress)?,
+        Kind::Pdb => pdb::read(bytes, &name, source, options, progress)?,
+        Kind::Xyz => xyz::read(bytes, &name, source, options, progress)?,
     };
     Scene::new(parts).map(AnyScene::from)
 }
@@ -118,14 +130,10 @@ fn unknown_kind(path: &Path) -> String {
     if !path.exists() {
         return format!("no such file, and no kind of scene either; {KNOWN}");
     }
-    unread(path)
+    unread()
 }
 
 /// Why a file of this name is not read.
-fn unread(path: &Path) -> String {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    match extension.as_str() {
-        "pdb" | "xyz" => format!("molecules (.{extension}) cannot be read yet; {KNOWN}"),
-        _ => format!("this kind of file cannot be read; {KNOWN}"),
-    }
+fn unread() -> String {
+    format!("this kind of file cannot be read; {KNOWN}")
 }

@@ -5,6 +5,8 @@
 
 mod about;
 mod assemble;
+mod atoms;
+mod circle;
 mod example;
 mod flat;
 mod generate;
@@ -17,6 +19,7 @@ mod mtl;
 mod obj;
 mod palette;
 mod paths;
+mod pdb;
 mod polygon;
 mod pose;
 mod progress;
@@ -28,6 +31,7 @@ mod source;
 mod surfaces;
 mod text;
 mod views;
+mod xyz;
 
 pub use about::{About, Expectation};
 pub use assemble::MAX_PRIMS;

@@ -4,6 +4,8 @@ use std::path::Path;
 
 /// Longest model file, bytes. Tables take up to about 14 times the file (a face of two bytes a corner).
 pub(super) const MODEL_LIMIT_BYTES: u64 = 2 << 30;
+/// Longest file of a molecule, bytes.
+pub(super) const MOLECULE_LIMIT_BYTES: u64 = 512 << 20;
 /// Longest flatland scene or view file, bytes.
 pub(super) const JSON_LIMIT_BYTES: u64 = 256 << 20;
 

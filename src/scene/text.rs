@@ -100,6 +100,11 @@ impl<'a> Lines<'a> {
     pub(super) fn left_bytes(&self) -> usize {
         self.rest.len()
     }
+    /// The next physical line, as it is, and its number.
+    pub(super) fn plain(&mut self) -> Option<(usize, &'a [u8])> {
+        let line = self.physical()?;
+        Some((self.number, line))
+    }
     fn physical(&mut self) -> Option<&'a [u8]> {
         if self.rest.is_empty() {
             return None;

@@ -34,7 +34,7 @@ impl Chooser {
         std::thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
                 .set_title("Open a scene")
-                .add_filter("Scenes", &["obj", "gltf", "glb", "json"]);
+                .add_filter("Scenes", &["obj", "gltf", "glb", "pdb", "xyz", "json"]);
             let _ = send.send(dialog.pick_file().map(|p| p.to_string_lossy().into_owned()));
         });
     }
@@ -212,7 +212,9 @@ fn go_to(state: &State, typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, an
 
 fn open(typing: &mut Typing, ui: &mut egui::Ui, is_new: bool, answers: &mut Answers) {
     ui.heading("Open a scene");
-    ui.label("A path to .obj, .gltf, .glb, a flatland .json or a session file, or generate:NAME.");
+    ui.label(
+        "A path to .obj, .gltf, .glb, .pdb, .xyz, a flatland .json or a session file, or generate:NAME.",
+    );
     let response = field(ui, &mut typing.text, "Path of the scene", "scenes2d/street.json", is_new);
     let enter = entered(ui, &response);
     ui.horizontal(|ui| {

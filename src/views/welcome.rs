@@ -26,7 +26,7 @@ pub fn show(state: &State, kept: &mut Option<Vec<Example>>, ui: &mut egui::Ui, a
                 ui.add_space(12.0);
             }
             super::action_button(state, ui, Action::Open, "Open a scene…", answers);
-            ui.weak("or drop a file here: .obj, .gltf, .glb, flatland .json, a session");
+            ui.weak("or drop a file here: .obj, .gltf, .glb, .pdb, .xyz, flatland .json, a session");
             ui.add_space(12.0);
         });
         let columns = ((ui.available_width() / (CARD.x + GAP)) as usize).clamp(1, 5);

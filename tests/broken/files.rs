@@ -31,14 +31,9 @@ fn files_that_cannot_be_scenes_are_refused() {
     let home = folder("kinds");
     fs::write(home.join("photo.jpeg"), b"x").expect("written");
     fs::create_dir(home.join("folder.obj")).expect("made");
-    let known = "a scene is a path to .obj, .gltf, .glb or .json (flatland), or generate:NAME";
+    let known = "a scene is a path to .obj, .gltf, .glb, .pdb, .xyz or .json (flatland), or generate:NAME";
     assert_eq!(refused(&home), format!("IT: is a folder; {known}"));
     assert_eq!(refused(&home.join("photo.jpeg")), format!("IT: this kind of file cannot be read; {known}"));
-    for extension in ["pdb", "xyz"] {
-        let path = home.join(format!("water.{extension}"));
-        fs::write(&path, "3\nwater\nO 0 0 0\nH 0.76 0.59 0\nH -0.76 0.59 0\n").expect("written");
-        assert_eq!(refused(&path), format!("IT: molecules (.{extension}) cannot be read yet; {known}"));
-    }
     assert_eq!(
         refused(&home.join("nothing")),
         format!("IT: no such file, and no kind of scene either; {known}")
@@ -55,7 +50,7 @@ fn files_that_cannot_be_scenes_are_refused() {
 #[test]
 fn devices_and_pipes_are_refused_at_once() {
     let home = folder("devices");
-    for extension in ["obj", "gltf", "glb", "json"] {
+    for extension in ["obj", "gltf", "glb", "pdb", "xyz", "json"] {
         let path = home.join(format!("endless.{extension}"));
         std::os::unix::fs::symlink("/dev/zero", &path).expect("linked");
         assert_eq!(refused(&path), "IT: is a device or a pipe, not a regular file");
