@@ -185,6 +185,10 @@ fn generated_models_lose_nothing() {
         ("forest", 20_000),
         ("swarm", 10_000),
         ("terrain", 10_000),
+        ("tree", 10_000),
+        ("tree-quadrupling", 4_000),
+        ("venetian-blind", 4_000),
+        ("bust", 10_000),
     ] {
         let call = if full { format!("generate:{name}") } else { format!("generate:{name}?polygons={few}") };
         check_file(&call, every, random, side_px);

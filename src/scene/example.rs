@@ -32,6 +32,9 @@ const EXAMPLES: &[(&str, &str, &[u8])] = &[
     ("bottleneck", "scenes2d/bottleneck.json", include_bytes!("../../scenes2d/bottleneck.json")),
     ("forest", "scenes2d/forest.json", include_bytes!("../../scenes2d/forest.json")),
     ("figure5", "scenes2d/figure5.json", include_bytes!("../../scenes2d/figure5.json")),
+    ("tree", "scenes2d/tree.json", include_bytes!("../../scenes2d/tree.json")),
+    ("molecule", "scenes2d/molecule.json", include_bytes!("../../scenes2d/molecule.json")),
+    ("venetian_blind", "scenes2d/venetian_blind.json", include_bytes!("../../scenes2d/venetian_blind.json")),
     ("detail_objects", "scenes2d/detail_objects.json", include_bytes!("../../scenes2d/detail_objects.json")),
 ];
 

@@ -189,12 +189,14 @@ fn generators_say_what_they_take() {
         (
             "generate:castle",
             "generate:castle: there is no generator `castle`; there are: building, city, machine-room, \
-             box-and-objects, thin-slabs, seminar-room, cars, forest, swarm, terrain",
+             box-and-objects, thin-slabs, seminar-room, cars, forest, swarm, terrain, tree, \
+             tree-quadrupling, molecule, terrain-island, venetian-blind, bust",
         ),
         (
             "generate:",
             "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, \
-             thin-slabs, seminar-room, cars, forest, swarm, terrain",
+             thin-slabs, seminar-room, cars, forest, swarm, terrain, tree, tree-quadrupling, molecule, \
+             terrain-island, venetian-blind, bust",
         ),
         (
             "generate:building?storeys=3",
@@ -204,11 +206,13 @@ fn generators_say_what_they_take() {
         ("generate:building?seed", "generate:building?seed: `seed` should read key=value"),
         (
             "generate:building?polygons=10",
-            "generate:building?polygons=10: `polygons` must be a whole number from 1000 to 8000000, not `10`",
+            "generate:building?polygons=10: `polygons` must be a whole number from 1000 to 8000000, not `10` \
+             (triangles, met within a few percent)",
         ),
         (
             "generate:building?seed=-1",
-            "generate:building?seed=-1: `seed` must be a whole number from 0 to 4294967295, not `-1`",
+            "generate:building?seed=-1: `seed` must be a whole number from 0 to 4294967295, not `-1` (\
+             chooses widths of rooms, sides of doors and furniture)",
         ),
     ];
     for (call, want) in cases {

@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 
 use super::cottage::{self, RIDGE, cottage};
 use super::shapes::{Frame, Sink};
-use super::tree::{Tree, Twig};
+use super::tree::{KITE, Tree, Twig};
 use super::walk::{flight, sight};
 use super::{Generator, GeneratorParam, LoadOptions, Part, Parts, Progress, SceneError, Values, detail_for};
 use crate::geometry::{Solid, ViewPath};
@@ -142,8 +142,7 @@ fn make(
     };
     let shade: f64 = (0..trees.len()).map(wanted).sum();
     let length = match values.get("leaf") {
-        // A leaf is a kite of 0.3 times the square of its length.
-        0 => (DENSITY * shade / (0.3 * leaves.max(1) as f64)).sqrt(),
+        0 => (DENSITY * shade / (KITE * leaves.max(1) as f64)).sqrt(),
         given => given as f64 * 1e-3,
     };
     progress.report(0.2, "growing trees");

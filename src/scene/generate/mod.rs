@@ -6,6 +6,7 @@
 mod blocks;
 mod box_and_objects;
 mod building;
+mod bust;
 mod car;
 mod cars;
 mod city;
@@ -14,9 +15,12 @@ mod creatures;
 mod forest;
 mod furniture;
 mod house;
+mod island;
 mod lathe;
+mod lone_tree;
 mod machine_room;
 mod machinery;
+mod molecule;
 mod paint;
 mod plan;
 mod sculpture;
@@ -28,6 +32,7 @@ mod swarm;
 mod terrain;
 mod thin_slabs;
 mod tree;
+mod venetian_blind;
 mod walk;
 
 use self::shapes::Sink;
@@ -86,6 +91,12 @@ static GENERATORS: &[Generator] = &[
     forest::GENERATOR,
     swarm::GENERATOR,
     terrain::GENERATOR,
+    lone_tree::GENERATOR,
+    lone_tree::QUADRUPLING,
+    molecule::GENERATOR,
+    island::GENERATOR,
+    venetian_blind::GENERATOR,
+    bust::GENERATOR,
 ];
 
 /// All generators, by name.
@@ -121,8 +132,8 @@ pub(super) fn generate(
             Some(number) => values.values[i] = number,
             None => {
                 return Err(fail(format!(
-                    "`{key}` must be a whole number from {} to {}, not `{value}`",
-                    param.min, param.max
+                    "`{key}` must be a whole number from {} to {}, not `{value}` ({})",
+                    param.min, param.max, param.meaning
                 )));
             }
         }

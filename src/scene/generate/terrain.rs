@@ -51,18 +51,18 @@ const AHEAD: f64 = 185.0;
 const FAR: f64 = 3000.0;
 
 /// Heights at the points of a square lattice.
-struct Lattice {
+pub(super) struct Lattice {
     points: usize,
     heights: Vec<f64>,
 }
 
 impl Lattice {
-    fn new(points: usize, high: f64, rng: &mut Pcg32) -> Self {
+    pub(super) fn new(points: usize, high: f64, rng: &mut Pcg32) -> Self {
         let unit = |bits: u32| f64::from(bits) / f64::from(u32::MAX);
         Self { points, heights: (0..points * points).map(|_| high * unit(rng.next_u32())).collect() }
     }
     /// The height at a place of 0..1, smooth between the points.
-    fn at(&self, x: f64, z: f64) -> f64 {
+    pub(super) fn at(&self, x: f64, z: f64) -> f64 {
         let place = |v: f64| {
             let at = v * (self.points - 1) as f64;
             let cell = (at.floor() as usize).min(self.points - 2);

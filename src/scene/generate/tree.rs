@@ -30,6 +30,9 @@ pub(super) struct Tree {
 /// A place that leaves grow around: a line from where a twig leaves its branch to its end.
 pub(super) struct Twig([DVec3; 2]);
 
+/// Area of a leaf, a kite, by the square of its length.
+pub(super) const KITE: f64 = 0.3;
+
 /// Steps of a turn in which directions are drawn by lot.
 const STEPS: u32 = 1 << 16;
 /// The golden section of a turn: so far apart branches leave the trunk.
@@ -130,6 +133,25 @@ impl Tree {
             let long = ahead * (length * (1.0 + 0.25 * signed(rng)));
             sink.paint(first + rng.next_u32() % paints);
             leaf(sink, at, long, side, ahead.cross(side));
+        }
+    }
+
+    /// Leaves of exactly so many triangles, two each and a half leaf where the number is odd, of the size
+    /// with which they have `density` times the area of the crown's cross-section whatever their number.
+    pub(super) fn foliage(
+        &self,
+        sink: &mut Sink,
+        twigs: &[Twig],
+        (triangles, density): (u64, f64),
+        paints: (u32, u32),
+        rng: &mut Pcg32,
+    ) {
+        let leaves = triangles / 2;
+        let length = (density * self.shade() / (KITE * leaves.max(1) as f64)).sqrt();
+        self.leaves(sink, twigs, (leaves, length), paints, rng);
+        if triangles % 2 == 1 {
+            let top = self.foot + DVec3::Y * self.crown[1];
+            sink.face(&[top, top + DVec3::X * (0.5 * length), top + DVec3::Y * length], DVec3::Z);
         }
     }
 }

@@ -5,6 +5,7 @@ use std::ops::{Add, Mul};
 
 use glam::{DVec3, Vec3};
 
+use super::shapes::circle;
 use crate::geometry::{Eye, Solid, View, ViewPath};
 
 /// Height of a walker's eyes above the ground, m.
@@ -67,6 +68,34 @@ pub(super) fn sight(from: DVec3, to: DVec3, far: f64) -> View<Solid> {
         far: far as f32,
     };
     View { eye, width: 1024, height: 1024 }
+}
+
+/// The view from one point to another in the image of Chamberlain et al. (1996, Table 2): 124×124 pixels, and
+/// 60° across. `distance` tells how near and far what is seen begins and ends.
+pub(super) fn small_view(from: DVec3, to: DVec3, distance: f64) -> View<Solid> {
+    let mut view = sight(from, to, 4.0 * distance);
+    view.eye.near = (0.01 * distance) as f32;
+    (view.width, view.height) = (124, 124);
+    view
+}
+
+/// Views of all that `points` span: at the four distances of Chamberlain et al. (1996, Table 2), 1.75, 3.5, 7
+/// and 14 radii from the middle, `degrees` about the vertical; and a flight there from the farthest to the
+/// nearest. The radius is half the diagonal of the bounds.
+pub(super) fn around(points: &[Vec3], degrees: u32) -> [ViewPath<Solid>; 2] {
+    let (low, high) = points
+        .iter()
+        .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    let (low, high) = (low.as_dvec3(), high.as_dvec3());
+    let (middle, radius) = ((low + high) * 0.5, 0.5 * low.distance(high));
+    let (c, s) = circle(degrees, 360);
+    let eye = |radii: f64| middle + DVec3::new(s, 0.0, c) * (radii * radius);
+    let distances = [1.75, 3.5, 7.0, 14.0];
+    let views = distances.iter().map(|d| small_view(eye(*d), middle, d * radius)).collect();
+    let stops: Vec<_> = distances.iter().rev().map(|d| (eye(*d), middle)).collect();
+    let mut approach = flight(&stops, 120, 16.0 * radius, DVec3::ZERO);
+    approach.views.iter_mut().for_each(|v| v.eye.near = (0.1 * radius) as f32);
+    [ViewPath { name: "distances".into(), views }, ViewPath { name: "approach".into(), ..approach }]
 }
 
 /// A flight past stops, each where the eye is and what it looks at, along the curve of [`spline`]. As many
