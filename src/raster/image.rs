@@ -19,7 +19,7 @@ use super::setup::Setup;
 use super::simd::{self, Lanes, Work};
 use super::vertex::{Camera, Vertex};
 use super::{Options, Target, check_size};
-use crate::geometry::{PrimId, Solid, View};
+use crate::geometry::{PixelRect, PrimId, Solid, View};
 use crate::scene::Scene;
 
 /// Buffers kept from draw to draw, so that drawing again takes no memory.
@@ -47,7 +47,32 @@ pub(super) fn draw(
     options: &Options,
 ) {
     check_size(target, view);
-    draw_onto(target, scene, view, prims, options, None);
+    draw_onto(target, scene, view, prims, options, Onto::Image);
+}
+
+/// Draws onto rows of the image that are all the target holds; see [`super::Drawable::draw_rows`].
+pub(super) fn draw_rows(
+    target: &mut Target,
+    scene: &Scene<Solid>,
+    view: &View<Solid>,
+    prims: &[PrimId],
+    first: u32,
+    options: &Options,
+) {
+    let window = PixelRect { x0: 0, x1: view.width, y0: first, y1: first + target.height };
+    let options = Options { window: Some(window), threads: 1, ..*options };
+    draw_onto(target, scene, view, prims, &options, Onto::Rows(first));
+}
+
+/// What is drawn onto.
+#[derive(Clone, Copy)]
+enum Onto {
+    /// The image that the target holds.
+    Image,
+    /// The rows of it from this one on that the target holds.
+    Rows(u32),
+    /// Nothing: the depth of an empty pixel.
+    Nothing(f32),
 }
 
 /// Makes the image anew; see [`super::Drawable::redraw`].
@@ -65,17 +90,17 @@ pub(super) fn redraw(
     target.item.resize(pixels, Target::NONE);
     target.through.clear();
     check_size(target, view);
-    draw_onto(target, scene, view, prims, options, Some(1.0 / view.eye.far));
+    draw_onto(target, scene, view, prims, options, Onto::Nothing(1.0 / view.eye.far));
 }
 
-/// Draws onto what the target holds or, where the depth of an empty pixel is given, onto nothing.
+/// Draws onto what the target holds, or onto nothing.
 fn draw_onto(
     target: &mut Target,
     scene: &Scene<Solid>,
     view: &View<Solid>,
     prims: &[PrimId],
     options: &Options,
-    anew: Option<f32>,
+    onto: Onto,
 ) {
     let threads = options.thread_count();
     let mut scratch = std::mem::take(&mut target.scratch);
@@ -105,6 +130,11 @@ fn draw_onto(
         any_through: options.surfaces.any_through(scene),
         window: options.window_of(view),
     };
+    let (anew, first) = match onto {
+        Onto::Image => (None, 0),
+        Onto::Rows(first) => (None, first as i32),
+        Onto::Nothing(depth) => (Some(depth), 0),
+    };
     // 2 to 4.
     let by_blocks = (threads > 1 || anew.is_some())
         && draw_blocks(target, &frame, prims, options, &mut scratch.bins, anew);
@@ -114,7 +144,7 @@ fn draw_onto(
             target.item.fill(Target::NONE);
         }
         let (depth, item, stride) = (&mut target.depth, &mut target.item, view.width as usize);
-        let canvas = Canvas { depth, item, first: [0; 2], stride };
+        let canvas = Canvas { depth, item, first: [0, first], stride };
         let (setups, through) = (&mut scratch.setups, &mut target.through);
         simd::run(options.isa, DrawAll { frame: &frame, prims, setups, through, canvas });
     }

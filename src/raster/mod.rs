@@ -40,8 +40,9 @@ pub use blend::Canvas;
 pub use opacity::Opacity;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use setup::DEPTH_SLACK;
+pub(crate) use shade::Veil;
 pub use shade::{
-    DepthScale, Light, VEIL, fixed_light, paint, paint_in_order, shade, shade_depth, shade_with,
+    DepthScale, Light, VEIL, fixed_light, lit, paint, paint_in_order, shade, shade_depth, shade_with,
 };
 pub use simd::Isa;
 pub use srgb::{linear, srgb, srgb_bytes};
@@ -84,9 +85,13 @@ impl Target {
     }
     /// Empties the image and gives it the view's size.
     pub fn clear<S: Space>(&mut self, view: &View<S>) {
-        (self.width, self.height) = (view.width, view.height);
+        self.clear_rows(view, view.height);
+    }
+    /// The same, but only so many rows of it: for [`Drawable::draw_rows`].
+    pub fn clear_rows<S: Space>(&mut self, view: &View<S>, rows: u32) {
+        (self.width, self.height) = (view.width, rows);
         self.depth.clear();
-        self.depth.resize(view.width as usize * view.height as usize, 1.0 / view.eye.far);
+        self.depth.resize(view.width as usize * rows as usize, 1.0 / view.eye.far);
         self.item.clear();
         self.item.resize(self.depth.len(), Self::NONE);
         self.through.clear();
@@ -201,6 +206,19 @@ pub trait Drawable: Space {
         target.clear(view);
         Self::draw(target, scene, view, prims, options);
     }
+    /// Draws the rows of the image from `first` on that the target holds: a part of an image that would be
+    /// too large as a whole. On the calling thread, and without a window.
+    ///
+    /// # Panics
+    /// If the target has not the view's width, or its rows reach beyond the image.
+    fn draw_rows(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        first: u32,
+        options: &Options,
+    );
     /// Where a primitive is; `None` if it covers no pixel or has to be clipped.
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent>;
     /// Calls `visit` with the place of each pixel that a primitive covers, row by row, and its depth there:
@@ -234,6 +252,18 @@ impl Drawable for Flat {
         options: &Options,
     ) {
         line::draw(target, scene, view, prims, options);
+    }
+    fn draw_rows(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        first: u32,
+        options: &Options,
+    ) {
+        check_rows(target, view, first);
+        // A line has one row.
+        line::draw(target, scene, view, prims, &Options { window: None, ..*options });
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         line::extent(scene, view, prim, options)
@@ -276,6 +306,17 @@ impl Drawable for Solid {
         options: &Options,
     ) {
         image::redraw(target, scene, view, prims, options);
+    }
+    fn draw_rows(
+        target: &mut Target,
+        scene: &Scene<Self>,
+        view: &View<Self>,
+        prims: &[PrimId],
+        first: u32,
+        options: &Options,
+    ) {
+        check_rows(target, view, first);
+        image::draw_rows(target, scene, view, prims, first, options);
     }
     fn extent(scene: &Scene<Self>, view: &View<Self>, prim: PrimId, options: &Options) -> Option<Extent> {
         frame::extent(scene, view, prim, options)
@@ -334,6 +375,12 @@ fn check_size<S: Space>(target: &Target, view: &View<S>) {
         (view.width, view.height),
         "the target has another size than the view"
     );
+    check_rows(target, view, 0);
+}
+
+fn check_rows<S: Space>(target: &Target, view: &View<S>, first: u32) {
+    assert_eq!(target.width, view.width, "the target has another width than the view");
+    assert!(first + target.height <= view.height, "the target's rows reach beyond the image");
     assert!(
         view.width.max(view.height) <= Target::MAX_SIDE_PX,
         "an image side exceeds {} pixels",

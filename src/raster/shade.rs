@@ -141,20 +141,42 @@ fn shade_lit<S: Drawable>(
     for (at, veil) in veils(target, scene, view, &mut lit) {
         let item = target.item[at];
         let behind = if item == Target::NONE { background } else { lit(PrimId(item)) };
-        let through = (1.0 - VEIL).powi(veil.layers as i32);
-        let mean = veil.color.map(|sum| sum as f32 / (STEPS * veil.layers as f32));
-        let mixed = std::array::from_fn(|c| behind[c] * through + mean[c] * (1.0 - through));
-        pixels[4 * at..4 * at + 4].copy_from_slice(&srgb_bytes(mixed));
+        pixels[4 * at..4 * at + 4].copy_from_slice(&srgb_bytes(veil.over(behind)));
     }
     pixels
+}
+
+/// The linear color of a primitive under a light at the eye, as [`shade`] encodes it.
+pub fn lit<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> [f32; 3] {
+    let light = headlight(scene, view, prim);
+    scene.color_of(prim).map(|c| c * light)
 }
 
 /// The see-through primitives of a pixel: how many, and the sum of their linear colors in steps, whole
 /// numbers so that the order of adding leaves no trace.
 #[derive(Clone, Copy, Default)]
-struct Veil {
+pub(crate) struct Veil {
     layers: u32,
     color: [u64; 3],
+}
+
+impl Veil {
+    /// Lays a primitive of this linear color over the pixel.
+    pub(crate) fn add(&mut self, color: [f32; 3]) {
+        self.layers += 1;
+        for (sum, c) in self.color.iter_mut().zip(color) {
+            *sum += (c.clamp(0.0, 1.0) * STEPS) as u64;
+        }
+    }
+    /// What is seen of this linear color through them.
+    pub(crate) fn over(self, behind: [f32; 3]) -> [f32; 3] {
+        if self.layers == 0 {
+            return behind;
+        }
+        let through = (1.0 - VEIL).powi(self.layers as i32);
+        let mean = self.color.map(|sum| sum as f32 / (STEPS * self.layers as f32));
+        std::array::from_fn(|c| behind[c] * through + mean[c] * (1.0 - through))
+    }
 }
 
 /// Steps of a linear color from 0 to 1.
@@ -172,15 +194,13 @@ fn veils<S: Drawable>(
     prims.sort_unstable();
     prims.dedup();
     let mut veils = vec![Veil::default(); if prims.is_empty() { 0 } else { target.item.len() }];
-    let mut last: Option<(PrimId, [u64; 3])> = None;
+    let mut last: Option<(PrimId, [f32; 3])> = None;
     look_through(target, scene, view, &prims, &Options::default(), |prim, at, _| {
         let (_, color) = match &mut last {
             Some(known) if known.0 == prim => *known,
-            other => *other.insert((prim, lit(prim).map(|c| (c.clamp(0.0, 1.0) * STEPS) as u64))),
+            other => *other.insert((prim, lit(prim))),
         };
-        let veil = &mut veils[at];
-        veil.layers += 1;
-        (0..3).for_each(|c| veil.color[c] += color[c]);
+        veils[at].add(color);
     });
     veils.into_iter().enumerate().filter(|(_, veil)| veil.layers > 0).collect()
 }

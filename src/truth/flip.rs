@@ -32,22 +32,41 @@ struct Image {
     pixels: Vec<Rgb>,
 }
 
+/// A map of FLIP in two numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flip {
+    /// Its mean.
+    pub mean: f64,
+    /// Share of the pixels whose difference is above [`SEEN`].
+    pub seen_ratio: f64,
+}
+
+/// A difference of FLIP that counts as seen.
+pub const SEEN: f64 = 0.1;
+
 /// Mean FLIP of two RGBA images (alpha is ignored) of `width` × `height` pixels: 0 equal, 1 as different as
 /// can be. Exactly 0 for equal images.
 pub fn flip_mean(reference: &[u8], test: &[u8], width: usize, height: usize) -> f64 {
+    flip(reference, test, width, height).mean
+}
+
+/// The same, and how many pixels differ so that it is seen.
+pub fn flip(reference: &[u8], test: &[u8], width: usize, height: usize) -> Flip {
     let color_filters =
         [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
     let features = Features::new();
     // Every filter is as wide as the widest.
     let reach = color_filters.iter().map(|f| f.reach()).chain([features.reach]).max().unwrap_or(0);
-    let Some(changed) = changed(reference, test, width, height) else { return 0.0 };
+    let Some(changed) = changed(reference, test, width, height) else { return Flip::default() };
     let out = changed.grown(reach, width, height);
     let input = out.grown(reach, width, height);
     let [reference, test] = [reference, test].map(|rgba| crop(rgba, width, &input));
     let map = flip_map(&reference, &test, &color_filters, &features);
     let row = |y: usize| &map[(y - input.y0) * reference.width..][out.x0 - input.x0..out.x1 - input.x0];
     let sum: f64 = (out.y0..out.y1).map(|y| row(y).iter().sum::<f64>()).sum();
-    sum / (width * height) as f64
+    let seen = (out.y0..out.y1).flat_map(row).filter(|d| **d > SEEN).count();
+    let pixels = (width * height) as f64;
+    Flip { mean: sum / pixels, seen_ratio: seen as f64 / pixels }
 }
 
 /// Half-open rectangle of pixels.
@@ -366,6 +385,20 @@ mod tests {
         assert_eq!(flip_mean(&a, &a, 50, 20), 0.0);
         let transparent: Vec<u8> = a.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2], 0]).collect();
         assert_eq!(flip_mean(&a, &transparent, 50, 20), 0.0);
+    }
+
+    /// Black beside white differs everywhere; one pixel in 4,096 only around itself: the reach of its
+    /// features is that of the filters, 10 pixels (Section 4.2), and fades long before that.
+    #[test]
+    fn pixels_whose_difference_is_seen_are_counted() {
+        let [a, b] = images(32, 32, |_, _, _, _| [[0; 3], [255; 3]]);
+        assert_eq!(flip(&a, &b, 32, 32).seen_ratio, 1.0);
+        let [a, b] = images(64, 64, pixel);
+        let Flip { mean, seen_ratio } = flip(&a, &b, 64, 64);
+        assert!(seen_ratio >= 1.0 / 4096.0 && seen_ratio < 40.0 / 4096.0, "{seen_ratio}");
+        // What is above a tenth is at most ten times the whole.
+        assert!(seen_ratio * SEEN < mean, "{seen_ratio} and {mean}");
+        assert_eq!(flip(&a, &a, 64, 64), Flip::default());
     }
 
     #[test]

@@ -15,9 +15,11 @@ pub mod certificate;
 mod flip;
 mod hidden;
 mod layering;
+mod reference;
 
-pub use flip::flip_mean;
+pub use flip::{Flip, SEEN, flip, flip_mean};
 pub use layering::{Unranked, layer_correlation, layering_numbers, layering_numbers_within};
+pub use reference::Reference;
 
 use glam::DVec3;
 
@@ -99,14 +101,7 @@ impl Truth {
 
     /// Draws the whole scene; what is visible, ascending.
     pub fn look<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>) -> Vec<PrimId> {
-        let prims = if self.surfaces.one_sided {
-            let (eye, there) = (view.eye.position, self.prims.iter().copied());
-            self.facing.clear();
-            self.facing.extend(there.filter(|&p| !self.surfaces.leave_out(scene, p, eye)));
-            &self.facing
-        } else {
-            &self.prims
-        };
+        let prims = seen_from(&self.prims, &mut self.facing, self.surfaces, scene, view);
         S::redraw(&mut self.all, scene, view, prims, &self.options);
         all_visible(&self.all, scene, view, &self.options)
     }
@@ -147,6 +142,23 @@ impl Truth {
         look_through(&self.all, scene, view, missed, &self.options, |_, at, _| lacking[at] = true);
         (0..lacking.len()).filter(|&at| lacking[at] || self.all.differs(image, at)).count()
     }
+}
+
+/// Those of `prims` that have a side that can be seen from the eye; `facing` is where they are kept.
+fn seen_from<'a, S: Drawable>(
+    prims: &'a [PrimId],
+    facing: &'a mut Vec<PrimId>,
+    surfaces: Surfaces,
+    scene: &Scene<S>,
+    view: &View<S>,
+) -> &'a [PrimId] {
+    if !surfaces.one_sided {
+        return prims;
+    }
+    let eye = view.eye.position;
+    facing.clear();
+    facing.extend(prims.iter().copied().filter(|&p| !surfaces.leave_out(scene, p, eye)));
+    facing
 }
 
 /// The primitives that show in an image, see-through ones among them, ascending.
