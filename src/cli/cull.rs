@@ -18,7 +18,7 @@ use crate::method::{Words, surfaces_of};
 use crate::raster::{Canvas, Light, Options, Target};
 use crate::render::{Theme, png_pixels};
 use crate::scene::{Progress, Scene};
-use crate::truth::Truth;
+use crate::truth::{Flip, Judgement, Truth};
 
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  cullscope cull scenes3d/freedoom_e1m1.obj --method frustum --set \
@@ -93,8 +93,20 @@ struct TruthReport {
     wrong_pixels: usize,
     wrong_pixel_ratio: f64,
     flip_mean: f64,
+    /// Where something stands in for primitives: how far the image is from that of 16 × 16 samples a pixel.
+    #[serde(flatten)]
+    reference: Option<AgainstReference>,
     overdraw: Option<f64>,
 }
+
+#[derive(Serialize)]
+struct AgainstReference {
+    flip_reference: f64,
+    flip_reference_seen_ratio: f64,
+}
+
+/// Samples of a pixel a side of the image that one with stand-ins is compared with.
+const REFERENCE_SAMPLES: u32 = 16;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     each!(args.task.load()?, scene => of(args, &scene))
@@ -148,12 +160,17 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
             list.redraw(&mut target, scene, view, &options);
             list.composite(&mut canvas, &target, view, &options);
         });
+        let light = light(args).unwrap_or(list.light);
+        let picture = || list.picture(scene, view, (&target, &canvas), (light, background));
         if let Some(path) = &args.image {
-            let light = light(args).unwrap_or(list.light);
-            let rgba = list.picture(scene, view, (&target, &canvas), (light, background));
-            write_image(&output::numbered(path, i, count), view, rgba)?;
+            write_image(&output::numbered(path, i, count), view, picture())?;
         }
-        let truth = truth.as_mut().map(|t| truth_report(args, t.judge(scene, view, &list.prims, &target)));
+        let truth = truth.as_mut().map(|t| {
+            let stands_in = !list.stand_ins.is_empty();
+            let reference =
+                stands_in.then(|| t.reference(scene, view, REFERENCE_SAMPLES, light).judge(&picture()));
+            truth_report(args, t.judge(scene, view, &list.prims, &target), reference)
+        });
         frames.push(Frame {
             view: i,
             drawn_triangles: list.prims.len(),
@@ -199,8 +216,10 @@ fn write_report(report: &Report, frames: &[Frame], to: &mut dyn Write) -> io::Re
     to.write_all(b"\n]}\n")
 }
 
-fn truth_report(args: &Args, judged: crate::truth::Judgement) -> TruthReport {
+fn truth_report(args: &Args, judged: Judgement, reference: Option<Flip>) -> TruthReport {
     TruthReport {
+        reference: reference
+            .map(|f| AgainstReference { flip_reference: f.mean, flip_reference_seen_ratio: f.seen_ratio }),
         visible_triangles: judged.visible.len(),
         missed_triangles: judged.missed.len(),
         missed_ids: args.ids.then(|| numbers(&judged.missed)),

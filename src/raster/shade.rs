@@ -52,6 +52,11 @@ impl Light {
             Self::Fixed => fixed_light(scene, prim),
         }
     }
+    /// The linear color of a primitive under it, as an image shows it.
+    pub fn color<S: Space>(self, scene: &Scene<S>, view: &View<S>, prim: PrimId) -> [f32; 3] {
+        let brightness = self.on(scene, view, prim);
+        scene.color_of(prim).map(|c| c * brightness)
+    }
 }
 
 /// The image of what was drawn and, over it, what a canvas holds (nothing, if that is of no size). RGBA,
@@ -82,10 +87,7 @@ pub fn paint_in_order<S: Drawable>(
     list: (&[PrimId], &[StandIn<S::Vector>]),
     (light, background): (Light, [f32; 3]),
 ) -> Vec<u8> {
-    let color = |prim| {
-        let light = light.on(scene, view, prim);
-        scene.color_of(prim).map(|c| c * light)
-    };
+    let color = |prim| light.color(scene, view, prim);
     draw_in_order(scene, view, list, background, color).into_iter().flat_map(srgb_bytes).collect()
 }
 
@@ -144,12 +146,6 @@ fn shade_lit<S: Drawable>(
         pixels[4 * at..4 * at + 4].copy_from_slice(&srgb_bytes(veil.over(behind)));
     }
     pixels
-}
-
-/// The linear color of a primitive under a light at the eye, as [`shade`] encodes it.
-pub fn lit<S: Drawable>(scene: &Scene<S>, view: &View<S>, prim: PrimId) -> [f32; 3] {
-    let light = headlight(scene, view, prim);
-    scene.color_of(prim).map(|c| c * light)
 }
 
 /// The see-through primitives of a pixel: how many, and the sum of their linear colors in steps, whole

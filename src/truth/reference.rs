@@ -7,7 +7,7 @@
 
 use super::{Flip, Truth, flip, seen_from};
 use crate::geometry::{PixelRect, PrimId, Vector, View};
-use crate::raster::{Drawable, Options, Target, Veil, lit, srgb_bytes};
+use crate::raster::{Drawable, Light, Options, Target, Veil, srgb_bytes};
 use crate::scene::Scene;
 
 /// Samples that are kept at a time: 32 MB of depths and items.
@@ -37,7 +37,13 @@ impl Reference {
 impl Truth {
     /// The image of the whole scene with `samples` × `samples` samples a pixel (in flatland `samples`), at
     /// least one: box filter in linear light, then sRGB.
-    pub fn reference<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>, samples: u32) -> Reference {
+    pub fn reference<S: Drawable>(
+        &mut self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        samples: u32,
+        light: Light,
+    ) -> Reference {
         let longest = view.width.max(view.height).max(1);
         let samples = samples.min(Target::MAX_SIDE_PX / longest).max(1);
         let down = if S::Vector::AXES == 2 { 1 } else { samples };
@@ -51,22 +57,11 @@ impl Truth {
             band.first = first * down;
             band.target.clear_rows(&fine, height);
             S::draw_rows(&mut band.target, scene, &fine, prims, band.first, &self.options);
-            band.look_through(scene, &fine, &self.options);
+            band.look_through(scene, &fine, &self.options, light);
             // The light falls as it does in an image of one sample: it does not depend on the size.
-            band.resolve([samples, down], self.background, |prim| lit(scene, view, prim), &mut rgba);
+            band.resolve([samples, down], self.background, |prim| light.color(scene, view, prim), &mut rgba);
         }
         Reference { rgba, width: view.width, height: view.height, samples }
-    }
-
-    /// How far an image of the view's size, RGBA in sRGB, is from the reference of so many samples.
-    pub fn judge_image<S: Drawable>(
-        &mut self,
-        scene: &Scene<S>,
-        view: &View<S>,
-        rgba: &[u8],
-        samples: u32,
-    ) -> Flip {
-        self.reference(scene, view, samples).judge(rgba)
     }
 }
 
@@ -81,7 +76,13 @@ struct Band {
 
 impl Band {
     /// Finds the see-through primitives before each sample.
-    fn look_through<S: Drawable>(&mut self, scene: &Scene<S>, fine: &View<S>, options: &Options) {
+    fn look_through<S: Drawable>(
+        &mut self,
+        scene: &Scene<S>,
+        fine: &View<S>,
+        options: &Options,
+        light: Light,
+    ) {
         self.veils.clear();
         if self.target.through.is_empty() {
             return;
@@ -95,7 +96,7 @@ impl Band {
         let options = Options { window: Some(rows), ..*options };
         let before = self.first as usize * fine.width as usize;
         for prim in prims {
-            let color = lit(scene, fine, prim);
+            let color = light.color(scene, fine, prim);
             S::fragments(scene, fine, prim, &options, &mut |at, depth| {
                 let at = at - before;
                 if depth >= self.target.depth[at] {
@@ -174,7 +175,7 @@ mod tests {
     #[test]
     fn a_pixel_has_the_mean_of_its_samples_in_linear_light() {
         let seen = |scene: &Scene<Solid>, samples| {
-            truth(scene, [0.0; 3]).reference(scene, &view(1, 1), samples).rgba
+            truth(scene, [0.0; 3]).reference(scene, &view(1, 1), samples, Light::Headlight).rgba
         };
         let half = plate([1.0; 3], false, [-1.0, 0.0], [-1.0, 1.0]);
         assert_eq!(seen(&half, 16), [188, 188, 188, 255]);
@@ -194,7 +195,7 @@ mod tests {
     #[test]
     fn what_is_seen_through_takes_its_share() {
         let glass = plate([1.0; 3], true, [-1.0, 0.0], [-1.0, 1.0]);
-        let reference = truth(&glass, [0.0; 3]).reference(&glass, &view(1, 1), 16);
+        let reference = truth(&glass, [0.0; 3]).reference(&glass, &view(1, 1), 16, Light::Headlight);
         assert_eq!(reference.rgba, [124, 124, 124, 255]);
     }
 
@@ -209,7 +210,7 @@ mod tests {
         let (position, up) = (Vec2::ZERO, Vec2::ZERO);
         let eye = Eye { position, target: Vec2::Y, up, fov: 0.01, near: 0.1, far: 10.0 };
         let view = View { eye, width: 1, height: 1 };
-        let reference = truth(&scene, [0.0; 3]).reference(&scene, &view, 16);
+        let reference = truth(&scene, [0.0; 3]).reference(&scene, &view, 16, Light::Headlight);
         assert_eq!((reference.rgba, reference.samples), (vec![188, 188, 188, 255], 16));
     }
 
@@ -222,12 +223,12 @@ mod tests {
         let mut truth = truth(&scene, background);
         let samples = 5;
         assert!(BAND_SAMPLES < (37 * 29 * samples * samples) as usize / 4, "several bands");
-        let reference = truth.reference(&scene, &view, samples);
+        let reference = truth.reference(&scene, &view, samples, Light::Headlight);
         let fine = View { width: 37 * samples, height: 29 * samples, ..view };
         let image = render(&scene, &fine, scene.live());
         let color = |x: u32, y: u32| match image.item[(y * fine.width + x) as usize] {
             Target::NONE => background,
-            item => lit(&scene, &view, PrimId(item)),
+            item => Light::Headlight.color(&scene, &view, PrimId(item)),
         };
         for (at, pixel) in reference.rgba.chunks_exact(4).enumerate() {
             let (x, y) = (at as u32 % 37 * samples, at as u32 / 37 * samples);
@@ -240,11 +241,11 @@ mod tests {
             assert_eq!(pixel, srgb_bytes(mean), "pixel {at}");
         }
         // One sample a pixel is the image itself.
-        let one = truth.reference(&scene, &view, 1);
+        let one = truth.reference(&scene, &view, 1, Light::Headlight);
         let plain = shade(&render(&scene, &view, scene.live()), &scene, &view, background);
         assert_eq!(one.rgba, plain);
-        assert_eq!(truth.judge_image(&scene, &view, &plain, 1), Flip::default());
-        let far = truth.judge_image(&scene, &view, &plain, samples);
+        assert_eq!(truth.reference(&scene, &view, 1, Light::Headlight).judge(&plain), Flip::default());
+        let far = truth.reference(&scene, &view, samples, Light::Headlight).judge(&plain);
         assert!(far.mean > 0.0 && far.seen_ratio > 0.0 && far.seen_ratio < 1.0, "{far:?}");
     }
 }
