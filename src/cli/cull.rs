@@ -156,10 +156,7 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         let (scene, pose_ms) = timed(|| ready.pose(i));
         let (scene, view) = (&*scene?, &ready.path.views[i]);
         let ((list, stages_ms), cull_ms) = timed(|| ready.run.stages_ms(view));
-        let ((), draw_ms) = timed(|| {
-            list.redraw(&mut target, scene, view, &options);
-            list.composite(&mut canvas, &target, view, &options);
-        });
+        let ((), draw_ms) = timed(|| list.draw((&mut target, &mut canvas), scene, view, &options));
         let light = light(args).unwrap_or(list.light);
         let picture = || list.picture(scene, view, (&target, &canvas), (light, background));
         if let Some(path) = &args.image {

@@ -222,8 +222,8 @@ pub enum Mark<P> {
     },
     /// A filled convex polygon with its outline.
     Area(Vec<P>),
-    /// A filled convex polygon in a color that is data, such as a cube face's; its outline is that of its role,
-    /// so that nothing is told by color alone.
+    /// A filled convex polygon in a color that is data, such as a cube face's; its outline is that of its
+    /// role, so that nothing is told by color alone.
     Swatch {
         /// Its corners.
         points: Vec<P>,

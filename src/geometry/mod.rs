@@ -28,7 +28,7 @@ pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};
 pub use overlap::{
     Beside, beside_segment, beside_triangle, segment_meets_box, segment_meets_triangle, triangle_meets_box,
-    triangle_meets_tetrahedron,
+    triangle_meets_octants, triangle_meets_tetrahedron,
 };
 pub use predicate::{insphere, orient2d, orient3d};
 pub use project::{BoxImage, Footprint, MARGIN_PX, PixelRect, farthest_depth, nearest_depth, project_box};

@@ -126,6 +126,35 @@ pub fn triangle_meets_box(triangle: [Vec3; 3], bounds: &Aabb<Vec3>) -> bool {
     })
 }
 
+/// Which octants of a box a triangle meets, of those asked for, a bit each (bit `a` of an octant's number
+/// says upper on axis `a`); those are asked for that its box touches. The same axes as for a box, each
+/// projected once for all octants.
+pub fn triangle_meets_octants(triangle: [Vec3; 3], cell: &Aabb<Vec3>, asked: u8) -> u8 {
+    let origin = cell.center().as_dvec3();
+    let (low, high) = (cell.min.as_dvec3() - origin, cell.max.as_dvec3() - origin);
+    let t = triangle.map(|p| p.as_dvec3() - origin);
+    let sides = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+    let largest = low.abs().max_element().max(high.abs().max_element());
+    let size = t.iter().fold(largest, |m, p| m.max(p.abs().max_element()));
+    let error = ERROR * size * size * size;
+    let pairs = sides.into_iter().flat_map(|s| DVec3::AXES.map(|axis| (axis * size).cross(s)));
+    let mut met = asked;
+    for axis in std::iter::once(sides[0].cross(sides[1])).chain(pairs) {
+        let at = t.map(|p| axis.dot(p));
+        let (first, last) = (at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2]));
+        // On each coordinate axis an octant reaches from the center to one end of the box.
+        let ends = [axis * low, axis * high];
+        let (least, most) = (ends.map(|e| e.min(DVec3::ZERO)), ends.map(|e| e.max(DVec3::ZERO)));
+        for octant in (0..8).filter(|o| asked >> o & 1 == 1) {
+            let (x, y, z) = (octant & 1, octant >> 1 & 1, octant >> 2);
+            let from = least[x].x + least[y].y + least[z].z;
+            let to = most[x].x + most[y].y + most[z].z;
+            met &= !(u8::from(first - to > error || from - last > error) << octant);
+        }
+    }
+    met
+}
+
 /// Whether a segment meets a triangle of the plane.
 pub fn segment_meets_triangle(segment: [Vec2; 2], triangle: [Vec2; 3]) -> bool {
     let origin = triangle[0].as_dvec2();
@@ -152,6 +181,33 @@ pub fn segment_meets_box(segment: [Vec2; 2], bounds: &Aabb<Vec2>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// All octants at a time as each by itself, on random triangles and on grids, where much only touches.
+    #[test]
+    fn octants_are_met_as_boxes_are() {
+        let mut dice = Dice::new(41);
+        let mut counts = [0; 9];
+        for case in 0..20_000 {
+            let on_grid = case % 2 == 0;
+            let mut point =
+                || if on_grid { dice.grid_point::<Vec3>(5) - Vec3::splat(2.0) } else { dice.point(2.0) };
+            let triangle = [point(), point(), point()];
+            let cell = Aabb { min: Vec3::splat(-1.5), max: Vec3::splat(1.5 + f32::from(case % 3 == 0)) };
+            let center = cell.center();
+            let octant = |o: usize| {
+                let end = |a: usize| if o >> a & 1 == 1 { cell.max[a] } else { cell.min[a] };
+                Aabb::of([center, Vec3::new(end(0), end(1), end(2))])
+            };
+            let touched = (0..8).filter(|o| Aabb::of(triangle).touches(&octant(*o)));
+            let asked = touched.fold(0u8, |bits, o| bits | 1 << o);
+            let want = (0..8)
+                .filter(|o| triangle_meets_box(triangle, &octant(*o)))
+                .fold(0u8, |bits, o| bits | 1 << o);
+            assert_eq!(triangle_meets_octants(triangle, &cell, asked), want, "case {case}: {triangle:?}");
+            counts[want.count_ones() as usize] += 1;
+        }
+        assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
+    }
     use crate::geometry::dice::Dice;
     use crate::geometry::{orient2d, orient3d};
 

@@ -366,9 +366,7 @@ fn octants_of<S: Cellular>(scene: &Scene<S>, prim: PrimId, cell: &Aabb<S::Vector
     }
     if met.count_ones() > 1 {
         // A slanted one misses some of those that its box meets.
-        let is_met =
-            |octant: &usize| met >> octant & 1 == 1 && S::meets_box(corners, &octant_of(cell, *octant));
-        met = (0..8).filter(is_met).fold(0, |bits, octant| bits | 1 << octant);
+        met = S::meets_octants(corners, cell, met);
     }
     met
 }

@@ -17,7 +17,7 @@ pub struct DrawList<S: Space> {
     /// What is drawn in place of others, the nearest first: tested against the depths of the primitives,
     /// which it leaves as they are.
     pub stand_ins: Vec<StandIn<S::Vector>>,
-    /// Not so, but both lists in one order, the farthest first, and stand-ins write depths.
+    /// Whether both lists are drawn in one order instead, the farthest first, and stand-ins write depths.
     pub in_order: bool,
     /// The light under which it is to be seen.
     pub light: Light,
@@ -44,14 +44,21 @@ impl<S: Drawable> DrawList<S> {
     pub fn redraw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
         S::redraw(target, scene, view, &self.prims, options);
     }
-    /// Makes a canvas what the stand-ins put over that image; of no size where there are none, and where they
-    /// are drawn in one order with the primitives.
-    pub fn composite(&self, canvas: &mut Canvas, image: &Target, view: &View<S>, options: &Options) {
-        if self.stand_ins.is_empty() || self.in_order {
-            return canvas.empty();
+    /// Makes a target that image, and a canvas what the stand-ins put over it: of no size where there are
+    /// none, and where they are drawn in one order with the primitives.
+    pub fn draw(
+        &self,
+        (image, canvas): (&mut Target, &mut Canvas),
+        scene: &Scene<S>,
+        view: &View<S>,
+        options: &Options,
+    ) {
+        self.redraw(image, scene, view, options);
+        canvas.empty();
+        if !self.stand_ins.is_empty() && !self.in_order {
+            canvas.clear(view);
+            canvas.composite(&self.stand_ins, image, view, options);
         }
-        canvas.clear(view);
-        canvas.composite(&self.stand_ins, image, view, options);
     }
     /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: the images of its two parts from
     /// that view; `shown`: the light and the background (linear).
@@ -76,8 +83,7 @@ impl<S: Drawable> DrawList<S> {
         background: [f32; 3],
     ) -> Vec<u8> {
         let (mut image, mut canvas) = (Target::default(), Canvas::default());
-        self.redraw(&mut image, scene, view, options);
-        self.composite(&mut canvas, &image, view, options);
+        self.draw((&mut image, &mut canvas), scene, view, options);
         self.picture(scene, view, (&image, &canvas), (self.light, background))
     }
 }

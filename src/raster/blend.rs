@@ -13,6 +13,8 @@
 //!
 //! Cost: O(boxes + samples in the rectangles about them).
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{Drawable, Options, StandIn, Target};
@@ -23,29 +25,48 @@ use crate::scene::{Scene, Surfaces};
 /// quarter of a step of the 256 that are shown.
 const FULL: f32 = 1.0 / 1024.0;
 
+/// What a sample holds where there is no box.
+const CLEAR: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
 /// What lies over an image, a sample a pixel.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Canvas {
     width: usize,
-    /// Linear color, premultiplied, and the share of what is behind that shows.
+    /// Linear color, premultiplied, and the share of what is behind that shows. What is outside of the span
+    /// of its row is of an earlier image.
     samples: Vec<[f32; 4]>,
+    /// For each row the samples that a box came near: most views of few boxes leave most of an image alone.
+    spans: Vec<[u32; 2]>,
+}
+
+/// By what shows of them.
+impl PartialEq for Canvas {
+    fn eq(&self, other: &Self) -> bool {
+        self.width == other.width && self.samples().eq(other.samples())
+    }
 }
 
 impl Canvas {
     /// Nothing over an image of the view's size.
     pub fn clear<S: Space>(&mut self, view: &View<S>) {
         self.width = view.width as usize;
-        self.samples.clear();
-        self.samples.resize(self.width * view.height as usize, [0.0, 0.0, 0.0, 1.0]);
+        self.samples.resize(self.width * view.height as usize, CLEAR);
+        self.spans.clear();
+        self.spans.resize(view.height as usize, [0; 2]);
     }
     /// Nothing over an image of no size.
     pub fn empty(&mut self) {
         self.width = 0;
-        self.samples.clear();
+        self.spans.clear();
     }
     /// Linear color, premultiplied, and the share of what is behind that shows, of each pixel row by row.
-    pub fn samples(&self) -> &[[f32; 4]] {
-        &self.samples
+    pub fn samples(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        let of = |row: usize, column: usize| {
+            let [first, past] = self.spans[row].map(|c| c as usize);
+            let is_known = (first..past).contains(&column);
+            if is_known { self.samples[row * self.width + column] } else { CLEAR }
+        };
+        (0..self.spans.len()).flat_map(move |row| (0..self.width).map(move |column| of(row, column)))
     }
     /// Puts boxes under what there is, the nearest first, but for what the image hides of them. Boxes do not
     /// overlap. The image is left as it is.
@@ -61,11 +82,11 @@ impl Canvas {
         // A band of rows is one thread's, which keeps the order; so the bytes do not depend on their number.
         let rows = (view.height as usize).div_ceil(threads.max(1)).max(1);
         let pixels = (rows * self.width).max(1);
-        let bands = self.samples.chunks_mut(pixels).enumerate();
+        let bands = self.samples.chunks_mut(pixels).zip(self.spans.chunks_mut(rows)).enumerate();
         let width = self.width;
-        let work = |(band, samples): (usize, &mut [[f32; 4]])| {
+        let work = |(band, (samples, spans)): (usize, (&mut [[f32; 4]], &mut [[u32; 2]]))| {
             let depths = &image.depth[band * pixels..][..samples.len()];
-            let mut band = Band { first: band * rows, width, samples, depths };
+            let mut band = Band { first: band * rows, width, samples, depths, spans, clear: CLEAR };
             for one in boxes {
                 // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows
                 // nothing more.
@@ -232,6 +253,10 @@ struct Band<'a, T, D> {
     width: usize,
     samples: &'a mut [T],
     depths: D,
+    /// The samples of each row that are known; none where all are.
+    spans: &'a mut [[u32; 2]],
+    /// What the others are to be.
+    clear: T,
 }
 
 /// How far the rectangle about a box is widened, pixels: more than its rounding.
@@ -239,7 +264,7 @@ const SLACK_PX: f64 = 1e-6;
 
 /// The numbers of the samples of a row or column of so many whose centers lie in a span.
 #[inline(always)]
-fn samples_in([low, high]: [f64; 2], count: usize) -> std::ops::Range<usize> {
+fn samples_in([low, high]: [f64; 2], count: usize) -> Range<usize> {
     let first = (low - 0.5 - SLACK_PX).clamp(0.0, count as f64);
     let past = (high + 0.5 + SLACK_PX).clamp(0.0, count as f64);
     // Rounded up and down by the conversion: functions of the standard library are calls on machines that
@@ -248,7 +273,27 @@ fn samples_in([low, high]: [f64; 2], count: usize) -> std::ops::Range<usize> {
     up..past as usize
 }
 
-impl<T, D: Depths> Band<'_, T, D> {
+impl<T: Copy, D: Depths> Band<'_, T, D> {
+    /// Makes the samples of a row known as far as they are not.
+    #[inline]
+    fn know(&mut self, row: usize, columns: &Range<usize>) {
+        let Some(span) = self.spans.get_mut(row) else { return };
+        let [first, past] = span.map(|c| c as usize);
+        if first <= columns.start && columns.end <= past || columns.is_empty() {
+            return;
+        }
+        let there = &mut self.samples[row * self.width..][..self.width];
+        let (low, high) = match first == past {
+            true => (columns.start, columns.end),
+            false => (first.min(columns.start), past.max(columns.end)),
+        };
+        // In between as well, so that a span is enough to tell.
+        let (known, past) = if first == past { (high, high) } else { (first, past) };
+        there[low..known].fill(self.clear);
+        there[past..high].fill(self.clear);
+        *span = [low as u32, high as u32];
+    }
+
     /// Finds the samples whose rays meet a box before the image, but for those that are skipped: each
     /// with the number of the face by which it is entered.
     #[inline]
@@ -267,8 +312,10 @@ impl<T, D: Depths> Band<'_, T, D> {
         let [across, down] = rays.rectangle::<V>(&min, &max);
         let first = self.first as f64;
         let rows = self.samples.len() / self.width.max(1);
+        let columns = samples_in(across, self.width);
         for row in samples_in([down[0] - first, down[1] - first], rows) {
-            for column in samples_in(across, self.width) {
+            self.know(row, &columns);
+            for column in columns.clone() {
                 let at = row * self.width + column;
                 if skips(&self.samples[at]) {
                     continue;
@@ -314,7 +361,8 @@ pub fn draw_in_order<S: Drawable>(
         }
         let Some(one) = one else { break };
         let (samples, depths) = (&mut colors[..], &mut image.depth[..]);
-        let mut band = Band { first: 0, width: view.width as usize, samples, depths };
+        let (width, spans) = (view.width as usize, &mut [][..]);
+        let mut band = Band { first: 0, width, samples, depths, spans, clear: background };
         band.meet(
             &rays,
             &one.bounds,

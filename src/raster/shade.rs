@@ -69,7 +69,7 @@ pub fn paint<S: Drawable>(
     (light, background): (Light, [f32; 3]),
 ) -> Vec<u8> {
     let mut pixels = shade_lit(image, scene, view, (light, background), |prim| scene.color_of(prim));
-    for (pixel, &[r, g, b, left]) in pixels.chunks_exact_mut(4).zip(canvas.samples()) {
+    for (pixel, [r, g, b, left]) in pixels.chunks_exact_mut(4).zip(canvas.samples()) {
         if left < 1.0 {
             let behind = [pixel[0], pixel[1], pixel[2]].map(linear);
             let mixed = std::array::from_fn(|c| [r, g, b][c] + left * behind[c]);

@@ -101,8 +101,8 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "3",
-        what: "where no cell below one in full view can be small enough, or fewer than a tenth of the whole \
-               scene lie in such cells, its geometry is drawn at once",
+        what: "where no cell below one in full view can be small enough, or less than 15 % of the whole \
+               scene lie in such cells alone, its geometry is drawn at once",
         why: "a view that needs geometry costs no more than geometry, where the paper's took up to 2.5 times \
               as long (Table 2)",
         when: When::Always,

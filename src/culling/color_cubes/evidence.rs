@@ -273,9 +273,9 @@ impl<S: Space> Note<S> for Evidence<S> {
                 let covers =
                     |f: &usize| format!("{} covers {:.0} %", FACE_NAMES[*f], n.faces.get(*f)[3] * 100.0);
                 let list = facing.iter().map(covers).collect::<Vec<_>>().join(", ");
-                let faces = if facing.len() == 1 { "face faces" } else { "faces face" };
+                let verb = if facing.len() == 1 { "faces" } else { "face" };
                 format!(
-                    "The color cube of node {} is drawn: {} of its {faces} the eye. {list}.",
+                    "The color cube of node {} is drawn: {} of its faces {verb} the eye. {list}.",
                     n.node,
                     facing.len()
                 )

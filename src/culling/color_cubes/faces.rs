@@ -89,12 +89,13 @@ impl<S: Projected> Baking<'_, S> {
     /// The samples of each face, row by row, of a cell with these primitives.
     pub fn samples(&self, cell: &Aabb<S::Vector>, prims: &[PrimId]) -> Vec<Vec<[f32; 4]>> {
         let count = S::sample_count(self.side);
+        let lit: Vec<Lit<S>> = prims.iter().map(|&prim| self.lit(prim)).collect();
         let mut faces = Vec::new();
         // Both sides of an axis at a time: a sample of the one is a sample of the other.
         for axis in 0..S::Vector::AXES {
             let mut samples = vec![Sample::default(); 2 * count];
             for through in [false, true] {
-                prims.iter().for_each(|&p| self.see(cell, axis, p, through, &mut samples));
+                lit.iter().for_each(|one| self.see(cell, axis, one, through, &mut samples));
                 if !self.surfaces.any_through(self.scene) {
                     break;
                 }
@@ -106,16 +107,16 @@ impl<S: Projected> Baking<'_, S> {
 
     /// Draws a primitive of a cell into the samples of both faces of an axis, the lower face's first; those
     /// that light comes through last, over what the others left.
-    fn see(&self, cell: &Aabb<S::Vector>, axis: usize, prim: PrimId, through: bool, samples: &mut [Sample]) {
-        if self.surfaces.show_through(self.scene, prim) != through {
+    fn see(&self, cell: &Aabb<S::Vector>, axis: usize, one: &Lit<S>, through: bool, samples: &mut [Sample]) {
+        if one.through != through {
             return;
         }
-        let (corners, color) = (self.corners(prim), self.color(prim));
         let toward = |sign: f32| S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 });
-        let [from_below, from_above] = [-1.0, 1.0].map(|sign| self.is_seen(prim, toward(sign)));
+        let [from_below, from_above] = [-1.0, 1.0].map(|sign| one.is_seen(toward(sign)));
+        let color = one.color;
         let (lower, upper) = samples.split_at_mut(samples.len() / 2);
         let size = f64::from(cell.size().get(axis));
-        S::cover(&corners[..S::CORNERS], cell, axis, self.side, &mut |at, height| {
+        S::cover(&one.corners[..S::CORNERS], cell, axis, self.side, &mut |at, height| {
             if from_below {
                 lower[at].put(height, color, through);
             }
@@ -124,20 +125,21 @@ impl<S: Projected> Baking<'_, S> {
             }
         });
     }
-    fn corners(&self, prim: PrimId) -> [S::Vector; 3] {
+    /// A primitive as faces see it.
+    fn lit(&self, prim: PrimId) -> Lit<S> {
+        let scene = self.scene;
         let mut corners = [S::Vector::default(); 3];
-        for (to, from) in corners.iter_mut().zip(self.scene.prim_points(prim)) {
+        for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
             *to = from;
         }
-        corners
-    }
-    fn color(&self, prim: PrimId) -> [f32; 3] {
-        let light = fixed_light(self.scene, prim);
-        self.scene.color_of(prim).map(|c| c * light)
-    }
-    /// Whether a primitive is seen from a direction: where sides matter, from before it alone.
-    fn is_seen(&self, prim: PrimId, toward: S::Vector) -> bool {
-        !self.surfaces.one_sided || self.scene.is_two_sided(prim) || self.scene.normal(prim).dot(toward) > 0.0
+        let light = fixed_light(scene, prim);
+        let is_one_sided = self.surfaces.one_sided && !scene.is_two_sided(prim);
+        Lit {
+            corners,
+            color: scene.color_of(prim).map(|c| c * light),
+            through: self.surfaces.show_through(scene, prim),
+            front: is_one_sided.then(|| scene.normal(prim)),
+        }
     }
 
     /// How wrong a cell's cube is from between the axes, where no face was made: over all directions of which
@@ -146,6 +148,7 @@ impl<S: Projected> Baking<'_, S> {
     /// an error measured there is nothing: Section 5.1 shows surfaces torn from 45°.)
     pub fn error(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], faces: &Faces) -> f32 {
         let mut worst = 0.0_f32;
+        let lit: Vec<Lit<S>> = prims.iter().map(|&prim| self.lit(prim)).collect();
         for number in 0..3usize.pow(S::Vector::AXES as u32) {
             let toward = S::Vector::from_fn(|a| (number / 3usize.pow(a as u32) % 3) as f32 - 1.0);
             let axes: Vec<usize> = (0..S::Vector::AXES).filter(|a| toward.get(*a) != 0.0).collect();
@@ -155,7 +158,7 @@ impl<S: Projected> Baking<'_, S> {
             let mut off = [0.0; 4];
             for &axis in &axes {
                 let cube = faces[2 * axis + usize::from(toward.get(axis) > 0.0)];
-                let seen = self.seen_along(cell, prims, toward, axis);
+                let seen = self.seen_along(cell, &lit, toward, axis);
                 // Components are alike, so are the areas of the faces.
                 (0..4).for_each(|c| off[c] += (cube[c] - seen[c]) / axes.len() as f32);
             }
@@ -166,28 +169,18 @@ impl<S: Projected> Baking<'_, S> {
 
     /// What is seen of a cell through its face on an axis, looking from a direction with components of 1, −1
     /// and 0: the cell is sheared until that is along the axis.
-    fn seen_along(
-        &self,
-        cell: &Aabb<S::Vector>,
-        prims: &[PrimId],
-        toward: S::Vector,
-        axis: usize,
-    ) -> [f32; 4] {
+    fn seen_along(&self, cell: &Aabb<S::Vector>, lit: &[Lit<S>], toward: S::Vector, axis: usize) -> [f32; 4] {
         let mut samples = vec![Sample::default(); S::sample_count(self.side)];
         let (is_upper, size) = (toward.get(axis) > 0.0, cell.size());
         let depth = |height: f64| if is_upper { f64::from(size.get(axis)) - height } else { height };
         for through in [false, true] {
-            for &prim in prims {
-                if self.surfaces.show_through(self.scene, prim) != through || !self.is_seen(prim, toward) {
-                    continue;
-                }
-                let sheared = self.corners(prim).map(|p| {
+            for one in lit.iter().filter(|one| one.through == through && one.is_seen(toward)) {
+                let sheared = one.corners.map(|p| {
                     let inward = depth(f64::from(p.get(axis) - cell.min.get(axis))) as f32;
                     S::Vector::from_fn(
                         |a| if a == axis { p.get(a) } else { p.get(a) + toward.get(a) * inward },
                     )
                 });
-                let color = self.color(prim);
                 S::cover(&sheared[..S::CORNERS], cell, axis, self.side, &mut |at, height| {
                     // What the ray meets after it has left the cell by another side is not in it.
                     let inward = depth(height);
@@ -199,7 +192,7 @@ impl<S: Projected> Baking<'_, S> {
                         (0.0..=extent).contains(&(place - f64::from(toward.get(a)) * inward))
                     });
                     if is_inside {
-                        samples[at].put(inward, color, through);
+                        samples[at].put(inward, one.color, through);
                     }
                 });
             }
@@ -209,6 +202,24 @@ impl<S: Projected> Baking<'_, S> {
             .map(Sample::color)
             .fold([0.0; 4], |sum: [f32; 4], c| std::array::from_fn(|k| sum[k] + c[k]));
         sum.map(|c| c / samples.len() as f32)
+    }
+}
+
+/// A primitive as faces see it.
+struct Lit<S: Space> {
+    corners: [S::Vector; 3],
+    /// Under the fixed light.
+    color: [f32; 3],
+    /// Whether light comes through it.
+    through: bool,
+    /// Where its front is, if it has no other side.
+    front: Option<S::Vector>,
+}
+
+impl<S: Space> Lit<S> {
+    /// Whether it is seen from a direction.
+    fn is_seen(&self, toward: S::Vector) -> bool {
+        self.front.is_none_or(|front| front.dot(toward) > 0.0)
     }
 }
 

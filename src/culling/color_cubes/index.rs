@@ -6,7 +6,7 @@ use super::Params;
 use super::faces::{Baked, Baking};
 use super::saved;
 use super::space::Projected;
-use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
+use crate::geometry::{Aabb, NodeId, PrimId, Space};
 use crate::index::{CellTree, Hierarchy};
 use crate::raster::CubeFaces;
 use crate::scene::{Part, Progress, Scene};
@@ -17,7 +17,7 @@ pub struct CubeTree<S: Space> {
     tree: CellTree<S::Vector>,
     /// Of each node.
     baked: Baked,
-    /// How many references are in leaves of each level or deeper ones.
+    /// How many primitives are in no leaf above each level.
     deep: Vec<u32>,
     key: saved::Key,
 }
@@ -36,7 +36,7 @@ impl<S: Projected> CubeTree<S> {
         let key = saved::key(scene, params);
         if let Some(bytes) = saved {
             let (tree, baked) = saved::read(bytes, &key, scene)?;
-            return Ok(Some(Self { deep: deep(&tree), tree, baked, key }));
+            return Ok(Some(Self { deep: deep(&tree, scene), tree, baked, key }));
         }
         progress.report(0.0, "dividing cells");
         let Some(tree) = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled())
@@ -51,16 +51,22 @@ impl<S: Projected> CubeTree<S> {
         };
         let part = Part { whole: progress, start: 0.5, length: 0.5 };
         let baked = baking.bake(&tree, params.measures(), &part);
-        Ok(baked.map(|baked| Self { deep: deep(&tree), tree, baked, key }))
+        Ok(baked.map(|baked| Self { deep: deep(&tree, scene), tree, baked, key }))
     }
 }
 
-/// How many references are in leaves of each level or deeper ones.
-fn deep<V: Vector>(tree: &CellTree<V>) -> Vec<u32> {
-    let mut counts = vec![0; CellTree::<V>::MOST_LEVELS as usize];
-    for leaf in tree.nodes().iter().filter(|node| node.is_leaf()) {
-        let reached = &mut counts[..=usize::from(leaf.level)];
-        reached.iter_mut().for_each(|count| *count += leaf.reference_count() as u32);
+/// How many primitives are in no leaf above each level.
+fn deep<S: Space>(tree: &CellTree<S::Vector>, scene: &Scene<S>) -> Vec<u32> {
+    let levels = CellTree::<S::Vector>::MOST_LEVELS as usize;
+    let mut highest = vec![levels as u8; scene.prim_count()];
+    for (at, leaf) in tree.nodes().iter().enumerate().filter(|(_, node)| node.is_leaf()) {
+        let held = tree.references(NodeId(at as u32));
+        held.iter().for_each(|prim| highest[prim.at()] = highest[prim.at()].min(leaf.level));
+    }
+    let mut counts = vec![0; levels];
+    // What is in no leaf at all does not exist.
+    for level in highest.into_iter().map(usize::from).filter(|level| *level < levels) {
+        counts[..=level].iter_mut().for_each(|count| *count += 1);
     }
     counts
 }
@@ -76,7 +82,8 @@ impl<S: Space> CubeTree<S> {
     pub fn tree(&self) -> &CellTree<S::Vector> {
         &self.tree
     }
-    /// Which part of all references is in leaves of a level or deeper ones.
+    /// Which part of all primitives is in no leaf above a level: what need not be drawn where cells of that
+    /// level are drawn as cubes.
     pub fn share_below(&self, level: usize) -> f32 {
         self.deep.get(level).map_or(0.0, |count| *count as f32 / self.deep[0].max(1) as f32)
     }

@@ -162,8 +162,8 @@ impl<S: Projected> Method<S> for ColorCubes {
             "error-bound",
             "pixels",
             "a cell is drawn as its cube only if it is wrong by no more than this: its error, 0 to 1, from \
-             where between the axes it is most so, times its area in pixels. Surfaces that would be torn stay \
-             geometry; 0: errors are not measured, and no cell is refused",
+             where between the axes it is most so, times its area in pixels. Surfaces that would be torn \
+             stay geometry; 0: errors are not measured, and no cell is refused",
             "Chamberlain et al. 1996, Sections 5.1 and 6",
         );
         knobs.real(bound, 0.0..=100.0, &mut params.error_bound);

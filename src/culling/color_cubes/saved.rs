@@ -1,5 +1,5 @@
-//! The tree and its faces as bytes, so that they are made once: nodes, references, six faces a node, and their
-//! errors if they were measured.
+//! The tree and its faces as bytes, so that they are made once: nodes, references, six faces a node, and
+//! their errors if they were measured.
 
 use super::Params;
 use super::faces::Baked;

@@ -129,8 +129,8 @@ fn surfaces_are_more_wrong_than_clouds() {
     // Across x: the x faces are covered and the y faces clear, so the cube covers half from 45°. The wall at
     // the side covers the face that it lies on, and nothing behind the other.
     let wall = error(vec![vec2(0.5, 0.0), vec2(0.5, 1.0)]);
-    // A ray at 45° through a sample of a face meets the middle line of the cell where it comes in within half a
-    // side of it: half of both faces, so as much as the cube covers; but not where the cube has it.
+    // A ray at 45° through a sample of a face meets the middle line of the cell where it comes in within
+    // half a side of it: half of both faces, so as much as the cube covers; but not where the cube has it.
     assert!(wall < 0.02, "as much is covered as is: {wall}");
     // From corner to corner all is covered from one diagonal and nothing from the other; the cube covers all.
     let slant = error(vec![vec2(0.0, 0.0), vec2(1.0, 1.0)]);
@@ -318,7 +318,7 @@ fn faces_show_by_their_projected_areas() {
         let mut canvas = Canvas::default();
         canvas.clear(&view);
         canvas.composite(&[cube], &Target::new(&view), &view, &Options::default());
-        let sums = [0, 1, 2].map(|c| canvas.samples().iter().map(|s| s[c]).sum::<f32>());
+        let sums = [0, 1, 2].map(|c| canvas.samples().map(|s| s[c]).sum::<f32>());
         sums.map(|s| s / sums.iter().sum::<f32>())
     };
     let diagonal = shares(vec3(1.0, 1.0, 1.0).normalize());

@@ -5,12 +5,18 @@ use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use super::simplices::{NONE, Simplex};
 use crate::geometry::{self, Aabb, Beside, Flat, Solid, Space};
-use crate::index::Delaunay;
+use crate::index::{Delaunay, octant_of};
 
 /// A space that can be divided into cells.
 pub trait Cellular: Space {
     /// Whether a primitive meets a box.
     fn meets_box(prim: &[Self::Vector], bounds: &Aabb<Self::Vector>) -> bool;
+    /// Which octants (quadrants) of a box a primitive meets, of those whose boxes its own touches, a bit
+    /// each.
+    fn meets_octants(prim: &[Self::Vector], cell: &Aabb<Self::Vector>, asked: u8) -> u8 {
+        let is_met = |o: &usize| asked >> o & 1 == 1 && Self::meets_box(prim, &octant_of(cell, *o));
+        (0..8).filter(is_met).fold(0, |bits, octant| bits | 1 << octant)
+    }
     /// Whether a primitive meets a simplex, of which the first `AXES + 1` corners count.
     fn meets_simplex(prim: &[Self::Vector], simplex: &[Self::Vector; 4]) -> bool;
     /// Where a point lies in regard to a primitive.
@@ -59,6 +65,9 @@ impl Cellular for Flat {
 }
 
 impl Cellular for Solid {
+    fn meets_octants(prim: &[Vec3], cell: &Aabb<Vec3>, asked: u8) -> u8 {
+        geometry::triangle_meets_octants([prim[0], prim[1], prim[2]], cell, asked)
+    }
     #[inline]
     fn meets_box(prim: &[Vec3], bounds: &Aabb<Vec3>) -> bool {
         geometry::triangle_meets_box([prim[0], prim[1], prim[2]], bounds)

@@ -19,6 +19,10 @@ fn over<S: Drawable>(boxes: &[StandIn<S::Vector>], image: &Target, view: &View<S
     canvas
 }
 
+fn sample(canvas: &Canvas, at: usize) -> [f32; 4] {
+    canvas.samples().nth(at).expect("a sample of the image")
+}
+
 /// Within the steps of the bytes that faces are kept in.
 fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
     (0..4).all(|c| (a[c] - b[c]).abs() < 0.01)
@@ -40,7 +44,7 @@ fn cells_along_a_ray_are_composited_front_to_back() {
         cube(vec2(-0.5, at), vec2(0.5, at + 1.0), [r * 0.5, g * 0.5, b * 0.5, 0.5])
     };
     let boxes = [cell(1.0, [1.0, 0.0, 0.0]), cell(2.0, [0.0, 1.0, 0.0]), cell(3.0, [0.0, 0.0, 1.0])];
-    let seen = over(&boxes, &Target::new(&view), &view, 1).samples()[1];
+    let seen = sample(&over(&boxes, &Target::new(&view), &view, 1), 1);
     assert!(is_near(seen, [0.5, 0.25, 0.125, 0.125]), "{seen:?}");
     // From the back by over: C = F + (1 − α) · B.
     let mut back = [0.0; 4];
@@ -82,13 +86,18 @@ fn a_wall_of_cells_has_no_crack_and_no_seam() {
             .collect();
         let image = Target::new(&view);
         let (whole, parts) = (over(&[slab], &image, &view, 1), over(&cells, &image, &view, 1));
-        for (at, (whole, part)) in whole.samples().iter().zip(parts.samples()).enumerate() {
+        for (at, (whole, part)) in whole.samples().zip(parts.samples()).enumerate() {
             assert_eq!(whole[3] < 1.0, part[3] < 1.0, "view {turn}, sample {at}: {whole:?} {part:?}");
             let most = 1.0 - part[3];
             assert!(part[..3].iter().all(|c| *c <= most + 1e-6) && (0.0..=1.0).contains(&most));
         }
         let bands = over(&cells, &image, &view, 5);
         assert_eq!(parts, bands, "view {turn}: threads");
+        // Nor on what a canvas held before.
+        let mut again = bands;
+        again.clear(&view);
+        again.composite(&cells[..7], &image, &view, &Options::default());
+        assert_eq!(again, over(&cells[..7], &image, &view, 1), "view {turn}: cleared");
     }
 }
 
@@ -101,11 +110,11 @@ fn a_ray_along_a_shared_edge_meets_one_cell() {
         .into_iter()
         .map(|[x, y]| cube(vec3(x, y, -2.5), vec3(x + 1.0, y + 1.0, -1.5), [0.5; 4]))
         .collect();
-    let seen = over(&cells, &Target::new(&view), &view, 1).samples()[0];
+    let seen = sample(&over(&cells, &Target::new(&view), &view, 1), 0);
     assert!(is_near(seen, [0.5; 4]), "met once: {seen:?}");
     // The next image has no sample there: its ray passes beside the edge.
     let view = straight_view(2, 0.1, 100.0);
-    assert!(over(&cells, &Target::new(&view), &view, 1).samples().iter().all(|s| is_near(*s, [0.5; 4])));
+    assert!(over(&cells, &Target::new(&view), &view, 1).samples().all(|s| is_near(s, [0.5; 4])));
 }
 
 /// The faces that a cell turns to the eye, by the axis along which the ray enters it.
@@ -116,7 +125,7 @@ fn the_face_toward_the_eye_is_drawn() {
     (0..6).for_each(|f| faces[f] = [f as f32 / 6.0, 0.0, 0.0, 1.0]);
     let bounds = Aabb { min: vec3(-0.2, -0.2, -3.0), max: vec3(0.2, 0.2, -2.0) };
     let one = StandIn { node: NodeId(0), bounds, faces: CubeFaces::new(&faces), after: 0 };
-    let seen = over(&[one], &Target::new(&view), &view, 1).samples()[4];
+    let seen = sample(&over(&[one], &Target::new(&view), &view, 1), 4);
     // Looking along −z one sees the upper z side.
     assert!(is_near(seen, [5.0 / 6.0, 0.0, 0.0, 0.0]), "{seen:?}");
     // An eye in a box, and one that has it behind, see no face of it.
@@ -124,7 +133,7 @@ fn the_face_toward_the_eye_is_drawn() {
     let behind = cube(vec3(-1.0, -1.0, 1.0), vec3(1.0, 1.0, 2.0), [1.0; 4]);
     for hidden in [around, behind] {
         let canvas = over(&[hidden], &Target::new(&view), &view, 1);
-        assert!(canvas.samples().iter().all(|s| s[3] == 1.0), "{:?}", canvas.samples());
+        assert!(canvas.samples().all(|s| s[3] == 1.0), "{canvas:?}");
     }
 }
 

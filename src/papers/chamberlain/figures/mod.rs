@@ -41,11 +41,11 @@ pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let label = format!("{cubes} cells drawn as color cubes, {leaves} as geometry");
     let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
     let caption = format!(
-        "A forest from above, seen in a line of {} pixels. The threshold is 12 pixels, so that cubes are large \
-         enough to be looked at. Near the eye cells are larger and are divided down to leaves, which are drawn \
-         as geometry; farther off cells of ever greater size are drawn as their color cubes, in the colors of \
-         the edges that face the eye; what is outside the view is culled, a whole cell at a time. As in the \
-         paper's Figure 1 each level takes up a band about the eye.",
+        "A forest from above, seen in a line of {} pixels. The threshold is 12 pixels, so that cubes are \
+         large enough to be looked at. Near the eye cells are larger and are divided down to leaves, which \
+         are drawn as geometry; farther off cells of ever greater size are drawn as their color cubes, in \
+         the colors of the edges that face the eye; what is outside the view is culled, a whole cell at a \
+         time. As in the paper's Figure 1 each level takes up a band about the eye.",
         view.width
     );
     Ok(maker.page(
