@@ -14,7 +14,7 @@ use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, View, each};
 use crate::measure::timed;
-use crate::method::{Words, surfaces_of};
+use crate::method::{DrawList, Words, surfaces_of};
 use crate::raster::{Canvas, Light, Options, Target};
 use crate::render::{Theme, png_pixels};
 use crate::scene::{Progress, Scene};
@@ -81,6 +81,30 @@ struct Frame {
     counters: BTreeMap<&'static str, u64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth: Option<TruthReport>,
+}
+
+impl Frame {
+    /// What was listed, and how long it took.
+    fn of<S: World>(
+        args: &Args,
+        view: usize,
+        list: &DrawList<S>,
+        stages_ms: &BTreeMap<&'static str, f64>,
+        [cull_ms, draw_ms]: [f64; 2],
+    ) -> Self {
+        Self {
+            view,
+            drawn_triangles: list.prims.len(),
+            drawn_stand_ins: Some(list.stand_ins.len()).filter(|n| *n > 0),
+            drawn_ids: args.ids.then(|| numbers(&list.ascending())),
+            pose_ms: None,
+            cull_ms: rounded(cull_ms),
+            draw_ms: rounded(draw_ms),
+            stages_ms: stages_ms.iter().map(|(name, ms)| (*name, rounded(*ms))).collect(),
+            counters: BTreeMap::new(),
+            truth: None,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -163,22 +187,15 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
             write_image(&output::numbered(path, i, count), view, picture())?;
         }
         let truth = truth.as_mut().map(|t| {
+            let judged = t.judge(scene, view, &list.prims, &target);
             let stands_in = !list.stand_ins.is_empty();
-            let reference =
-                stands_in.then(|| t.reference(scene, view, REFERENCE_SAMPLES, light).judge(&picture()));
-            truth_report(args, t.judge(scene, view, &list.prims, &target), reference)
+            let seen = || t.reference(scene, view, REFERENCE_SAMPLES, light).judge(&picture());
+            truth_report(args, judged, stands_in.then(seen))
         });
         frames.push(Frame {
-            view: i,
-            drawn_triangles: list.prims.len(),
-            drawn_stand_ins: Some(list.stand_ins.len()).filter(|n| *n > 0),
-            drawn_ids: args.ids.then(|| numbers(&list.ascending())),
-            pose_ms: scene.frame().map(|_| rounded(pose_ms)),
-            cull_ms: rounded(cull_ms),
-            draw_ms: rounded(draw_ms),
-            stages_ms: stages_ms.into_iter().map(|(name, ms)| (name, rounded(ms))).collect(),
-            counters: BTreeMap::new(),
             truth,
+            pose_ms: scene.frame().map(|_| rounded(pose_ms)),
+            ..Frame::of(args, i, &list, &stages_ms, [cull_ms, draw_ms])
         });
     }
     ready.run.forget();
