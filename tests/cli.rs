@@ -774,6 +774,31 @@ fn tables_of_the_paper_are_measured_and_written() {
     refused(&here, &["paper", "coorg-teller-nodes", "--size", "0x3"], 2);
 }
 
+/// What is drawn as color cubes is compared with an image of many samples a pixel, and without cubes nothing is.
+#[test]
+fn color_cubes_are_compared_with_the_reference() {
+    let here = folder("cubes");
+    let cull = |threshold: &str| {
+        let set = format!("pixel-threshold={threshold}");
+        let words = ["cull", "generate:tree?polygons=3000", "--method", "color-cubes", "--path", "distances"];
+        json(&done(&here, &[&words[..], &["--size", "32x32", "--truth", "--set", &set]].concat()))
+    };
+    let (cubes, geometry) = (cull("4"), cull("0"));
+    let frames = |report: &Json| report["frames"].as_array().expect("frames").clone();
+    for frame in frames(&geometry) {
+        assert!(frame["drawn_stand_ins"].is_null() && frame["truth"]["flip_reference"].is_null(), "{frame}");
+        assert_eq!(frame["truth"]["wrong_pixels"], 0, "{frame}");
+    }
+    let frames = frames(&cubes);
+    let with_cubes: Vec<_> = frames.iter().filter(|f| !f["drawn_stand_ins"].is_null()).collect();
+    assert!(!with_cubes.is_empty(), "{cubes}");
+    for frame in with_cubes {
+        let mean = frame["truth"]["flip_reference"].as_f64().expect("a number");
+        let seen = frame["truth"]["flip_reference_seen_ratio"].as_f64().expect("a number");
+        assert!(mean > 0.0 && mean < 0.5 && seen <= 1.0, "{frame}");
+    }
+}
+
 #[test]
 fn occlusion_is_measured_on_an_input_that_others_read_too() {
     let folder = folder("bench");

@@ -355,10 +355,10 @@ fn octants_of<S: Cellular>(scene: &Scene<S>, prim: PrimId, cell: &Aabb<S::Vector
     // By its box first, which is all that most small ones need.
     let mut octants = [1u8, 0, 0];
     let mut met = 0u8;
-    for a in 0..S::Vector::AXES {
+    for (a, sides) in octants.iter_mut().enumerate().take(S::Vector::AXES) {
         let (low, high, plane) = (bounds.min.get(a), bounds.max.get(a), center.get(a));
         // On the plane alone: the lower side.
-        octants[a] = u8::from(low < plane || high <= plane) | u8::from(high > plane) << 1;
+        *sides = u8::from(low < plane || high <= plane) | u8::from(high > plane) << 1;
     }
     for octant in 0..1usize << S::Vector::AXES {
         let meets = (0..S::Vector::AXES).all(|a| octants[a] >> (octant >> a & 1) & 1 == 1);

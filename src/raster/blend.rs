@@ -82,11 +82,13 @@ impl Canvas {
         // A band of rows is one thread's, which keeps the order; so the bytes do not depend on their number.
         let rows = (view.height as usize).div_ceil(threads.max(1)).max(1);
         let pixels = (rows * self.width).max(1);
-        let bands = self.samples.chunks_mut(pixels).zip(self.spans.chunks_mut(rows)).enumerate();
         let width = self.width;
-        let work = |(band, (samples, spans)): (usize, (&mut [[f32; 4]], &mut [[u32; 2]]))| {
+        let parts = self.samples.chunks_mut(pixels).zip(self.spans.chunks_mut(rows)).enumerate();
+        let bands = parts.map(|(band, (samples, spans))| {
             let depths = &image.depth[band * pixels..][..samples.len()];
-            let mut band = Band { first: band * rows, width, samples, depths, spans, clear: CLEAR };
+            Band { first: band * rows, width, samples, depths, spans, clear: CLEAR }
+        });
+        let work = |mut band: Band<'_, [f32; 4], &[f32]>| {
             for one in boxes {
                 // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows
                 // nothing more.
@@ -144,15 +146,15 @@ impl Rays {
             down: [0.0; 3],
             half,
         };
-        for axis in 0..axes - 1 {
+        for (axis, &half) in half.iter().enumerate().take(axes - 1) {
             let row = widened(projection.rows[axis]);
             rays.rows[axis] = row;
             let length = row.iter().map(|c| c * c).sum::<f64>();
             // Rows are square to each other, so dividing by the squared length undoes their scale.
             let sign = if axis == 0 { 1.0 } else { -1.0 };
-            let step = row.map(|c| sign * c / (length * half[axis]));
+            let step = row.map(|c| sign * c / (length * half));
             // From the middle of the image to the center of its first pixel.
-            (0..3).for_each(|a| rays.origin[a] += step[a] * (0.5 - half[axis]));
+            (0..3).for_each(|a| rays.origin[a] += step[a] * (0.5 - half));
             *(if axis == 0 { &mut rays.right } else { &mut rays.down }) = step;
         }
         rays

@@ -395,7 +395,7 @@ mod tests {
         assert_eq!(flip(&a, &b, 32, 32).seen_ratio, 1.0);
         let [a, b] = images(64, 64, pixel);
         let Flip { mean, seen_ratio } = flip(&a, &b, 64, 64);
-        assert!(seen_ratio >= 1.0 / 4096.0 && seen_ratio < 40.0 / 4096.0, "{seen_ratio}");
+        assert!((1.0 / 4096.0..40.0 / 4096.0).contains(&seen_ratio), "{seen_ratio}");
         // What is above a tenth is at most ten times the whole.
         assert!(seen_ratio * SEEN < mean, "{seen_ratio} and {mean}");
         assert_eq!(flip(&a, &a, 64, 64), Flip::default());
