@@ -774,7 +774,7 @@ fn tables_of_the_paper_are_measured_and_written() {
     refused(&here, &["paper", "coorg-teller-nodes", "--size", "0x3"], 2);
 }
 
-/// What is drawn as color cubes is compared with an image of many samples a pixel, and without cubes nothing is.
+/// What is drawn as color cubes is compared with an image of many samples a pixel; without cubes nothing is.
 #[test]
 fn color_cubes_are_compared_with_the_reference() {
     let here = folder("cubes");

@@ -79,7 +79,7 @@ pub fn paint<S: Drawable>(
     pixels
 }
 
-/// The image of primitives and boxes in the order of a list, the farthest first; see [`draw_in_order`]. RGBA,
+/// The image of primitives and boxes in the order of a list, the farthest first; see `draw_in_order`. RGBA,
 /// sRGB-encoded, row by row.
 pub fn paint_in_order<S: Drawable>(
     scene: &Scene<S>,
