@@ -608,8 +608,9 @@ fn chosen_in_order<S: Faces>(scene: &Arc<Scene<S>>, views: &[View<S>], dice: &mu
         let limit = [0, 7, 50, 400, 1_000_000][dice.below(5) as usize];
         let mut last = (dice.below(2) == 0).then(|| dice.between(-1.0, 60.0));
         let found = choosing.candidates(limit, &mut last);
-        let everything = choosing.candidates(1_000_000, &mut None);
-        assert_eq!(everything.len(), choosing.count() as usize);
+        assert_eq!(found, choosing.candidates(limit, &mut last));
+        let all = choosing.candidates(1_000_000, &mut None);
+        assert_eq!(all.len(), choosing.count() as usize);
         let is_in_view = |at: &usize| {
             index.has_occluders(NodeId(*at as u32))
                 && nodes[*at].children().is_none()
@@ -618,8 +619,8 @@ fn chosen_in_order<S: Faces>(scene: &Arc<Scene<S>>, views: &[View<S>], dice: &mu
                     FrustumTest::Outside(_)
                 )
         };
-        assert_eq!(everything.len(), (0..nodes.len()).filter(is_in_view).count());
-        assert_eq!(found, within(everything, limit, key), "limit {limit}");
+        assert_eq!(all.len(), (0..nodes.len()).filter(is_in_view).count());
+        assert_eq!(found, within(all, limit, key));
         taken += found.len();
     }
     taken
