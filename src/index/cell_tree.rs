@@ -4,9 +4,10 @@
 //! Chamberlain, DeRose, Lischinski, Salesin and Snyder 1996, Section 4. Cells follow from halving the root,
 //! so a node is 20 bytes. Making it:
 //!
-//! 1. the root is a cube about the scene, and refers to every primitive, with a share of 1 each;
-//! 2. a primitive goes to each child that it meets, by exact contact; what lies on a dividing plane goes to
-//!    the lower side. These share what the parent had of it equally;
+//! 1. the root is a cube about the scene, and refers to every primitive, with a share of 1 each; or to every
+//!    object ([`Items`]), with a share of as many as it has primitives;
+//! 2. a primitive goes to each child that it meets, by exact contact, and an object to each that its box meets;
+//!    what lies on a dividing plane goes to the lower side. These share what the parent had of it equally;
 //! 3. a cell is not divided if the caller says so, by the sum of its shares and the number of children that
 //!    would hold something; nor where division would not part anything;
 //! 4. children that would hold nothing are not made.
@@ -18,9 +19,9 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use super::Hierarchy;
 use super::octree::{cube_around, octant_of};
 use super::tessellation::Cellular;
+use super::{Hierarchy, Items};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::scene::Scene;
 
@@ -86,6 +87,8 @@ impl CellNode {
 pub struct CellTree<V> {
     root: Aabb<V>,
     nodes: Vec<CellNode>,
+    /// What it refers to.
+    items: Items,
     /// Of the leaves in the order in which they are reached, so that those below a node are in one piece. Of
     /// each leaf those that no other leaf has come first, ascending, then the rest, ascending.
     references: Vec<PrimId>,
@@ -105,11 +108,12 @@ impl<V: Vector> CellTree<V> {
     /// Levels at most.
     pub const MOST_LEVELS: u32 = 20;
 
-    /// The tree of a scene with so many levels at most. `stop`: whether a cell is not divided, by its sum of
+    /// The tree of items of a scene with so many levels at most. `stop`: whether a cell is not divided, by its sum of
     /// shares and the children that would hold something; it says so of fewer shares, and of more children,
     /// too. `None` when cancelled.
     pub fn build<S: Cellular<Vector = V>>(
         scene: &Scene<S>,
+        items: Items,
         levels: u32,
         stop: &dyn Fn(f64, u32) -> bool,
         cancelled: &dyn Fn() -> bool,
@@ -117,6 +121,8 @@ impl<V: Vector> CellTree<V> {
         let root = cube_around(&scene.bounds());
         let mut making = Making {
             scene,
+            items: &items,
+            boxes: items.boxes(scene),
             levels: levels.min(Self::MOST_LEVELS),
             stop,
             cancelled,
@@ -124,7 +130,8 @@ impl<V: Vector> CellTree<V> {
             references: Vec::new(),
         };
         // 1. A triangle or segment costs 1 to draw.
-        let all = scene.live().iter().map(|&prim| Share { prim, share: 1.0 }).collect();
+        let share = |item: PrimId| items.prims(item).len() as f32;
+        let all = items.all(scene).into_iter().map(|item| Share { item, share: share(item) }).collect();
         making.divide(0, &root, all)?;
         let Making { mut nodes, mut references, .. } = making;
         own_first(scene, &mut nodes, &mut references);
@@ -133,7 +140,7 @@ impl<V: Vector> CellTree<V> {
             let (parent, lowest) = (nodes[at].parent as usize, nodes[at].lowest);
             nodes[parent].lowest = nodes[parent].lowest.max(lowest);
         }
-        Some(Self { root, nodes, references, whole: OnceLock::new() })
+        Some(Self { root, nodes, items, references, whole: OnceLock::new() })
     }
     /// All nodes; a node's number is its id, and children follow their parents.
     pub fn nodes(&self) -> &[CellNode] {
@@ -142,6 +149,10 @@ impl<V: Vector> CellTree<V> {
     /// The root's cell.
     pub fn root(&self) -> &Aabb<V> {
         &self.root
+    }
+    /// What it refers to.
+    pub fn items(&self) -> &Items {
+        &self.items
     }
     /// What the leaves at and below a node refer to, in their order.
     pub fn references(&self, node: NodeId) -> &[PrimId] {
@@ -168,11 +179,12 @@ impl<V: Vector> CellTree<V> {
         &self.wholes().prims[first as usize..own as usize]
     }
     fn wholes(&self) -> &Wholes {
-        self.whole.get_or_init(|| Wholes::new(&self.nodes, &self.references))
+        self.whole.get_or_init(|| Wholes::new(&self.nodes, &self.items, &self.references))
     }
     /// Bytes without what is made for stepping.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<CellNode>() + self.references.len() * size_of::<PrimId>()
+        let references = self.references.len() * size_of::<PrimId>();
+        self.nodes.len() * size_of::<CellNode>() + references + self.items.bytes()
     }
 
     /// Its nodes, five words each, and its references, from which it is made again with the same root.
@@ -183,9 +195,10 @@ impl<V: Vector> CellTree<V> {
         };
         [self.nodes.iter().flat_map(words).collect(), self.references.iter().map(|p| p.0).collect()]
     }
-    /// The tree of [`CellTree::tables`] over a scene; `None` if they are not those of a tree over it.
+    /// The tree of [`CellTree::tables`] over items of a scene; `None` if they are not those of a tree over it.
     pub fn of_tables<S: Space<Vector = V>>(
         scene: &Scene<S>,
+        items: Items,
         nodes: &[u32],
         references: Vec<u32>,
     ) -> Option<Self> {
@@ -198,7 +211,7 @@ impl<V: Vector> CellTree<V> {
         let nodes: Vec<CellNode> = words.iter().map(node).collect();
         let references: Vec<PrimId> = references.into_iter().map(PrimId).collect();
         let is_whole = rest.is_empty() && are_a_tree(&nodes, V::AXES, references.len());
-        let are_live = references.iter().all(|p| p.at() < scene.prim_count() && scene.corners(*p).is_some());
+        let are_live = references.iter().all(|item| items.has(scene, *item));
         if !(is_whole && are_live) {
             return None;
         }
@@ -209,6 +222,7 @@ impl<V: Vector> CellTree<V> {
         (again == nodes && sorted == references).then(|| Self {
             root,
             nodes,
+            items,
             references,
             whole: OnceLock::new(),
         })
@@ -263,16 +277,19 @@ fn own_first<S: Space>(scene: &Scene<S>, nodes: &mut [CellNode], references: &mu
     }
 }
 
-/// A reference to a primitive with the part of its cost that the cell bears.
+/// A reference to an item with the part of its cost that the cell bears.
 #[derive(Clone, Copy)]
 struct Share {
-    prim: PrimId,
+    item: PrimId,
     share: f32,
 }
 
 /// A tree in the making.
 struct Making<'a, S: Space> {
     scene: &'a Scene<S>,
+    items: &'a Items,
+    /// Of objects.
+    boxes: Vec<Aabb<S::Vector>>,
     levels: u32,
     stop: &'a dyn Fn(f64, u32) -> bool,
     cancelled: &'a dyn Fn() -> bool,
@@ -294,7 +311,7 @@ impl<S: Cellular> Making<'_, S> {
         }
         let first = self.references.len() as u32;
         match self.parted(at, cell, &list) {
-            None => self.references.extend(list.iter().map(|s| s.prim)),
+            None => self.references.extend(list.iter().map(|s| s.item)),
             Some(lists) => {
                 drop(list);
                 let (level, first_child) = (self.nodes[at].level + 1, self.nodes.len() as u32);
@@ -331,7 +348,7 @@ impl<S: Cellular> Making<'_, S> {
         // 2. To each child that it meets.
         let mut lists: [Vec<Share>; 8] = Default::default();
         for one in list {
-            let octants = octants_of(self.scene, one.prim, cell);
+            let octants = self.octants_of(one.item, cell);
             let share = one.share / octants.count_ones().max(1) as f32;
             let met = lists.iter_mut().enumerate().filter(|(octant, _)| octants >> octant & 1 == 1);
             met.for_each(|(_, to)| to.push(Share { share, ..*one }));
@@ -342,40 +359,44 @@ impl<S: Cellular> Making<'_, S> {
         let is_small = held > 1 && (self.stop)(sum, held as u32);
         (held > 0 && !parts_nothing && !is_small).then_some(lists)
     }
+
+    /// Which children of a cell an item of it meets, a bit each.
+    fn octants_of(&self, item: PrimId, cell: &Aabb<S::Vector>) -> u8 {
+        if !self.items.are_single() {
+            return octants_touched(&self.boxes[self.items.number(item)], cell);
+        }
+        let mut corners = [S::Vector::default(); 3];
+        for (to, from) in corners.iter_mut().zip(self.scene.prim_points(item)) {
+            *to = from;
+        }
+        let corners = &corners[..S::CORNERS];
+        let met = octants_touched(&Aabb::of(corners.iter().copied()), cell);
+        // A slanted one misses some of those that its box meets.
+        if met.count_ones() > 1 { S::meets_octants(corners, cell, met) } else { met }
+    }
 }
 
-/// Which children of a cell a primitive of it meets, a bit each.
-fn octants_of<S: Cellular>(scene: &Scene<S>, prim: PrimId, cell: &Aabb<S::Vector>) -> u8 {
-    let mut corners = [S::Vector::default(); 3];
-    for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
-        *to = from;
-    }
-    let (corners, center) = (&corners[..S::CORNERS], cell.center());
-    let bounds = Aabb::of(corners.iter().copied());
-    // By its box first, which is all that most small ones need.
-    let mut octants = [1u8, 0, 0];
-    let mut met = 0u8;
-    for (a, sides) in octants.iter_mut().enumerate().take(S::Vector::AXES) {
+/// Which children of a cell a box in it meets, a bit each.
+fn octants_touched<V: Vector>(bounds: &Aabb<V>, cell: &Aabb<V>) -> u8 {
+    let center = cell.center();
+    let (mut octants, mut met) = ([1u8, 0, 0], 0u8);
+    for (a, sides) in octants.iter_mut().enumerate().take(V::AXES) {
         let (low, high, plane) = (bounds.min.get(a), bounds.max.get(a), center.get(a));
         // On the plane alone: the lower side.
         *sides = u8::from(low < plane || high <= plane) | u8::from(high > plane) << 1;
     }
-    for octant in 0..1usize << S::Vector::AXES {
-        let meets = (0..S::Vector::AXES).all(|a| octants[a] >> (octant >> a & 1) & 1 == 1);
+    for octant in 0..1usize << V::AXES {
+        let meets = (0..V::AXES).all(|a| octants[a] >> (octant >> a & 1) & 1 == 1);
         met |= u8::from(meets) << octant;
-    }
-    if met.count_ones() > 1 {
-        // A slanted one misses some of those that its box meets.
-        met = S::meets_octants(corners, cell, met);
     }
     met
 }
 
 impl Wholes {
-    fn new(nodes: &[CellNode], references: &[PrimId]) -> Self {
+    fn new(nodes: &[CellNode], items: &Items, references: &[PrimId]) -> Self {
         const NEVER: u32 = u32::MAX;
         let count = references.iter().map(|p| p.at() + 1).max().unwrap_or(0);
-        // Of each primitive the lowest node that holds all of it.
+        // Of each item the lowest node that holds all of it.
         let mut owner = vec![NEVER; count];
         for (at, node) in nodes.iter().enumerate().filter(|(_, n)| n.is_leaf()) {
             for prim in &references[node.first as usize..][..node.count as usize] {
@@ -384,7 +405,8 @@ impl Wholes {
             }
         }
         let mut held = vec![0u32; nodes.len()];
-        owner.iter().filter(|o| **o != NEVER).for_each(|o| held[*o as usize] += 1);
+        let owned = || owner.iter().enumerate().filter(|(_, o)| **o != NEVER);
+        owned().for_each(|(item, o)| held[*o as usize] += items.prims(PrimId(item as u32)).len() as u32);
         // Each node before all that is below it.
         let (mut spans, mut next, mut open) = (vec![[0; 3]; nodes.len()], 0, vec![(0, false)]);
         while let Some((at, is_done)) = open.pop() {
@@ -402,9 +424,11 @@ impl Wholes {
         }
         let mut prims = vec![PrimId(0); next as usize];
         let mut to: Vec<u32> = spans.iter().map(|span| span[0]).collect();
-        for (prim, &at) in owner.iter().enumerate().filter(|(_, o)| **o != NEVER) {
-            prims[to[at as usize] as usize] = PrimId(prim as u32);
-            to[at as usize] += 1;
+        for (item, &at) in owned() {
+            for prim in items.prims(PrimId(item as u32)) {
+                prims[to[at as usize] as usize] = PrimId(prim);
+                to[at as usize] += 1;
+            }
         }
         Self { prims, spans }
     }

@@ -2,6 +2,7 @@
 
 mod cell_tree;
 mod delaunay;
+mod items;
 mod kd_tree;
 mod moving;
 mod octree;
@@ -12,6 +13,7 @@ mod whole;
 
 pub use cell_tree::{CellNode, CellTree};
 pub use delaunay::{Delaunay, Tetrahedron};
+pub use items::Items;
 pub use kd_tree::{KdNode, KdTree};
 pub use octree::{Octree, OctreeNode, Redistribution, Shape, octant_of};
 pub use whole::Whole;

@@ -42,7 +42,7 @@ pub use pyramid::{Pyramid, PyramidCell};
 pub use setup::DEPTH_SLACK;
 pub(crate) use shade::Veil;
 pub use shade::{
-    DepthScale, Light, VEIL, fixed_light, paint, paint_in_order, shade, shade_depth, shade_with,
+    DepthScale, Light, VEIL, averaged, fixed_light, paint, paint_in_order, shade, shade_depth, shade_with,
 };
 pub use simd::Isa;
 pub use srgb::{linear, srgb, srgb_bytes};

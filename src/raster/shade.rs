@@ -79,6 +79,26 @@ pub fn paint<S: Drawable>(
     pixels
 }
 
+/// The image whose pixels are the means, in linear light, of `across` × `down` pixels each of an image so wide;
+/// both RGBA, sRGB-encoded, row by row.
+pub fn averaged(rgba: &[u8], width: usize, [across, down]: [usize; 2]) -> Vec<u8> {
+    let share = 1.0 / (across * down) as f32;
+    let lights: Vec<f32> = (0..=255).map(|byte| linear(byte) * share).collect();
+    let mut pixels = Vec::with_capacity(rgba.len() / (across * down));
+    for rows in rgba.chunks_exact(4 * width * down) {
+        for column in 0..width / across {
+            let mut sum = [0.0; 3];
+            for row in rows.chunks_exact(4 * width) {
+                for sample in row[4 * across * column..][..4 * across].chunks_exact(4) {
+                    (0..3).for_each(|c| sum[c] += lights[usize::from(sample[c])]);
+                }
+            }
+            pixels.extend_from_slice(&srgb_bytes(sum));
+        }
+    }
+    pixels
+}
+
 /// The image of primitives and boxes in the order of a list, the farthest first; see `draw_in_order`. RGBA,
 /// sRGB-encoded, row by row.
 pub fn paint_in_order<S: Drawable>(

@@ -8,9 +8,9 @@
 //!
 //! Colors are linear, under light that is fixed in the world: what the paper bakes cannot depend on the eye.
 
-use super::space::Projected;
+use super::space::{Corners, Projected};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
-use crate::index::CellTree;
+use crate::index::{CellTree, octant_of};
 use crate::raster::{CubeFaces, VEIL, fixed_light};
 use crate::scene::{Progress, Scene, Surfaces};
 
@@ -41,114 +41,153 @@ pub struct Baked {
 impl<S: Projected> Baking<'_, S> {
     /// The faces of all cells of a tree, and if asked their errors; `None` when cancelled.
     pub fn bake(&self, tree: &CellTree<S::Vector>, measures: bool, progress: &dyn Progress) -> Option<Baked> {
-        let mut faces: Vec<Faces> = vec![[[0.0; 4]; 6]; tree.nodes().len()];
-        let mut errors = vec![0.0; if measures { faces.len() } else { 0 }];
-        // Post-order: children have higher numbers. From unrounded values, so that nothing adds up.
-        for (at, node) in tree.nodes().iter().enumerate().rev() {
-            if at % 1024 == 0 {
-                progress.report(1.0 - at as f32 / faces.len() as f32, "making color cubes");
-                if progress.cancelled() {
-                    return None;
-                }
-            }
-            let is_composed = self.composes && !node.is_leaf();
-            if is_composed {
-                let of = |octant: usize, face: usize| node.child(octant).map(|child| faces[child.at()][face]);
-                faces[at] = composed::<S::Vector>(|octant, face| of(octant, face).unwrap_or_default());
-            }
-            if is_composed && !measures {
-                continue;
-            }
-            let (id, mut prims) = (NodeId(at as u32), tree.references(NodeId(at as u32)).to_vec());
-            prims.sort_unstable();
-            // Leaves below may share some, and light comes through each once.
-            prims.dedup();
-            let cell = tree.cell(id);
-            if !is_composed {
-                faces[at] = self.projected(&cell, &prims);
-            }
-            if measures {
-                errors[at] = self.error(&cell, &prims, &faces[at]);
-            }
+        let count = tree.nodes().len();
+        let mut work = Work {
+            tree,
+            progress,
+            done: 0,
+            faces: vec![[[0.0; 4]; 6]; count],
+            errors: vec![0.0; if measures { count } else { 0 }],
+            room: Room::default(),
+        };
+        self.bake_below(
+            &mut work,
+            0,
+            tree.root(),
+            if tree.items().are_single() { &[] } else { self.scene.live() },
+        )?;
+        // From unrounded values, so that nothing adds up.
+        Some(Baked { faces: work.faces.iter().map(CubeFaces::new).collect(), errors: work.errors })
+    }
+
+    /// The faces of a cell and all below it, in post-order (Section 4), from the primitives of objects that
+    /// are in the cell above it; `None` when cancelled.
+    fn bake_below(
+        &self,
+        work: &mut Work<'_, S>,
+        at: usize,
+        cell: &Aabb<S::Vector>,
+        above: &[PrimId],
+    ) -> Option<()> {
+        let (tree, id) = (work.tree, NodeId(at as u32));
+        let node = &tree.nodes()[at];
+        let (is_composed, measures) = (self.composes && !node.is_leaf(), !work.errors.is_empty());
+        let mut prims = Vec::new();
+        if !tree.items().are_single() {
+            // Objects are large: of their primitives most are in other cells.
+            let is_in = |prim: &&PrimId| Aabb::of(self.scene.prim_points(**prim)).touches(cell);
+            prims.extend(above.iter().filter(is_in));
+        } else if !is_composed || measures {
+            prims = held(tree, id);
         }
-        Some(Baked { faces: faces.iter().map(CubeFaces::new).collect(), errors })
+        for octant in
+            (0..1 << S::Vector::AXES).filter(|octant| !node.is_leaf() && node.octants >> octant & 1 == 1)
+        {
+            let child = node.child(octant).expect("it is there");
+            self.bake_below(work, child.at(), &octant_of(cell, octant), &prims)?;
+        }
+        work.faces[at] = match is_composed {
+            true => composed::<S::Vector>(|octant, face| {
+                node.child(octant).map_or([0.0; 4], |child| work.faces[child.at()][face])
+            }),
+            false => self.projected(cell, &prims, &mut work.room),
+        };
+        if measures {
+            work.errors[at] = self.error(cell, &prims, &work.faces[at], &mut work.room);
+        }
+        work.is_going_on()
     }
 
     /// Faces of a cell from its primitives, of ascending ids.
-    pub fn projected(&self, cell: &Aabb<S::Vector>, prims: &[PrimId]) -> Faces {
+    pub fn projected(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], room: &mut Room<S>) -> Faces {
         let mut faces = [[0.0; 4]; 6];
-        for (face, samples) in faces.iter_mut().zip(self.samples(cell, prims)) {
-            let sum =
-                samples.iter().fold([0.0; 4], |sum: [f32; 4], c| std::array::from_fn(|k| sum[k] + c[k]));
-            // Partial coverage is premultiplied: samples that show nothing count as black and clear.
-            *face = sum.map(|c| c / samples.len() as f32);
-        }
+        self.project(cell, prims, room, |face, samples| faces[face] = mean(samples));
         faces
     }
 
     /// The samples of each face, row by row, of a cell with these primitives.
     pub fn samples(&self, cell: &Aabb<S::Vector>, prims: &[PrimId]) -> Vec<Vec<[f32; 4]>> {
-        let count = S::sample_count(self.side);
-        let lit: Vec<Lit<S>> = prims.iter().map(|&prim| self.lit(prim)).collect();
         let mut faces = Vec::new();
-        // Both sides of an axis at a time: a sample of the one is a sample of the other.
-        for axis in 0..S::Vector::AXES {
-            let mut samples = vec![Sample::default(); 2 * count];
-            for through in [false, true] {
-                lit.iter().for_each(|one| self.see(cell, axis, one, through, &mut samples));
-                if !self.surfaces.any_through(self.scene) {
-                    break;
-                }
-            }
-            faces.extend(samples.chunks(count).map(|face| face.iter().map(Sample::color).collect()));
-        }
+        self.project(cell, prims, &mut Room::default(), |_, samples| {
+            faces.push(samples.iter().map(Sample::color).collect());
+        });
         faces
     }
 
-    /// Draws a primitive of a cell into the samples of both faces of an axis, the lower face's first; those
-    /// that light comes through last, over what the others left.
-    fn see(&self, cell: &Aabb<S::Vector>, axis: usize, one: &Lit<S>, through: bool, samples: &mut [Sample]) {
-        if one.through != through {
-            return;
+    /// Calls `each` with the samples of each face in turn, row by row.
+    fn project(
+        &self,
+        cell: &Aabb<S::Vector>,
+        prims: &[PrimId],
+        room: &mut Room<S>,
+        mut each: impl FnMut(usize, &[Sample]),
+    ) {
+        let Room { lit, samples } = room;
+        self.light(cell, prims, lit);
+        let (count, top) = (S::sample_count(self.side), f64::from(self.side));
+        // Both sides of an axis at a time: a sample of the one is a sample of the other.
+        for axis in 0..S::Vector::AXES {
+            samples.clear();
+            samples.resize(2 * count, Sample::default());
+            let (lower, upper) = samples.split_at_mut(count);
+            // Those that light comes through last, over what the others left.
+            for through in self.ways() {
+                for one in lit.iter().filter(|one| one.through == *through) {
+                    let toward = |sign: f32| S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 });
+                    let [from_below, from_above] = [-1.0, 1.0].map(|sign| one.is_seen(toward(sign)));
+                    S::cover(&one.corners, axis, self.side, |at, height| {
+                        if from_below {
+                            lower[at].put(height, one.color, *through);
+                        }
+                        if from_above {
+                            upper[at].put(top - height, one.color, *through);
+                        }
+                    });
+                }
+            }
+            each(2 * axis, lower);
+            each(2 * axis + 1, upper);
         }
-        let toward = |sign: f32| S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 });
-        let [from_below, from_above] = [-1.0, 1.0].map(|sign| one.is_seen(toward(sign)));
-        let color = one.color;
-        let (lower, upper) = samples.split_at_mut(samples.len() / 2);
-        let size = f64::from(cell.size().get(axis));
-        S::cover(&one.corners[..S::CORNERS], cell, axis, self.side, &mut |at, height| {
-            if from_below {
-                lower[at].put(height, color, through);
-            }
-            if from_above {
-                upper[at].put(size - height, color, through);
-            }
-        });
     }
-    /// A primitive as faces see it.
-    fn lit(&self, prim: PrimId) -> Lit<S> {
-        let scene = self.scene;
-        let mut corners = [S::Vector::default(); 3];
-        for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
-            *to = from;
-        }
-        let light = fixed_light(scene, prim);
-        let is_one_sided = self.surfaces.one_sided && !scene.is_two_sided(prim);
-        Lit {
-            corners,
-            color: scene.color_of(prim).map(|c| c * light),
-            through: self.surfaces.show_through(scene, prim),
-            front: is_one_sided.then(|| scene.normal(prim)),
-        }
+    /// Whether light comes through: what is drawn first, and what last, if there can be such.
+    fn ways(&self) -> &'static [bool] {
+        if self.surfaces.any_through(self.scene) { &[false, true] } else { &[false] }
+    }
+    /// Primitives as the faces of a cell see them.
+    fn light(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], to: &mut Vec<Lit<S>>) {
+        let (scene, side) = (self.scene, f64::from(self.side));
+        let (origin, size) = (cell.min, cell.size());
+        let scale: [f64; 3] = std::array::from_fn(|a| {
+            let size = if a < S::Vector::AXES { size.get(a) } else { 0.0 };
+            // What has no size is seen as nothing.
+            if size > 0.0 { side / f64::from(size) } else { 0.0 }
+        });
+        to.clear();
+        to.extend(prims.iter().map(|&prim| {
+            let mut corners = [[0.0; 3]; 3];
+            for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
+                for (a, to) in to.iter_mut().enumerate().take(S::Vector::AXES) {
+                    *to = (f64::from(from.get(a)) - f64::from(origin.get(a))) * scale[a];
+                }
+            }
+            let light = fixed_light(scene, prim);
+            let is_one_sided = self.surfaces.one_sided && !scene.is_two_sided(prim);
+            Lit {
+                corners,
+                color: scene.color_of(prim).map(|c| c * light),
+                through: self.surfaces.show_through(scene, prim),
+                front: is_one_sided.then(|| scene.normal(prim)),
+            }
+        }));
     }
 
     /// How wrong a cell's cube is from between the axes, where no face was made: over all directions of which
     /// two components or more are not 0, the greatest difference of a channel between what its faces show, by
     /// their projected areas, and what is in the cell. (Along the axes the faces are what is in the cell, so
     /// an error measured there is nothing: Section 5.1 shows surfaces torn from 45°.)
-    pub fn error(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], faces: &Faces) -> f32 {
+    pub fn error(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], faces: &Faces, room: &mut Room<S>) -> f32 {
         let mut worst = 0.0_f32;
-        let lit: Vec<Lit<S>> = prims.iter().map(|&prim| self.lit(prim)).collect();
+        self.light(cell, prims, &mut room.lit);
         for number in 0..3usize.pow(S::Vector::AXES as u32) {
             let toward = S::Vector::from_fn(|a| (number / 3usize.pow(a as u32) % 3) as f32 - 1.0);
             let axes: Vec<usize> = (0..S::Vector::AXES).filter(|a| toward.get(*a) != 0.0).collect();
@@ -158,7 +197,7 @@ impl<S: Projected> Baking<'_, S> {
             let mut off = [0.0; 4];
             for &axis in &axes {
                 let cube = faces[2 * axis + usize::from(toward.get(axis) > 0.0)];
-                let seen = self.seen_along(cell, &lit, toward, axis);
+                let seen = self.seen_along(room, toward, axis);
                 // Components are alike, so are the areas of the faces.
                 (0..4).for_each(|c| off[c] += (cube[c] - seen[c]) / axes.len() as f32);
             }
@@ -169,45 +208,74 @@ impl<S: Projected> Baking<'_, S> {
 
     /// What is seen of a cell through its face on an axis, looking from a direction with components of 1, −1
     /// and 0: the cell is sheared until that is along the axis.
-    fn seen_along(&self, cell: &Aabb<S::Vector>, lit: &[Lit<S>], toward: S::Vector, axis: usize) -> [f32; 4] {
-        let mut samples = vec![Sample::default(); S::sample_count(self.side)];
-        let (is_upper, size) = (toward.get(axis) > 0.0, cell.size());
-        let depth = |height: f64| if is_upper { f64::from(size.get(axis)) - height } else { height };
-        for through in [false, true] {
-            for one in lit.iter().filter(|one| one.through == through && one.is_seen(toward)) {
+    fn seen_along(&self, room: &mut Room<S>, toward: S::Vector, axis: usize) -> [f32; 4] {
+        let Room { lit, samples } = room;
+        samples.clear();
+        samples.resize(S::sample_count(self.side), Sample::default());
+        let (is_upper, side) = (toward.get(axis) > 0.0, f64::from(self.side));
+        let depth = |height: f64| if is_upper { side - height } else { height };
+        let mut slope = [0.0; 3];
+        (0..S::Vector::AXES).filter(|a| *a != axis).for_each(|a| slope[a] = f64::from(toward.get(a)));
+        for through in self.ways() {
+            for one in lit.iter().filter(|one| one.through == *through && one.is_seen(toward)) {
                 let sheared = one.corners.map(|p| {
-                    let inward = depth(f64::from(p.get(axis) - cell.min.get(axis))) as f32;
-                    S::Vector::from_fn(
-                        |a| if a == axis { p.get(a) } else { p.get(a) + toward.get(a) * inward },
-                    )
+                    let inward = depth(p[axis]);
+                    std::array::from_fn(|a| p[a] + slope[a] * inward)
                 });
-                S::cover(&sheared[..S::CORNERS], cell, axis, self.side, &mut |at, height| {
+                S::cover(&sheared, axis, self.side, |at, height| {
                     // What the ray meets after it has left the cell by another side is not in it.
                     let inward = depth(height);
                     let is_inside = (1..S::Vector::AXES).all(|k| {
-                        let a = (axis + k) % S::Vector::AXES;
                         let number = if k == 1 { at as u32 % self.side } else { at as u32 / self.side };
-                        let extent = f64::from(size.get(a));
-                        let place = (f64::from(number) + 0.5) / f64::from(self.side) * extent;
-                        (0.0..=extent).contains(&(place - f64::from(toward.get(a)) * inward))
+                        let place = f64::from(number) + 0.5;
+                        (0.0..=side).contains(&(place - slope[(axis + k) % S::Vector::AXES] * inward))
                     });
                     if is_inside {
-                        samples[at].put(inward, one.color, through);
+                        samples[at].put(inward, one.color, *through);
                     }
                 });
             }
         }
-        let sum = samples
-            .iter()
-            .map(Sample::color)
-            .fold([0.0; 4], |sum: [f32; 4], c| std::array::from_fn(|k| sum[k] + c[k]));
-        sum.map(|c| c / samples.len() as f32)
+        mean(samples)
     }
 }
 
-/// A primitive as faces see it.
+/// The primitives of the items that the leaves at and below a cell refer to, ascending.
+pub fn held<V: Vector>(tree: &CellTree<V>, id: NodeId) -> Vec<PrimId> {
+    let mut items = tree.references(id).to_vec();
+    items.sort_unstable();
+    // Leaves below may share some, and light comes through each once.
+    items.dedup();
+    let mut prims = Vec::new();
+    tree.items().extend(&mut prims, &items);
+    prims
+}
+
+/// Faces in the making.
+struct Work<'a, S: Space> {
+    tree: &'a CellTree<S::Vector>,
+    progress: &'a dyn Progress,
+    done: usize,
+    faces: Vec<Faces>,
+    errors: Vec<f32>,
+    room: Room<S>,
+}
+
+impl<S: Space> Work<'_, S> {
+    /// Counts a cell that is done; `None` when cancelled.
+    fn is_going_on(&mut self) -> Option<()> {
+        self.done += 1;
+        if self.done.is_multiple_of(1024) {
+            self.progress.report(self.done as f32 / self.faces.len() as f32, "making color cubes");
+            return (!self.progress.cancelled()).then_some(());
+        }
+        Some(())
+    }
+}
+
+/// A primitive as the faces of a cell see it.
 struct Lit<S: Space> {
-    corners: [S::Vector; 3],
+    corners: Corners,
     /// Under the fixed light.
     color: [f32; 3],
     /// Whether light comes through it.
@@ -218,42 +286,73 @@ struct Lit<S: Space> {
 
 impl<S: Space> Lit<S> {
     /// Whether it is seen from a direction.
+    #[inline]
     fn is_seen(&self, toward: S::Vector) -> bool {
         self.front.is_none_or(|front| front.dot(toward) > 0.0)
     }
 }
 
+/// Room for what is seen of a cell, kept from one to the next.
+pub struct Room<S: Space> {
+    lit: Vec<Lit<S>>,
+    samples: Vec<Sample>,
+}
+
+impl<S: Space> Default for Room<S> {
+    fn default() -> Self {
+        Self { lit: Vec::new(), samples: Vec::new() }
+    }
+}
+
 /// What is seen at a sample of a face.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Sample {
-    /// The nearest to the face that hides what is behind: how far from it, and its color.
-    nearest: Option<(f64, [f32; 3])>,
+    /// How far from the face the nearest is that hides what is behind, infinite if there is none; its color.
+    depth: f64,
+    color: [f32; 3],
     /// How many it is seen through, and the sum of their colors.
     layers: u32,
     veil: [f32; 3],
 }
 
+impl Default for Sample {
+    fn default() -> Self {
+        Self { depth: f64::INFINITY, color: [0.0; 3], layers: 0, veil: [0.0; 3] }
+    }
+}
+
 impl Sample {
+    #[inline]
     fn put(&mut self, depth: f64, color: [f32; 3], through: bool) {
         // Of equally near ones the first stays, which is that of the lowest id, as in the z-buffer.
-        let is_nearer = self.nearest.is_none_or(|(nearest, _)| depth < nearest);
-        match through {
-            false if is_nearer => self.nearest = Some((depth, color)),
-            true if is_nearer => {
-                self.layers += 1;
-                (0..3).for_each(|c| self.veil[c] += color[c]);
-            }
-            _ => {}
+        if depth >= self.depth {
+            return;
+        }
+        if through {
+            self.layers += 1;
+            (0..3).for_each(|c| self.veil[c] += color[c]);
+        } else {
+            (self.depth, self.color) = (depth, color);
         }
     }
     /// Premultiplied: each layer takes as much of a sample as where it is drawn as geometry.
     fn color(&self) -> [f32; 4] {
-        let (color, alpha) = self.nearest.map_or(([0.0; 3], 0.0), |(_, color)| (color, 1.0));
+        let (color, alpha) = (self.color, if self.depth.is_finite() { 1.0 } else { 0.0 });
+        if self.layers == 0 {
+            return [color[0], color[1], color[2], alpha];
+        }
         let through = (1.0 - VEIL).powi(self.layers as i32);
-        let mean = self.veil.map(|sum| sum / self.layers.max(1) as f32);
+        let mean = self.veil.map(|sum| sum / self.layers as f32);
         let mixed: [f32; 3] = std::array::from_fn(|c| color[c] * through + mean[c] * (1.0 - through));
         [mixed[0], mixed[1], mixed[2], alpha * through + (1.0 - through)]
     }
+}
+
+/// Partial coverage is premultiplied: samples that show nothing count as black and clear.
+fn mean(samples: &[Sample]) -> [f32; 4] {
+    let sum = samples.iter().map(Sample::color);
+    let sum = sum.fold([0.0; 4], |sum: [f32; 4], c| std::array::from_fn(|k| sum[k] + c[k]));
+    sum.map(|c| c / samples.len() as f32)
 }
 
 /// A front face over a back face, premultiplied (Porter and Duff 1984).

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use super::Params;
+use super::costs::pays;
 use super::faces::{Baked, Baking};
 use super::saved;
 use super::space::Projected;
+use super::{Params, Primitives};
 use crate::geometry::{Aabb, NodeId, PrimId, Space};
-use crate::index::{CellTree, Hierarchy};
+use crate::index::{CellTree, Hierarchy, Items};
 use crate::raster::CubeFaces;
 use crate::scene::{Part, Progress, Scene};
 
@@ -17,8 +18,8 @@ pub struct CubeTree<S: Space> {
     tree: CellTree<S::Vector>,
     /// Of each node.
     baked: Baked,
-    /// How many primitives are in no leaf above each level.
-    deep: Vec<u32>,
+    /// Of each node: where it pays to look below it.
+    pays: Vec<u8>,
     key: saved::Key,
 }
 
@@ -33,14 +34,14 @@ impl<S: Projected> CubeTree<S> {
         saved: Option<&[u8]>,
         progress: &dyn Progress,
     ) -> Result<Option<Self>, String> {
-        let key = saved::key(scene, params);
+        let (key, items) = (saved::key(scene, params), items(scene, params));
         if let Some(bytes) = saved {
-            let (tree, baked) = saved::read(bytes, &key, scene)?;
-            return Ok(Some(Self { deep: deep(&tree, scene), tree, baked, key }));
+            let (tree, baked) = saved::read(bytes, &key, scene, items)?;
+            return Ok(Some(Self { pays: pays(&tree, scene), tree, baked, key }));
         }
         progress.report(0.0, "dividing cells");
-        let Some(tree) = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled())
-        else {
+        let (levels, cancelled) = (params.tree_levels, || progress.cancelled());
+        let Some(tree) = CellTree::build(scene, items, levels, &is_small::<S>, &cancelled) else {
             return Ok(None);
         };
         let baking = Baking {
@@ -51,24 +52,16 @@ impl<S: Projected> CubeTree<S> {
         };
         let part = Part { whole: progress, start: 0.5, length: 0.5 };
         let baked = baking.bake(&tree, params.measures(), &part);
-        Ok(baked.map(|baked| Self { deep: deep(&tree, scene), tree, baked, key }))
+        Ok(baked.map(|baked| Self { pays: pays(&tree, scene), tree, baked, key }))
     }
 }
 
-/// How many primitives are in no leaf above each level.
-fn deep<S: Space>(tree: &CellTree<S::Vector>, scene: &Scene<S>) -> Vec<u32> {
-    let levels = CellTree::<S::Vector>::MOST_LEVELS as usize;
-    let mut highest = vec![levels as u8; scene.prim_count()];
-    for (at, leaf) in tree.nodes().iter().enumerate().filter(|(_, node)| node.is_leaf()) {
-        let held = tree.references(NodeId(at as u32));
-        held.iter().for_each(|prim| highest[prim.at()] = highest[prim.at()].min(leaf.level));
+/// What the tree refers to.
+pub fn items<S: Space>(scene: &Scene<S>, params: &Params) -> Items {
+    match params.primitives {
+        Primitives::Single => Items::default(),
+        Primitives::Objects => Items::objects(scene),
     }
-    let mut counts = vec![0; levels];
-    // What is in no leaf at all does not exist.
-    for level in highest.into_iter().map(usize::from).filter(|level| *level < levels) {
-        counts[..=level].iter_mut().for_each(|count| *count += 1);
-    }
-    counts
 }
 
 /// Section 4: a leaf is small enough when its primitives cost no more than the cubes of the children that it
@@ -82,10 +75,11 @@ impl<S: Space> CubeTree<S> {
     pub fn tree(&self) -> &CellTree<S::Vector> {
         &self.tree
     }
-    /// Which part of all primitives is in no leaf above a level: what need not be drawn where cells of that
-    /// level are drawn as cubes.
-    pub fn share_below(&self, level: usize) -> f32 {
-        self.deep.get(level).map_or(0.0, |count| *count as f32 / self.deep[0].max(1) as f32)
+    /// The deepest level from which on the cells below a node must be drawn as cubes, for it to be no loss to
+    /// look below it; the node's own level if it always is one.
+    #[inline]
+    pub fn pays_from(&self, node: NodeId) -> u8 {
+        self.pays[node.at()]
     }
     /// The faces of a cell's color cube.
     #[inline]
@@ -122,7 +116,8 @@ impl<S: Space> Hierarchy<S> for CubeTree<S> {
         Hierarchy::<S>::held(&self.tree, node)
     }
     fn bytes(&self) -> usize {
-        self.tree.bytes() + size_of_val(&*self.baked.faces) + size_of_val(&*self.baked.errors)
+        let Baked { faces, errors } = &self.baked;
+        self.tree.bytes() + size_of_val(&**faces) + size_of_val(&**errors) + self.pays.len()
     }
     fn save(&self) -> Option<Vec<u8>> {
         Some(saved::write(&self.key, &self.tree, &self.baked))

@@ -18,6 +18,7 @@
 //! Cost: O(cells visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
 
 mod code;
+mod costs;
 mod evidence;
 mod faces;
 mod index;
@@ -51,6 +52,7 @@ pub(crate) struct ColorCubes;
 pub(crate) struct Params {
     pixel_threshold: f32,
     tree_levels: u32,
+    primitives: Primitives,
     face_samples: u32,
     interior: Interior,
     error_bound: f32,
@@ -64,6 +66,7 @@ impl Default for Params {
             // Section 3: "no more than a pixel on the display".
             pixel_threshold: 1.0,
             tree_levels: CellTree::<glam::Vec3>::MOST_LEVELS,
+            primitives: Primitives::default(),
             // Section 4: "typically, 4×4 pixels".
             face_samples: 4,
             interior: Interior::default(),
@@ -72,6 +75,16 @@ impl Default for Params {
             order: Order::default(),
             surfaces: Surfaces::default(),
         }
+    }
+}
+
+words! {
+    /// What is drawn at once and has one cost (Section 4).
+    pub(crate) enum Primitives {
+        /// Each triangle, in flatland each segment.
+        Single = "single",
+        /// All of an object, such as a sphere of a molecule.
+        Objects = "objects",
     }
 }
 
@@ -143,6 +156,14 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Section 4",
         );
         knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
+        let primitives = Knob::new(
+            "primitives",
+            "",
+            "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such \
+             as a sphere of a molecule, which takes far fewer references",
+            "Chamberlain et al. 1996, Sections 4 and 5",
+        );
+        knobs.words(primitives, &mut params.primitives);
         let samples = Knob::new(
             "face-samples",
             "samples",

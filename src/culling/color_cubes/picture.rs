@@ -4,7 +4,7 @@
 use glam::{Vec2, vec2};
 
 use super::evidence::{Evidence, FACE_NAMES};
-use super::faces::{Baking, over};
+use super::faces::{Baking, held, over};
 use super::space::Projected;
 use super::{ColorCubes, Params};
 use crate::culling::depth::picture::{WIDTH_PT, finished};
@@ -145,9 +145,7 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let mut y = 20.0;
     let samples = (!is_composed).then(|| {
         let (scene, params) = (moment.frame.scene, moment.frame.params);
-        let mut prims = tree.references(id).to_vec();
-        prims.sort_unstable();
-        prims.dedup();
+        let prims = held(tree, id);
         let baking = Baking { scene, surfaces: params.surfaces, side: params.face_samples, composes: true };
         baking.samples(&tree.cell(id), &prims)
     });

@@ -1,33 +1,35 @@
 //! The tree and its faces as bytes, so that they are made once: nodes, references, six faces a node, and
 //! their errors if they were measured.
 
-use super::Params;
 use super::faces::Baked;
+use super::{Params, Primitives};
 use crate::culling::saved::{self, Format, damaged};
 use crate::geometry::{Space, Vector};
-use crate::index::CellTree;
+use crate::index::{CellTree, Items};
 use crate::raster::CubeFaces;
 use crate::scene::Scene;
 
 const FORMAT: Format = Format { magic: b"cullscope-c1", method: "color-cubes", has_bytes: false };
 
-/// What a tree was made for: levels at most, samples of a face, whether inner faces are composed, whether
+/// What a tree was made for: levels at most, whether it refers to objects, samples of a face, whether inner faces are composed, whether
 /// errors are measured, and how surfaces are taken.
-pub type Key = saved::Key<5>;
+pub type Key = saved::Key<6>;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     // Only what the tree depends on: the threshold is a matter of the frame.
     let surfaces = u32::from(params.surfaces.one_sided) | u32::from(params.surfaces.solid) << 1;
     let (composes, measures) = (params.composes().into(), params.measures().into());
-    let params = [params.tree_levels, params.face_samples, composes, measures, surfaces];
+    let objects = u32::from(params.primitives == Primitives::Objects);
+    let params = [params.tree_levels, objects, params.face_samples, composes, measures, surfaces];
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, samples, composed, measured, surfaces]: [u32; 5]) -> String {
+fn describe([levels, objects, samples, composed, measured, surfaces]: [u32; 6]) -> String {
     format!(
-        "tree-levels={levels} face-samples={samples} interior={} error-bound={} backface-culling={} \
+        "tree-levels={levels} primitives={} face-samples={samples} interior={} error-bound={} backface-culling={} \
          see-through={}",
+        if objects == 1 { "objects" } else { "single" },
         if composed == 1 { "composed" } else { "direct" },
         if measured == 1 { "above 0" } else { "0" },
         surfaces & 1 == 1,
@@ -51,17 +53,18 @@ pub fn read<S: Space>(
     bytes: &[u8],
     key: &Key,
     scene: &Scene<S>,
+    items: Items,
 ) -> Result<(CellTree<S::Vector>, Baked), String> {
-    let ([nodes, references, faces, errors], _) = FORMAT.read::<5, 4>(bytes, key, describe)?;
+    let ([nodes, references, faces, errors], _) = FORMAT.read::<6, 4>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit.
-    let tree = CellTree::of_tables(scene, &nodes, references).ok_or_else(damaged)?;
+    let tree = CellTree::of_tables(scene, items, &nodes, references).ok_or_else(damaged)?;
     let (cubes, rest) = faces.as_chunks::<6>();
     let of = |words: &[u32; 6]| CubeFaces::of_bytes(words.map(u32::to_le_bytes));
     let cubes: Option<Vec<CubeFaces>> = cubes.iter().map(of).collect();
     let fits = |cubes: &Vec<CubeFaces>| rest.is_empty() && cubes.len() == tree.nodes().len();
     let cubes = cubes.filter(fits).ok_or_else(damaged)?;
     let errors: Vec<f32> = errors.into_iter().map(f32::from_bits).collect();
-    let count = if key.params[3] == 1 { cubes.len() } else { 0 };
+    let count = if key.params[4] == 1 { cubes.len() } else { 0 };
     if errors.len() != count || !errors.iter().all(|e| (0.0..=1.0).contains(e)) {
         return Err(damaged());
     }

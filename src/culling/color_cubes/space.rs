@@ -1,8 +1,14 @@
 //! What differs between the spaces: primitives seen along an axis, and what a cube costs to draw.
 
-use crate::geometry::{Aabb, Flat, Solid};
+use std::ops::Range;
+
+use crate::geometry::{Flat, Solid};
 use crate::index::tessellation::Cellular;
 use crate::raster::Drawable;
+
+/// Corners of a primitive from the lower end of a cell, in samples of its faces: 0 to as many as a side has.
+/// In flatland the third corner and the third axis are not used.
+pub type Corners = [[f64; 3]; 3];
 
 /// A space in which cells are seen along its axes.
 pub trait Projected: Cellular + Drawable {
@@ -11,22 +17,21 @@ pub trait Projected: Cellular + Drawable {
     /// Samples of a face that has so many along a side.
     fn sample_count(side: u32) -> usize;
     /// Calls `visit` with each sample of a face of a cell that a primitive covers, seen along an axis, and
-    /// how far it is above the lower face there: 0 to the cell's size.
-    fn cover(
-        corners: &[Self::Vector],
-        cell: &Aabb<Self::Vector>,
-        axis: usize,
-        side: u32,
-        visit: &mut dyn FnMut(usize, f64),
-    );
+    /// how far it is above the lower face there: 0 to `side`.
+    fn cover(corners: &Corners, axis: usize, side: u32, visit: impl FnMut(usize, f64));
 }
 
-/// The samples of a row of `side` over a face of this size whose centers can lie in a span from its lower
-/// end.
-fn samples_in([low, high]: [f64; 2], size: f64, side: u32) -> std::ops::Range<u32> {
-    let at = |v: f64| (v / size * f64::from(side) - 0.5).clamp(-1.0, f64::from(side));
-    // One more on each side, for the rounding: the centers themselves decide.
-    (at(low).floor().max(0.0) as u32)..(at(high).ceil() + 1.0).min(f64::from(side)) as u32
+/// More than places are rounded by, in samples.
+const SLACK: f64 = 1e-9;
+
+/// The samples of a row of `side` whose centers can lie in a span: the centers themselves decide.
+#[inline]
+fn samples_in(low: f64, high: f64, side: u32) -> Range<u32> {
+    let first = (low - 0.5 - SLACK).clamp(0.0, f64::from(side));
+    let past = (high + 0.5 + SLACK).clamp(0.0, f64::from(side));
+    // Rounded up and down by the conversion, which is no call.
+    let up = first as u32 + u32::from(f64::from(first as u32) < first);
+    up..past as u32
 }
 
 impl Projected for Flat {
@@ -35,31 +40,21 @@ impl Projected for Flat {
     fn sample_count(side: u32) -> usize {
         side as usize
     }
-    fn cover(
-        corners: &[glam::Vec2],
-        cell: &Aabb<glam::Vec2>,
-        axis: usize,
-        side: u32,
-        visit: &mut dyn FnMut(usize, f64),
-    ) {
+    fn cover(corners: &Corners, axis: usize, side: u32, mut visit: impl FnMut(usize, f64)) {
         let across = 1 - axis;
-        let (origin, size) = (cell.min.as_dvec2(), cell.size().as_dvec2());
-        let [mut a, mut b] = [0, 1].map(|i| corners[i].as_dvec2() - origin);
+        let [mut a, mut b, _] = *corners;
         if a[across] > b[across] {
             std::mem::swap(&mut a, &mut b);
         }
-        if size[across] <= 0.0 {
-            return;
-        }
-        for at in samples_in([a[across], b[across]], size[across], side) {
-            let place = (f64::from(at) + 0.5) / f64::from(side) * size[across];
+        for at in samples_in(a[across], b[across], side) {
+            let place = f64::from(at) + 0.5;
             // Its lower end belongs to a segment, its upper end to the next one.
             if place < a[across] || place >= b[across] {
                 continue;
             }
             let share = (place - a[across]) / (b[across] - a[across]);
             let height = a[axis] + share * (b[axis] - a[axis]);
-            if (0.0..=size[axis]).contains(&height) {
+            if (0.0..=f64::from(side)).contains(&height) {
                 visit(at as usize, height);
             }
         }
@@ -72,51 +67,61 @@ impl Projected for Solid {
     fn sample_count(side: u32) -> usize {
         (side * side) as usize
     }
-    fn cover(
-        corners: &[glam::Vec3],
-        cell: &Aabb<glam::Vec3>,
-        axis: usize,
-        side: u32,
-        visit: &mut dyn FnMut(usize, f64),
-    ) {
+    fn cover(corners: &Corners, axis: usize, side: u32, mut visit: impl FnMut(usize, f64)) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (origin, size) = (cell.min.as_dvec3(), cell.size().as_dvec3());
-        let mut p = [0, 1, 2].map(|i| corners[i].as_dvec3() - origin);
-        let cross = |a: glam::DVec3, b: glam::DVec3, at: [f64; 2]| {
-            (b[u] - a[u]) * (at[1] - a[v]) - (b[v] - a[v]) * (at[0] - a[u])
-        };
-        let mut area = cross(p[0], p[1], [p[2][u], p[2][v]]);
+        let [a, mut b, mut c] = corners.map(|p| [p[u], p[v], p[axis]]);
+        let mut area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         if area < 0.0 {
-            p.swap(1, 2);
+            std::mem::swap(&mut b, &mut c);
             area = -area;
         }
         // Seen edge-on it covers nothing: so surfaces tear that are seen from between the axes (Section 5.1).
-        if area == 0.0 || size.min_element() <= 0.0 {
+        if area == 0.0 {
             return;
         }
-        // Left and top edges of a counter-clockwise triangle belong to it, as the rasterizer has it.
-        let owns = |a: glam::DVec3, b: glam::DVec3| b[v] < a[v] || (b[v] == a[v] && b[u] < a[u]);
-        let edges = [(p[1], p[2]), (p[2], p[0]), (p[0], p[1])];
-        let span = |axis: usize| {
-            let values = p.map(|p| p[axis]);
-            [values[0].min(values[1]).min(values[2]), values[0].max(values[1]).max(values[2])]
-        };
-        let center = |at: u32, axis: usize| (f64::from(at) + 0.5) / f64::from(side) * size[axis];
-        let columns = samples_in(span(u), size[u], side);
-        for row in samples_in(span(v), size[v], side) {
+        let columns = samples_in(a[0].min(b[0]).min(c[0]), a[0].max(b[0]).max(c[0]), side);
+        let rows = samples_in(a[1].min(b[1]).min(c[1]), a[1].max(b[1]).max(c[1]), side);
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| Edge::new(from, to));
+        let top = f64::from(side);
+        for row in rows {
+            let y = f64::from(row) + 0.5;
             for column in columns.clone() {
-                let at = [center(column, u), center(row, v)];
-                let weights = edges.map(|(a, b)| cross(a, b, at));
-                let covers =
-                    (0..3).all(|k| weights[k] > 0.0 || weights[k] == 0.0 && owns(edges[k].0, edges[k].1));
-                if !covers {
+                let x = f64::from(column) + 0.5;
+                let weights = edges.map(|edge| edge.weight(x, y));
+                if (0..3).any(|k| weights[k] < edges[k].least) {
                     continue;
                 }
-                let height = (0..3).map(|k| weights[k] * p[k][axis]).sum::<f64>() / area;
-                if (0.0..=size[axis]).contains(&height) {
+                let height = (weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]) / area;
+                if (0.0..=top).contains(&height) {
                     visit((row * side + column) as usize, height);
                 }
             }
         }
+    }
+}
+
+/// An edge of a counter-clockwise triangle.
+#[derive(Clone, Copy)]
+struct Edge {
+    from: [f64; 3],
+    along: [f64; 2],
+    /// Left and top edges belong to a triangle, as the rasterizer has it: so much its weight is at least.
+    least: f64,
+}
+
+impl Edge {
+    #[inline]
+    fn new(from: [f64; 3], to: [f64; 3]) -> Self {
+        let owns = to[1] < from[1] || (to[1] == from[1] && to[0] < from[0]);
+        let along = [to[0] - from[0], to[1] - from[1]];
+        Self { from, along, least: if owns { 0.0 } else { f64::MIN_POSITIVE } }
+    }
+    /// Twice the area of the triangle from the edge to a place.
+    #[inline]
+    fn weight(&self, x: f64, y: f64) -> f64 {
+        self.along[0] * (y - self.from[1]) - self.along[1] * (x - self.from[0])
     }
 }

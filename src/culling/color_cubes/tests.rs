@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 
 use glam::{vec2, vec3};
 
-use super::faces::{Baking, Faces, composed, over};
+use super::faces::{Baking, Faces, Room, composed, over};
 use super::index::is_small;
 use super::walk::pixels_at_depth_1;
 use super::*;
 use crate::geometry::dice::Dice;
 use crate::geometry::{Aabb, Eye, Flat, NodeId, PrimId, Solid, Vector, View};
-use crate::index::Hierarchy;
+use crate::index::{Hierarchy, Items};
 use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, Target, fixed_light, paint, render};
-use crate::scene::{Parts, Quiet, framing_view, random_views, samples};
+use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, framing_view, load, random_views, samples};
 
 fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
     (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6)
@@ -65,7 +65,7 @@ fn a_wall_covers_the_faces_along_it_alone() {
 
 fn baked<S: Projected>(scene: &Scene<S>, cell: &Aabb<S::Vector>, side: u32) -> Faces {
     let baking = Baking { scene, surfaces: Surfaces::default(), side, composes: true };
-    baking.projected(cell, scene.live())
+    baking.projected(cell, scene.live(), &mut Room::default())
 }
 
 /// Section 4: the mean of 4×4 samples, premultiplied. A diagonal belongs to one of the triangles beside it.
@@ -123,8 +123,9 @@ fn surfaces_are_more_wrong_than_clouds() {
         parts.materials[0].color = [0.0; 3];
         let scene = Scene::new(parts).expect("segments");
         let baking = Baking { scene: &scene, surfaces: Surfaces::default(), side: 64, composes: true };
-        let faces = baking.projected(&cell, scene.live());
-        baking.error(&cell, scene.live(), &faces)
+        let room = &mut Room::default();
+        let faces = baking.projected(&cell, scene.live(), room);
+        baking.error(&cell, scene.live(), &faces, room)
     };
     // Across x: the x faces are covered and the y faces clear, so the cube covers half from 45°. The wall at
     // the side covers the face that it lies on, and nothing behind the other.
@@ -206,7 +207,7 @@ fn shares_add_up<S: Projected>() {
             }
             is_small::<S>(sum, children)
         };
-        let tree = CellTree::build(&scene, 20, &stop, &|| false).expect("not cancelled");
+        let tree = CellTree::build(&scene, Items::default(), 20, &stop, &|| false).expect("not cancelled");
         let (all, mut open, mut want) = (shares(&tree, &scene), vec![NodeId(0)], Vec::new());
         while let Some(node) = open.pop() {
             want.push(all[node.at()].values().sum::<f64>());
@@ -465,10 +466,11 @@ fn what_was_saved_comes_back_or_is_refused() {
 #[test]
 fn tables_of_no_tree_are_refused() {
     let scene = samples::soup::<Solid>(3, 3000);
-    let tree = CellTree::build(&scene, 20, &is_small::<Solid>, &|| false).expect("not cancelled");
+    let tree =
+        CellTree::build(&scene, Items::default(), 20, &is_small::<Solid>, &|| false).expect("not cancelled");
     let [nodes, references] = tree.tables();
     let is_taken = |nodes: &[u32], references: &[u32]| {
-        CellTree::of_tables(&*scene, nodes, references.to_vec()).is_some()
+        CellTree::of_tables(&*scene, Items::default(), nodes, references.to_vec()).is_some()
     };
     assert!(is_taken(&nodes, &references) && nodes.len() > 50);
     let mut dice = Dice::new(9);
@@ -488,4 +490,37 @@ fn tables_of_no_tree_are_refused() {
     let mut strange = references.clone();
     strange[7] = 3000;
     assert!(!is_taken(&nodes, &strange));
+}
+
+/// Objects are drawn whole or not at all, no primitive twice; and their cells have the faces that all the
+/// scene's primitives give them.
+#[test]
+fn objects_are_drawn_whole() {
+    // Spheres of 800 triangles each.
+    let loaded = load("generate:molecule?atoms=24", &LoadOptions::default(), &Quiet).expect("a molecule");
+    let AnyScene::Solid(scene) = loaded else { panic!("in space") };
+    let params = Params { primitives: Primitives::Objects, pixel_threshold: 6.0, ..Params::default() };
+    let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
+    let tree = index.tree();
+    let baking = Baking { scene: &*scene, surfaces: Surfaces::default(), side: 4, composes: true };
+    for (at, _) in tree.nodes().iter().enumerate().filter(|(_, node)| node.is_leaf()).step_by(7) {
+        let id = NodeId(at as u32);
+        let faces = baking.projected(&tree.cell(id), scene.live(), &mut Room::default());
+        assert_eq!(*index.faces(id), crate::raster::CubeFaces::new(&faces), "node {id}");
+    }
+    let (mut drawn, mut cubes) = (0, 0);
+    for view in random_views(&scene, 20, 5) {
+        let frame: Frame<'_, Solid, ColorCubes> =
+            Frame { index: &index, scene: &scene, view: &view, params: &params, limit: None };
+        let mut list = DrawList::default();
+        ColorCubes::cull(&frame, &mut (), &mut (), &mut list, &mut Unobserved);
+        let mut times: BTreeMap<_, usize> = BTreeMap::new();
+        for prim in &list.prims {
+            *times.entry(scene.object_of(*prim)).or_default() += 1;
+        }
+        assert!(times.values().all(|count| *count == 800), "{times:?}");
+        drawn += times.len();
+        cubes += list.stand_ins.len();
+    }
+    assert!(drawn > 20 && cubes > 100, "{drawn} objects, {cubes} cubes");
 }

@@ -6,16 +6,11 @@ use super::index::CubeTree;
 use super::{Order, Params};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, PrimId, Space, Vector, View};
-use crate::index::{CellNode, CellTree, octant_of};
+use crate::index::{CellTree, octant_of};
 use crate::method::evidence::{Facing, Tested};
 use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
 use crate::raster::StandIn;
 use crate::scene::Scene;
-
-/// What part of the primitives must be in cells alone that can be drawn as cubes, for the visit to pay: to
-/// visit cells, to draw those cubes, and to draw each primitive once that several cells share, costs about as
-/// much as drawing that part.
-const WORTH_IT: f32 = 0.15;
 
 /// A mark for each primitive.
 #[derive(Default)]
@@ -73,9 +68,9 @@ pub(super) struct Walk<'a, S: Space, O> {
     sides: [f32; 32],
     /// What of that is half a unit of length.
     pixels_of_half: f32,
-    /// Primitives that were drawn, or found to face away.
+    /// Items of which no leaf alone has all, that were drawn or found to face away.
     done: Marks,
-    /// Primitives that are in some cube that was drawn; kept only where somebody listens.
+    /// Items that are in some cube that was drawn; kept only where somebody listens.
     in_cubes: Marks,
     out: &'a mut DrawList<S>,
     watch: &'a mut O,
@@ -158,12 +153,12 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             return self.draw_cube(id, cell);
         }
         self.line(line::LEAF);
-        if node.is_leaf() || cutting == 0 && self.needs_geometry(node, depth) {
+        if node.is_leaf() || cutting == 0 && self.needs_geometry(id, depth) {
             self.line(line::CALL_DRAW);
             self.line(line::DRAW);
             self.draw_geometry(id);
             self.line(line::CALL_DRAW);
-            let prims = self.tree.references(id).len();
+            let prims = self.tree.items().count(self.tree.references(id));
             self.watch.note(move || Evidence::Geometry { node: id, references: prims as u32 });
             return self.leave(id, Verdict::Visible);
         }
@@ -201,19 +196,14 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.leave(id, Verdict::Approximated);
     }
 
-    /// Whether it is no use to look below a cell that is wholly in view: even the smallest cells there are
-    /// larger than the threshold, wherever they are; or, of the whole scene, too few are not.
-    fn needs_geometry(&self, node: &CellNode, depth: f32) -> bool {
-        let side = self.sides[usize::from(node.level)];
+    /// Whether it is a loss to look below a cell: the cells that would have to be drawn as cubes, for it to pay,
+    /// are larger than the threshold, wherever they are.
+    fn needs_geometry(&self, id: NodeId, depth: f32) -> bool {
+        let level = self.tree.nodes()[id.at()].level;
+        let from = self.index.pays_from(id);
         // A cell's farthest point lies half a side on from its center, on each axis.
-        let farthest = depth + side * self.pixels_of_half * self.spread;
-        let threshold = self.params.pixel_threshold;
-        if node.level == 0 {
-            let is_small = |side: &f32| *side <= threshold * depth;
-            let level = self.sides.iter().position(is_small).unwrap_or(usize::MAX);
-            return self.index.share_below(level) < WORTH_IT;
-        }
-        self.sides[usize::from(node.lowest)] > threshold * farthest
+        let farthest = depth + self.sides[usize::from(level)] * self.pixels_of_half * self.spread;
+        from == level || self.sides[usize::from(from)] > self.params.pixel_threshold * farthest
     }
 
     fn visit_children(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
@@ -254,17 +244,18 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         }
         // The verdict about the cell is about these as well: no other one can have drawn them.
         let (own, shared) = tree.of_leaf(id);
+        let items = tree.items();
         if looks_at_each {
-            own.iter().for_each(|&prim| self.draw(prim, id));
+            own.iter().flat_map(|&item| items.prims(item)).for_each(|prim| self.draw(PrimId(prim), id));
         } else {
             self.line(line::OWN);
-            self.out.prims.extend_from_slice(own);
+            items.extend(&mut self.out.prims, own);
         }
-        for &prim in shared {
+        for &item in shared {
             self.line(line::EACH);
             self.line(line::ONCE);
-            if !self.done.mark(prim) {
-                self.draw(prim, id);
+            if !self.done.mark(item) {
+                items.prims(item).for_each(|prim| self.draw(PrimId(prim), id));
             }
         }
     }
@@ -288,12 +279,13 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn settle(&mut self, id: NodeId) {
         self.line(line::SHARED);
         for &prim in self.tree.shared(id) {
-            if self.done.has(prim) {
+            let item = self.tree.items().of(prim);
+            if self.done.has(item) {
                 continue;
             }
             self.line(line::SETTLED);
             // No part of it lies in a cell that is in view; or none in one that was drawn as geometry.
-            let is_in_cube = self.in_cubes.has(prim);
+            let is_in_cube = self.in_cubes.has(item);
             self.watch.note(move || {
                 Evidence::Settled(if is_in_cube {
                     Settled::InCubes { prim, node: id }

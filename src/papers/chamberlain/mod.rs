@@ -2,10 +2,11 @@
 //! how faces are composed (3).
 
 mod figures;
+mod tables;
 
 use super::keys::COLOR_CUBES;
 use super::paper::Paper;
 
 /// The paper.
 pub const PAPER: Paper =
-    Paper { key: "chamberlain", methods: &[COLOR_CUBES], figures: figures::FIGURES, tables: &[] };
+    Paper { key: "chamberlain", methods: &[COLOR_CUBES], figures: figures::FIGURES, tables: tables::TABLES };
