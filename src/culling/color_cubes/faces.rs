@@ -5,9 +5,11 @@
 //! 2. An inner cell's faces are composed of its children's, column by column: the front one over the back
 //!    one; the mean of the columns is the face (Figure 3). A child that holds nothing is clear. Or they are
 //!    made as a leaf's.
+//! 3. Where asked, what primitives show of themselves is not sampled but worked out ([`super::analytic`]).
 //!
 //! Colors are linear, under light that is fixed in the world: what the paper bakes cannot depend on the eye.
 
+use super::analytic::{self, Surface};
 use super::space::Projected;
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::CellTree;
@@ -26,6 +28,8 @@ pub struct Baking<'a, S: Space> {
     pub surfaces: Surfaces,
     /// Samples along a side of a face.
     pub side: u32,
+    /// Whether areas are worked out where that can be, and not sampled.
+    pub is_analytic: bool,
     /// Whether those of inner cells are composed of their children's.
     pub composes: bool,
 }
@@ -76,6 +80,12 @@ impl<S: Projected> Baking<'_, S> {
 
     /// Faces of a cell from its primitives, of ascending ids.
     pub fn projected(&self, cell: &Aabb<S::Vector>, prims: &[PrimId]) -> Faces {
+        if self.is_analytic {
+            let faces = self.worked_out(cell, prims);
+            return faces.unwrap_or_else(|| {
+                Self { side: analytic::SIDE, is_analytic: false, ..*self }.projected(cell, prims)
+            });
+        }
         let mut faces = [[0.0; 4]; 6];
         for (face, samples) in faces.iter_mut().zip(self.samples(cell, prims)) {
             let sum =
@@ -84,6 +94,24 @@ impl<S: Projected> Baking<'_, S> {
             *face = sum.map(|c| c / samples.len() as f32);
         }
         faces
+    }
+
+    /// Faces of a cell by areas; `None` where that takes too long, or light comes through.
+    fn worked_out(&self, cell: &Aabb<S::Vector>, prims: &[PrimId]) -> Option<Faces> {
+        let lit: Vec<Lit<S>> = prims.iter().map(|&prim| self.lit(prim)).collect();
+        if lit.iter().any(|one| one.through) {
+            return None;
+        }
+        let mut faces = [[0.0; 4]; 6];
+        for axis in 0..S::Vector::AXES {
+            let surface = |one: &Lit<S>| {
+                let outline = S::outline(&one.corners[..S::CORNERS], cell, axis)?;
+                Some(Surface { outline, color: one.color, seen: one.seen_along(axis) })
+            };
+            let surfaces: Vec<Surface> = lit.iter().filter_map(surface).collect();
+            faces[2 * axis..][..2].copy_from_slice(&analytic::both_faces(&surfaces)?);
+        }
+        Some(faces)
     }
 
     /// The samples of each face, row by row, of a cell with these primitives.
@@ -111,8 +139,7 @@ impl<S: Projected> Baking<'_, S> {
         if one.through != through {
             return;
         }
-        let toward = |sign: f32| S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 });
-        let [from_below, from_above] = [-1.0, 1.0].map(|sign| one.is_seen(toward(sign)));
+        let [from_below, from_above] = one.seen_along(axis);
         let color = one.color;
         let (lower, upper) = samples.split_at_mut(samples.len() / 2);
         let size = f64::from(cell.size().get(axis));
@@ -220,6 +247,10 @@ impl<S: Space> Lit<S> {
     /// Whether it is seen from a direction.
     fn is_seen(&self, toward: S::Vector) -> bool {
         self.front.is_none_or(|front| front.dot(toward) > 0.0)
+    }
+    /// Whether it is seen along an axis, from below and from above.
+    fn seen_along(&self, axis: usize) -> [bool; 2] {
+        [-1.0, 1.0].map(|sign| self.is_seen(S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 })))
     }
 }
 

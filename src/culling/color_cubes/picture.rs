@@ -148,7 +148,13 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
         let mut prims = tree.references(id).to_vec();
         prims.sort_unstable();
         prims.dedup();
-        let baking = Baking { scene, surfaces: params.surfaces, side: params.face_samples, composes: true };
+        let baking = Baking {
+            scene,
+            surfaces: params.surfaces,
+            side: params.face_samples,
+            is_analytic: false,
+            composes: true,
+        };
         baking.samples(&tree.cell(id), &prims)
     });
     for (face, name) in FACE_NAMES.iter().enumerate().take(2 * S::Vector::AXES) {

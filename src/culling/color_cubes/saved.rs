@@ -12,22 +12,24 @@ use crate::scene::Scene;
 const FORMAT: Format = Format { magic: b"cullscope-c1", method: "color-cubes", has_bytes: false };
 
 /// What a tree was made for: levels at most, samples of a face, whether inner faces are composed, whether
-/// errors are measured, and how surfaces are taken.
-pub type Key = saved::Key<5>;
+/// errors are measured, how surfaces are taken, and whether faces are worked out.
+pub type Key = saved::Key<6>;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     // Only what the tree depends on: the threshold is a matter of the frame.
     let surfaces = u32::from(params.surfaces.one_sided) | u32::from(params.surfaces.solid) << 1;
     let (composes, measures) = (params.composes().into(), params.measures().into());
-    let params = [params.tree_levels, params.face_samples, composes, measures, surfaces];
+    let is_analytic = params.is_analytic().into();
+    let params = [params.tree_levels, params.face_samples, composes, measures, surfaces, is_analytic];
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, samples, composed, measured, surfaces]: [u32; 5]) -> String {
+fn describe([levels, samples, composed, measured, surfaces, analytic]: [u32; 6]) -> String {
     format!(
-        "tree-levels={levels} face-samples={samples} interior={} error-bound={} backface-culling={} \
+        "tree-levels={levels} faces={} face-samples={samples} interior={} error-bound={} backface-culling={} \
          see-through={}",
+        if analytic == 1 { "analytic" } else { "sampled" },
         if composed == 1 { "composed" } else { "direct" },
         if measured == 1 { "above 0" } else { "0" },
         surfaces & 1 == 1,
@@ -52,7 +54,7 @@ pub fn read<S: Space>(
     key: &Key,
     scene: &Scene<S>,
 ) -> Result<(CellTree<S::Vector>, Baked), String> {
-    let ([nodes, references, faces, errors], _) = FORMAT.read::<5, 4>(bytes, key, describe)?;
+    let ([nodes, references, faces, errors], _) = FORMAT.read::<6, 4>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit.
     let tree = CellTree::of_tables(scene, &nodes, references).ok_or_else(damaged)?;
     let (cubes, rest) = faces.as_chunks::<6>();
