@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::geometry::dice::Dice;
-use crate::geometry::{Flat, PrimId, Solid, Space, Vector, View};
+use crate::geometry::{Flat, PrimId, Solid, Space, View};
 use crate::method::{Recorder, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, fixed_light, render};
 use crate::scene::{Parts, Quiet, framing_view, random_views};

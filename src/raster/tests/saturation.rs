@@ -3,7 +3,7 @@
 use glam::{vec2, vec3};
 
 use super::*;
-use crate::geometry::Aabb;
+use crate::geometry::{Aabb, Flat};
 use crate::raster::{CubeFaces, PyramidCell, Saturation};
 
 fn tile(x: u16, y: u16) -> PyramidCell {
@@ -40,7 +40,7 @@ fn ten_halves_are_full() {
     let (position, target) = (vec2(0.0, -1.0), vec2(0.0, 0.0));
     let fov = std::f32::consts::FRAC_PI_2;
     let eye = Eye { position, target, up: vec2(0.0, 1.0), fov, near: 0.1, far: 100.0 };
-    let view = View { eye, width: 8, height: 1 };
+    let view = View::<Flat> { eye, width: 8, height: 1 };
     let all = PixelRect { x0: 0, x1: 8, y0: 0, y1: 1 };
     let mut full = Saturation::default();
     full.clear(&view);
