@@ -17,13 +17,13 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Drawable, Options, StandIn, Target};
+use super::{CubeFaces, Drawable, Options, StandIn, Target};
 use crate::geometry::{Aabb, PrimId, Space, Vector, View};
 use crate::scene::{Scene, Surfaces};
 
 /// A sample is full, and no more is put under it, when less than so much of the light comes through: a
 /// quarter of a step of the 256 that are shown.
-const FULL: f32 = 1.0 / 1024.0;
+pub(super) const FULL: f32 = 1.0 / 1024.0;
 
 /// What a sample holds where there is no box.
 const CLEAR: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
@@ -115,7 +115,8 @@ fn put_under(sample: &mut [f32; 4], face: [f32; 4]) {
 }
 
 /// The rays of a view's samples. Flatland has no third axis and no rows: they are 0.
-struct Rays {
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rays {
     /// Image axes across and up, as the projection scales them, and the line of sight.
     rows: [[f64; 3]; 3],
     eye: [f64; 3],
@@ -134,7 +135,7 @@ fn widened<V: Vector>(v: V) -> [f64; 3] {
 }
 
 impl Rays {
-    fn new<S: Space>(view: &View<S>) -> Self {
+    pub(super) fn new<S: Space>(view: &View<S>) -> Self {
         let (projection, axes) = (view.projection(), S::Vector::AXES);
         let half = [f64::from(view.width) * 0.5, f64::from(view.height) * 0.5];
         let mut rays = Self {
@@ -331,6 +332,29 @@ impl<T: Copy, D: Depths> Band<'_, T, D> {
             }
         }
     }
+}
+
+/// Those at which samples meet the last box, whatever is there.
+struct Last<'a>(&'a mut [f32]);
+
+impl Depths for Last<'_> {
+    fn is_before(&mut self, at: usize, depth: f32) -> bool {
+        self.0[at] = depth;
+        true
+    }
+}
+
+/// Takes off the light that comes through each sample of an image what a box behind all others keeps, and
+/// notes where it is entered, but for samples that are full. `left`, `depth`: of each sample, row by row.
+pub(super) fn dim<V: Vector>(
+    rays: &Rays,
+    width: usize,
+    bounds: &Aabb<V>,
+    faces: &CubeFaces,
+    (left, depth): (&mut [f32], &mut [f32]),
+) {
+    let mut band = Band { first: 0, width, samples: left, depths: Last(depth), spans: &mut [], clear: 1.0 };
+    band.meet(rays, bounds, |left| *left < FULL, |left, face| *left *= 1.0 - faces.get(face)[3]);
 }
 
 /// The image of primitives and boxes drawn in the order of a list, the farthest first: each box goes over

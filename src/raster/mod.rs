@@ -24,6 +24,7 @@ mod line;
 mod opacity;
 mod pyramid;
 pub mod reference;
+mod saturation;
 mod setup;
 mod shade;
 mod simd;
@@ -39,6 +40,7 @@ mod vertex;
 pub use blend::Canvas;
 pub use opacity::Opacity;
 pub use pyramid::{Pyramid, PyramidCell};
+pub use saturation::Saturation;
 pub use setup::DEPTH_SLACK;
 pub(crate) use shade::Veil;
 pub use shade::{

@@ -10,24 +10,36 @@ pub(super) const CODE: &[CodeLine] = &[
     CodeLine::new("Render:2", "  if C lies outside a plane of P"),
     CodeLine::new("Render:3", "    return"),
     CodeLine::new("Render:4", "  P' := the planes of P that cut C"),
-    CodeLine::new("Render:5", "  if C is no larger on the screen than the pixel threshold"),
-    CodeLine::departing("Render:6", "    and C's cube is not too wrong for its size", "no such test"),
-    CodeLine::new("Render:7", "    draw the faces of C's color cube that face the eye"),
     CodeLine::departing(
-        "Render:8",
+        "Render:5",
+        "  draw into the depths what was drawn since the last question",
+        "not asked",
+    ),
+    CodeLine::departing(
+        "Render:6",
+        "  if C is large on the screen and behind what is in the depths",
+        "not asked",
+    ),
+    CodeLine::departing("Render:7", "    or behind that and color cubes that are full together", "not asked"),
+    CodeLine::departing("Render:8", "    return", "not asked"),
+    CodeLine::new("Render:9", "  if C is no larger on the screen than the pixel threshold"),
+    CodeLine::departing("Render:10", "    and C's cube is not too wrong for its size", "no such test"),
+    CodeLine::new("Render:11", "    draw the faces of C's color cube that face the eye"),
+    CodeLine::departing(
+        "Render:12",
         "  else if C is a leaf, or P' is empty and hardly a cell below C can be so small",
         "else if C is a leaf",
     ),
-    CodeLine::new("Render:9", "    DrawGeometry(C)"),
+    CodeLine::new("Render:13", "    DrawGeometry(C)"),
     CodeLine::departing(
-        "Render:10",
+        "Render:14",
         "  else for each child C' of C, front to back",
         "for each child C' of C, back to front",
     ),
-    CodeLine::new("Render:11", "  else for each child C' of C, back to front"),
-    CodeLine::new("Render:12", "    Render(C', P')"),
-    CodeLine::departing("Render:13", "  each primitive that C's children share is now settled:", "not said"),
-    CodeLine::departing("Render:14", "    drawn, in color cubes alone, or out of view", "not said"),
+    CodeLine::new("Render:15", "  else for each child C' of C, back to front"),
+    CodeLine::new("Render:16", "    Render(C', P')"),
+    CodeLine::departing("Render:17", "  each primitive that C's children share is now settled:", "not said"),
+    CodeLine::departing("Render:18", "    drawn, in color cubes alone, or out of view", "not said"),
     CodeLine::new("DrawGeometry:1", "DrawGeometry(C)"),
     CodeLine::new("DrawGeometry:2", "  draw the primitives of C that no other leaf holds"),
     CodeLine::new("DrawGeometry:3", "  for each other primitive p of C"),
@@ -44,16 +56,20 @@ pub(super) mod line {
     pub const TEST: u8 = line(CODE, "Render:2");
     pub const OUTSIDE: u8 = line(CODE, "Render:3");
     pub const CUTTING: u8 = line(CODE, "Render:4");
-    pub const SIZE: u8 = line(CODE, "Render:5");
-    pub const ERROR: u8 = line(CODE, "Render:6");
-    pub const CUBE: u8 = line(CODE, "Render:7");
-    pub const LEAF: u8 = line(CODE, "Render:8");
-    pub const CALL_DRAW: u8 = line(CODE, "Render:9");
-    pub const CHILDREN: u8 = line(CODE, "Render:10");
-    pub const FROM_BACK: u8 = line(CODE, "Render:11");
-    pub const CHILD: u8 = line(CODE, "Render:12");
-    pub const SHARED: u8 = line(CODE, "Render:13");
-    pub const SETTLED: u8 = line(CODE, "Render:14");
+    pub const DRAW_WAITING: u8 = line(CODE, "Render:5");
+    pub const BEHIND: u8 = line(CODE, "Render:6");
+    pub const BEHIND_CUBES: u8 = line(CODE, "Render:7");
+    pub const LEFT_OUT: u8 = line(CODE, "Render:8");
+    pub const SIZE: u8 = line(CODE, "Render:9");
+    pub const ERROR: u8 = line(CODE, "Render:10");
+    pub const CUBE: u8 = line(CODE, "Render:11");
+    pub const LEAF: u8 = line(CODE, "Render:12");
+    pub const CALL_DRAW: u8 = line(CODE, "Render:13");
+    pub const CHILDREN: u8 = line(CODE, "Render:14");
+    pub const FROM_BACK: u8 = line(CODE, "Render:15");
+    pub const CHILD: u8 = line(CODE, "Render:16");
+    pub const SHARED: u8 = line(CODE, "Render:17");
+    pub const SETTLED: u8 = line(CODE, "Render:18");
     pub const DRAW: u8 = line(CODE, "DrawGeometry:1");
     pub const OWN: u8 = line(CODE, "DrawGeometry:2");
     pub const EACH: u8 = line(CODE, "DrawGeometry:3");
@@ -65,21 +81,29 @@ pub(super) mod line {
 /// At which lines each kind of event stands.
 pub(super) const STANDS: &[(&str, &[&str])] = &[
     ("NodeClassified", &["Render:2"]),
-    ("CellSized", &["Render:5"]),
-    ("CubeMeasured", &["Render:6"]),
-    ("CubeDrawn", &["Render:7"]),
-    ("GeometryDrawn", &["Render:9"]),
+    ("DepthsDrawn", &["Render:5"]),
+    ("CellRead", &["Render:6"]),
+    ("TileRefreshed", &["Render:6"]),
+    ("ObscurationTested", &["Render:6"]),
+    ("SaturationTested", &["Render:7"]),
+    ("NodeDecided hidden", &["Render:8"]),
+    ("NodeDecided presumed", &["Render:8"]),
+    ("CellSized", &["Render:9"]),
+    ("CubeMeasured", &["Render:10"]),
+    ("CubeDrawn", &["Render:11"]),
+    ("GeometryDrawn", &["Render:13"]),
     ("OrientationTested", &["DrawGeometry:5"]),
     ("PrimitiveDrawn", &["DrawGeometry:6"]),
-    ("SharedSettled", &["Render:14"]),
+    ("SharedSettled", &["Render:18"]),
     ("NodeDecided outside", &["Render:3"]),
-    ("NodeDecided approximated", &["Render:7"]),
-    ("NodeDecided partial", &["Render:10", "Render:11"]),
-    ("NodeDecided visible", &["Render:9"]),
+    ("NodeDecided approximated", &["Render:11"]),
+    ("NodeDecided partial", &["Render:14", "Render:15"]),
+    ("NodeDecided visible", &["Render:13"]),
     ("PrimDecided visible", &["DrawGeometry:6"]),
     ("PrimDecided faces-away", &["DrawGeometry:5"]),
-    ("PrimDecided approximated", &["Render:14"]),
-    ("PrimDecided hidden", &["Render:14"]),
+    ("PrimDecided approximated", &["Render:18"]),
+    ("PrimDecided presumed", &["Render:18"]),
+    ("PrimDecided hidden", &["Render:18"]),
 ];
 
 /// Where it differs from the paper.
@@ -133,6 +157,21 @@ pub(super) const DEPARTURES: &[Departure] = &[
         when: When::With("interior", "direct"),
     },
     Departure {
+        section: "4",
+        what: "with faces=analytic the color of a face follows from the areas that show, and not from samples",
+        why: "the paper names it as well; two halves of a face then are a half each, where of 4×4 samples \
+              one has 6 and the other 10",
+        when: When::With("faces", "analytic"),
+    },
+    Departure {
+        section: "6",
+        what: "cells behind geometry that is drawn are left out, and with occlusion=depth-and-opacity those \
+               behind color cubes that let less than 1/1024 of the light through as well",
+        why: "the paper names the hierarchical z-buffer as future work; a cell that does not show need be \
+              drawn neither as a cube nor as geometry",
+        when: When::Without("occlusion", "none"),
+    },
+    Departure {
         section: "5.1",
         what: "with an error-bound cells are refined whose cubes are too wrong, as measured between the axes",
         why: "surfaces then stay whole, where the paper's are torn; it wishes for various techniques by \
@@ -146,6 +185,8 @@ pub(super) fn has_line(params: &Params, at: u8) -> bool {
     let has_children = params.tree_levels > 1;
     match at {
         line::CUBE => params.pixel_threshold > 0.0,
+        line::DRAW_WAITING | line::BEHIND | line::LEFT_OUT => params.hides(),
+        line::BEHIND_CUBES => params.hides_behind_cubes(),
         line::ERROR => params.measures() && params.pixel_threshold > 0.0,
         line::CHILDREN => has_children && params.order == Order::Exact,
         line::FROM_BACK => has_children && params.order == Order::Paper,

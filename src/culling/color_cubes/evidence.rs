@@ -1,17 +1,18 @@
 //! The evidence of this method: as fields, as sentences, and as marks in the world.
 
 use super::index::CubeTree;
+use crate::culling::depth::{DepthNote, Faces, place};
 use crate::drawing::{Drawing, Layer, Role, Subject};
-use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector, View};
+use crate::geometry::{Aabb, NodeId, PixelRect, PrimId, Vector, View};
 use crate::index::{CellTree, Hierarchy};
 use crate::method::evidence::{Facing, Tested, axes, integer, label, number, outline, short};
 use crate::method::{Claim, Compared, Context, Field, Note, Tallied, Tally, Value};
-use crate::raster::CubeFaces;
+use crate::raster::{CubeFaces, PyramidCell};
 use crate::scene::Scene;
 
 /// What the method records.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Evidence<S: Space> {
+pub(crate) enum Evidence<S: Faces> {
     /// A cell against the frustum.
     Tested(Tested<S>),
     /// A cell's size on the screen against the threshold.
@@ -26,6 +27,29 @@ pub(crate) enum Evidence<S: Space> {
     Facing(Facing),
     /// What became of a primitive.
     Settled(Settled),
+    /// What was read of the depths that are drawn so far, or changed.
+    Depth(DepthNote<S>),
+    /// A cell against the cubes that are drawn so far.
+    Saturated(Saturated),
+}
+
+impl<S: Faces> From<DepthNote<S>> for Evidence<S> {
+    fn from(note: DepthNote<S>) -> Self {
+        Self::Depth(note)
+    }
+}
+
+/// Whether a cell is behind geometry, or cubes that let hardly any light through, wherever it could show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Saturated {
+    pub node: NodeId,
+    /// Pixels that it can cover; none if it crosses the near plane.
+    pub pixels: PixelRect,
+    /// Its nearest depth, `1/w`.
+    pub nearest: f32,
+    /// The first tile in which more of it would show.
+    pub open: Option<PyramidCell>,
+    pub is_behind: bool,
 }
 
 /// A cell's size on the screen.
@@ -76,14 +100,20 @@ pub(crate) enum Settled {
     InCubes { prim: PrimId, node: NodeId },
     /// All of its cells are out of view.
     OutOfView { prim: PrimId, node: NodeId },
+    /// All of its cells are out of view or behind geometry.
+    Behind { prim: PrimId, node: NodeId },
+    /// All of its cells are out of view, or behind geometry or cubes.
+    BehindCubes { prim: PrimId, node: NodeId },
 }
 
 impl Settled {
     fn about(&self) -> (PrimId, NodeId) {
         match *self {
-            Self::Drawn { prim, node } | Self::InCubes { prim, node } | Self::OutOfView { prim, node } => {
-                (prim, node)
-            }
+            Self::Drawn { prim, node }
+            | Self::InCubes { prim, node }
+            | Self::OutOfView { prim, node }
+            | Self::Behind { prim, node }
+            | Self::BehindCubes { prim, node } => (prim, node),
         }
     }
 }
@@ -104,7 +134,7 @@ impl<V: Vector> CubeDrawn<V> {
     }
 }
 
-impl<S: Space> Evidence<S> {
+impl<S: Faces> Evidence<S> {
     /// The primitives that it says were drawn: those of a cell wholly in it, unless each was looked at.
     pub(super) fn drawn<'a>(&'a self, index: &'a CubeTree<S>, looks_at_each: bool) -> &'a [PrimId] {
         match self {
@@ -132,9 +162,10 @@ impl<S: Space> Evidence<S> {
             Self::Erring(n) => {
                 to.bounds(Layer::Emphasis, Role::Current, Subject::Node(n.node), &tree.cell(n.node));
             }
-            Self::Geometry { node, .. } => {
+            Self::Geometry { node, .. } | Self::Saturated(Saturated { node, .. }) => {
                 to.bounds(Layer::Emphasis, Role::Current, Subject::Node(*node), &tree.cell(*node));
             }
+            Self::Depth(n) => n.draw(scene, view, to),
         }
     }
 }
@@ -152,7 +183,7 @@ fn pixels(size: f32) -> String {
     if size.is_finite() { short(size) } else { "∞".into() }
 }
 
-impl<S: Space> Tallied for Evidence<S> {
+impl<S: Faces> Tallied for Evidence<S> {
     fn tally(&self, tally: &mut Tally) {
         match self {
             Self::Tested(n) => n.tally(tally),
@@ -166,12 +197,20 @@ impl<S: Space> Tallied for Evidence<S> {
             Self::Facing(_) => Facing::tally(tally),
             Self::Settled(Settled::Drawn { .. }) => {}
             Self::Settled(Settled::InCubes { .. }) => tally.add("shared_primitives_in_cubes", 1),
-            Self::Settled(Settled::OutOfView { .. }) => tally.add("shared_primitives_unseen", 1),
+            Self::Settled(_) => tally.add("shared_primitives_unseen", 1),
+            // Its own word: cubes are something else here.
+            Self::Depth(DepthNote::Drawn(..)) => tally.add("leaves_drawn_into_depths", 1),
+            Self::Depth(n) => {
+                let is_hidden = matches!(n, DepthNote::Answered(a) if a.answer.is_hidden);
+                tally.add("cells_hidden", is_hidden.into());
+                n.tally(tally);
+            }
+            Self::Saturated(n) => tally.add("cells_behind_cubes", n.is_behind.into()),
         }
     }
 }
 
-impl<S: Space> Note<S> for Evidence<S> {
+impl<S: Faces> Note<S> for Evidence<S> {
     fn kind(&self) -> &'static str {
         match self {
             Self::Tested(n) => n.kind(),
@@ -182,6 +221,9 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Facing(_) => "OrientationTested",
             Self::Settled(Settled::Drawn { .. }) => "PrimitiveDrawn",
             Self::Settled(_) => "SharedSettled",
+            Self::Depth(DepthNote::Drawn(..)) => "DepthsDrawn",
+            Self::Depth(n) => n.kind(),
+            Self::Saturated(_) => "SaturationTested",
         }
     }
     fn subject(&self) -> Subject {
@@ -193,6 +235,10 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Geometry { node, .. } => Subject::Node(*node),
             Self::Facing(n) => n.subject(),
             Self::Settled(n) => Subject::Prim(n.about().0),
+            // That its depths are drawn is no reason for its verdict.
+            Self::Depth(DepthNote::Drawn(..)) => Subject::None,
+            Self::Depth(n) => n.subject(),
+            Self::Saturated(n) => Subject::Node(n.node),
         }
     }
     fn claim(&self, context: &Context<'_, S>) -> Option<Claim<S::Vector>> {
@@ -200,7 +246,8 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Tested(n) => n.claim(context),
             Self::Facing(n) => n.claim(context),
             // Nothing of it lies in the view volume, so nothing of it shows.
-            Self::Settled(Settled::OutOfView { .. }) => Some(Claim::Hidden),
+            Self::Settled(Settled::OutOfView { .. } | Settled::Behind { .. }) => Some(Claim::Hidden),
+            Self::Depth(n) => n.claim(context),
             // A cube stands for what it stands for; that proves nothing.
             _ => None,
         }
@@ -215,6 +262,7 @@ impl<S: Space> Note<S> for Evidence<S> {
             Self::Sized(n) => {
                 Some(Compared::of(("size in pixels", n.size.into()), ("threshold", n.threshold.into())))
             }
+            Self::Depth(n) => n.compared(context),
             _ => None,
         }
     }
@@ -251,6 +299,8 @@ impl<S: Space> Note<S> for Evidence<S> {
                 let (prim, node) = n.about();
                 vec![integer("prim", prim.0), integer("node", node.0)]
             }
+            Self::Depth(n) => n.fields(context),
+            Self::Saturated(n) => n.fields(),
         }
     }
     fn sentence(&self, context: &Context<'_, S>) -> String {
@@ -296,6 +346,52 @@ impl<S: Space> Note<S> for Evidence<S> {
                 "The {name} {prim} lies in several nodes below node {node}, and all of these are outside the \
                  view."
             ),
+            Self::Settled(Settled::Behind { prim, node }) => format!(
+                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the view \
+                 or behind what is drawn."
+            ),
+            Self::Settled(Settled::BehindCubes { prim, node }) => format!(
+                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the \
+                 view, or behind what is drawn, color cubes among it."
+            ),
+            Self::Depth(DepthNote::Drawn(node, _)) => format!(
+                "The geometry of node {node} is drawn into the depths, by which cells are found that are \
+                 behind it."
+            ),
+            Self::Depth(n) => n.sentence(context),
+            Self::Saturated(n) => n.sentence(),
+        }
+    }
+}
+
+impl Saturated {
+    fn fields(&self) -> Vec<Field> {
+        let PixelRect { x0, x1, y0, y1 } = self.pixels;
+        let pixels = Value::List([x0, x1, y0, y1].map(f64::from).to_vec());
+        let mut fields = vec![
+            integer("node", self.node.0),
+            Field { name: "hidden", value: Value::Switch(self.is_behind) },
+            number("nearest_depth_units", (1.0 / self.nearest).into()),
+            Field { name: "pixels", value: pixels },
+        ];
+        if let Some(tile) = self.open {
+            fields.extend([integer("column", tile.x.into()), integer("row", tile.y.into())]);
+        }
+        fields
+    }
+    fn sentence(&self) -> String {
+        let node = self.node;
+        match self.open {
+            _ if self.is_behind => format!(
+                "Node {node} is left out: wherever it could show it is behind geometry, or behind color cubes \
+                 that together let less than 1/1024 of it through."
+            ),
+            Some(tile) => format!(
+                "Node {node} may be seen: in {} neither geometry nor the color cubes before it hide it \
+                 everywhere.",
+                place(tile)
+            ),
+            None => format!("Node {node} crosses the near plane, so it counts as visible."),
         }
     }
 }

@@ -5,9 +5,11 @@
 //! 2. An inner cell's faces are composed of its children's, column by column: the front one over the back
 //!    one; the mean of the columns is the face (Figure 3). A child that holds nothing is clear. Or they are
 //!    made as a leaf's.
+//! 3. Where asked, what primitives show of themselves is not sampled but worked out ([`super::analytic`]).
 //!
 //! Colors are linear, under light that is fixed in the world: what the paper bakes cannot depend on the eye.
 
+use super::analytic::{self, Surface};
 use super::space::{Corners, Projected};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::{CellTree, octant_of};
@@ -26,6 +28,8 @@ pub struct Baking<'a, S: Space> {
     pub surfaces: Surfaces,
     /// Samples along a side of a face.
     pub side: u32,
+    /// Whether areas are worked out where that can be, and not sampled.
+    pub is_analytic: bool,
     /// Whether those of inner cells are composed of their children's.
     pub composes: bool,
 }
@@ -100,9 +104,34 @@ impl<S: Projected> Baking<'_, S> {
 
     /// Faces of a cell from its primitives, of ascending ids.
     pub fn projected(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], room: &mut Room<S>) -> Faces {
+        if self.is_analytic {
+            let sampled = Self { side: analytic::SIDE, is_analytic: false, ..*self };
+            return self
+                .worked_out(cell, prims, room)
+                .unwrap_or_else(|| sampled.projected(cell, prims, room));
+        }
         let mut faces = [[0.0; 4]; 6];
         self.project(cell, prims, room, |face, samples| faces[face] = mean(samples));
         faces
+    }
+
+    /// Faces of a cell by areas; `None` where that takes too long, or light comes through.
+    fn worked_out(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], room: &mut Room<S>) -> Option<Faces> {
+        let lit = &mut room.lit;
+        self.light(cell, prims, 1, lit);
+        if lit.iter().any(|one| one.through) {
+            return None;
+        }
+        let mut faces = [[0.0; 4]; 6];
+        for axis in 0..S::Vector::AXES {
+            let surface = |one: &Lit<S>| {
+                let outline = S::outline(&one.corners, axis)?;
+                Some(Surface { outline, color: one.color, seen: one.seen_along(axis) })
+            };
+            let surfaces: Vec<Surface> = lit.iter().filter_map(surface).collect();
+            faces[2 * axis..][..2].copy_from_slice(&analytic::both_faces(&surfaces)?);
+        }
+        Some(faces)
     }
 
     /// The samples of each face, row by row, of a cell with these primitives.
@@ -123,7 +152,7 @@ impl<S: Projected> Baking<'_, S> {
         mut each: impl FnMut(usize, &[Sample]),
     ) {
         let Room { lit, samples } = room;
-        self.light(cell, prims, lit);
+        self.light(cell, prims, self.side, lit);
         let (count, top) = (S::sample_count(self.side), f64::from(self.side));
         // Both sides of an axis at a time: a sample of the one is a sample of the other.
         for axis in 0..S::Vector::AXES {
@@ -133,8 +162,7 @@ impl<S: Projected> Baking<'_, S> {
             // Those that light comes through last, over what the others left.
             for through in self.ways() {
                 for one in lit.iter().filter(|one| one.through == *through) {
-                    let toward = |sign: f32| S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 });
-                    let [from_below, from_above] = [-1.0, 1.0].map(|sign| one.is_seen(toward(sign)));
+                    let [from_below, from_above] = one.seen_along(axis);
                     S::cover(&one.corners, axis, self.side, |at, height| {
                         if from_below {
                             lower[at].put(height, one.color, *through);
@@ -153,9 +181,9 @@ impl<S: Projected> Baking<'_, S> {
     fn ways(&self) -> &'static [bool] {
         if self.surfaces.any_through(self.scene) { &[false, true] } else { &[false] }
     }
-    /// Primitives as the faces of a cell see them.
-    fn light(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], to: &mut Vec<Lit<S>>) {
-        let (scene, side) = (self.scene, f64::from(self.side));
+    /// Primitives as the faces of a cell see them that have so many samples a side.
+    fn light(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], side: u32, to: &mut Vec<Lit<S>>) {
+        let (scene, side) = (self.scene, f64::from(side));
         let (origin, size) = (cell.min, cell.size());
         let scale: [f64; 3] = std::array::from_fn(|a| {
             let size = if a < S::Vector::AXES { size.get(a) } else { 0.0 };
@@ -187,7 +215,7 @@ impl<S: Projected> Baking<'_, S> {
     /// an error measured there is nothing: Section 5.1 shows surfaces torn from 45°.)
     pub fn error(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], faces: &Faces, room: &mut Room<S>) -> f32 {
         let mut worst = 0.0_f32;
-        self.light(cell, prims, &mut room.lit);
+        self.light(cell, prims, self.side, &mut room.lit);
         for number in 0..3usize.pow(S::Vector::AXES as u32) {
             let toward = S::Vector::from_fn(|a| (number / 3usize.pow(a as u32) % 3) as f32 - 1.0);
             let axes: Vec<usize> = (0..S::Vector::AXES).filter(|a| toward.get(*a) != 0.0).collect();
@@ -289,6 +317,10 @@ impl<S: Space> Lit<S> {
     #[inline]
     fn is_seen(&self, toward: S::Vector) -> bool {
         self.front.is_none_or(|front| front.dot(toward) > 0.0)
+    }
+    /// Whether it is seen along an axis, from below and from above.
+    fn seen_along(&self, axis: usize) -> [bool; 2] {
+        [-1.0, 1.0].map(|sign| self.is_seen(S::Vector::from_fn(|a| if a == axis { sign } else { 0.0 })))
     }
 }
 

@@ -1,15 +1,16 @@
 //! What is built once: the tree of cells, and the faces of each cell's color cube.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::costs::pays;
 use super::faces::{Baked, Baking};
 use super::saved;
 use super::space::Projected;
 use super::{Params, Primitives};
-use crate::geometry::{Aabb, NodeId, PrimId, Space};
+use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::{CellTree, Hierarchy, Items};
-use crate::raster::CubeFaces;
+use crate::raster::{Clusters, CubeFaces};
 use crate::scene::{Part, Progress, Scene};
 
 /// The tree of cells with the faces of their color cubes.
@@ -20,7 +21,42 @@ pub struct CubeTree<S: Space> {
     baked: Baked,
     /// Of each node: where it pays to look below it.
     pays: Vec<u8>,
+    /// What hides cells, where that is asked.
+    occluders: Option<Occluders<S::Vector>>,
     key: saved::Key,
+}
+
+/// What is needed to find cells that are hidden.
+#[derive(Debug)]
+pub struct Occluders<V> {
+    /// Of each node two groups, which leaves alone have: what no other leaf holds, and the rest.
+    pub clusters: Arc<Clusters>,
+    /// Of each node the box of its cell and of all primitives that meet it, as wholes.
+    pub wholes: Vec<Aabb<V>>,
+}
+
+impl<V: Vector> Occluders<V> {
+    fn new<S: Projected<Vector = V>>(scene: &Scene<S>, params: &Params, tree: &CellTree<V>) -> Self {
+        let groups = tree.nodes().iter().enumerate().flat_map(|(at, node)| {
+            let (own, shared) =
+                if node.is_leaf() { tree.of_leaf(NodeId(at as u32)) } else { Default::default() };
+            [own, shared]
+        });
+        let clusters = Arc::new(Clusters::new(scene, params.surfaces, groups));
+        let mut wholes = vec![Aabb::empty(); tree.nodes().len()];
+        // Children have higher numbers.
+        for (at, node) in tree.nodes().iter().enumerate().rev() {
+            let id = NodeId(at as u32);
+            wholes[at] = if node.is_leaf() {
+                let held = tree.references(id).iter().map(|prim| scene.prim_bounds(*prim));
+                held.fold(tree.cell(id), |whole, bounds| whole.union(bounds))
+            } else {
+                let below = node.children().map(|child| wholes[child as usize]);
+                below.fold(tree.cell(id), |whole: Aabb<V>, child| whole.union(child))
+            };
+        }
+        Self { clusters, wholes }
+    }
 }
 
 impl<S: Projected> CubeTree<S> {
@@ -37,7 +73,7 @@ impl<S: Projected> CubeTree<S> {
         let (key, items) = (saved::key(scene, params), items(scene, params));
         if let Some(bytes) = saved {
             let (tree, baked) = saved::read(bytes, &key, scene, items)?;
-            return Ok(Some(Self { pays: pays(&tree, scene), tree, baked, key }));
+            return Ok(Some(Self::of(scene, params, (tree, baked), key)));
         }
         progress.report(0.0, "dividing cells");
         let (levels, cancelled) = (params.tree_levels, || progress.cancelled());
@@ -48,11 +84,22 @@ impl<S: Projected> CubeTree<S> {
             scene,
             surfaces: params.surfaces,
             side: params.face_samples,
+            is_analytic: params.is_analytic(),
             composes: params.composes(),
         };
         let part = Part { whole: progress, start: 0.5, length: 0.5 };
         let baked = baking.bake(&tree, params.measures(), &part);
-        Ok(baked.map(|baked| Self { pays: pays(&tree, scene), tree, baked, key }))
+        Ok(baked.map(|baked| Self::of(scene, params, (tree, baked), key)))
+    }
+    /// What follows from the tree is made anew, and not kept.
+    fn of(
+        scene: &Scene<S>,
+        params: &Params,
+        (tree, baked): (CellTree<S::Vector>, Baked),
+        key: saved::Key,
+    ) -> Self {
+        let occluders = params.hides().then(|| Occluders::new(scene, params, &tree));
+        Self { pays: pays(&tree, scene), tree, baked, occluders, key }
     }
 }
 
@@ -74,6 +121,10 @@ impl<S: Space> CubeTree<S> {
     /// The tree of cells.
     pub fn tree(&self) -> &CellTree<S::Vector> {
         &self.tree
+    }
+    /// What hides cells; `None` where nobody asks.
+    pub fn occluders(&self) -> Option<&Occluders<S::Vector>> {
+        self.occluders.as_ref()
     }
     /// The deepest level from which on the cells below a node must be drawn as cubes, for it to be no loss to
     /// look below it; the node's own level if it always is one.
@@ -116,8 +167,9 @@ impl<S: Space> Hierarchy<S> for CubeTree<S> {
         Hierarchy::<S>::held(&self.tree, node)
     }
     fn bytes(&self) -> usize {
+        let occluders = self.occluders.as_ref().map_or(0, |o| o.clusters.bytes() + size_of_val(&*o.wholes));
         let Baked { faces, errors } = &self.baked;
-        self.tree.bytes() + size_of_val(&**faces) + size_of_val(&**errors) + self.pays.len()
+        self.tree.bytes() + size_of_val(&**faces) + size_of_val(&**errors) + self.pays.len() + occluders
     }
     fn save(&self) -> Option<Vec<u8>> {
         Some(saved::write(&self.key, &self.tree, &self.baked))

@@ -13,14 +13,20 @@
 //! other is visited child by child. What the cubes look like over each other and over geometry:
 //! [`crate::raster::Canvas`].
 //!
-//! It leaves nothing out, but stands cubes for what they are [`crate::method::Verdict::Approximated`] by;
-//! with a threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`].
+//! Cells that do not show can be left out ([`hiding`]). Else it leaves nothing out, but stands cubes for what
+//! they are [`crate::method::Verdict::Approximated`] by; with a threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`].
 //! Cost: O(cells visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
 
+mod analytic;
+#[cfg(test)]
+mod analytic_tests;
 mod code;
 mod costs;
 mod evidence;
 mod faces;
+mod hiding;
+#[cfg(test)]
+mod hiding_tests;
 mod index;
 mod picture;
 mod saved;
@@ -33,6 +39,7 @@ use std::sync::Arc;
 
 use self::code::{CODE, DEPARTURES, STANDS, has_line};
 pub(crate) use self::evidence::Evidence;
+use self::hiding::{Drawn, Hiding};
 use self::index::CubeTree;
 pub(crate) use self::space::Projected;
 use self::walk::Walk;
@@ -53,10 +60,12 @@ pub(crate) struct Params {
     pixel_threshold: f32,
     tree_levels: u32,
     primitives: Primitives,
+    faces: Coverage,
     face_samples: u32,
     interior: Interior,
     error_bound: f32,
     order: Order,
+    occlusion: Occlusion,
     surfaces: Surfaces,
 }
 
@@ -67,12 +76,15 @@ impl Default for Params {
             pixel_threshold: 1.0,
             tree_levels: CellTree::<glam::Vec3>::MOST_LEVELS,
             primitives: Primitives::default(),
+            faces: Coverage::default(),
             // Section 4: "typically, 4×4 pixels".
             face_samples: 4,
             interior: Interior::default(),
             // The paper has no such bound.
             error_bound: 0.0,
             order: Order::default(),
+            // The paper has none (Section 6).
+            occlusion: Occlusion::default(),
             surfaces: Surfaces::default(),
         }
     }
@@ -85,6 +97,16 @@ words! {
         Single = "single",
         /// All of an object, such as a sphere of a molecule.
         Objects = "objects",
+    }
+}
+
+words! {
+    /// How it is found what primitives cover of a face (Section 4).
+    pub(crate) enum Coverage {
+        /// The mean of samples.
+        Sampled = "sampled",
+        /// By areas.
+        Analytic = "analytic",
     }
 }
 
@@ -108,10 +130,34 @@ words! {
     }
 }
 
+words! {
+    /// What hides cells that are behind it.
+    pub(crate) enum Occlusion {
+        /// Nothing.
+        None = "none",
+        /// Geometry.
+        Depth = "depth",
+        /// Geometry, and cubes that together let hardly any light through.
+        DepthAndOpacity = "depth-and-opacity",
+    }
+}
+
 impl Params {
+    /// Whether cells can be hidden. Back to front there is nothing yet before any of them.
+    fn hides(&self) -> bool {
+        let are_single = self.primitives == Primitives::Single;
+        self.occlusion != Occlusion::None && self.order == Order::Exact && are_single
+    }
+    /// Whether cubes can hide them.
+    fn hides_behind_cubes(&self) -> bool {
+        self.occlusion == Occlusion::DepthAndOpacity && self.hides()
+    }
     /// Whether it is measured how wrong cubes are.
     fn measures(&self) -> bool {
         self.error_bound > 0.0
+    }
+    fn is_analytic(&self) -> bool {
+        self.faces == Coverage::Analytic
     }
     fn composes(&self) -> bool {
         self.interior == Interior::Composed
@@ -122,8 +168,8 @@ impl<S: Projected> Method<S> for ColorCubes {
     type Params = Params;
     type Index = CubeTree<S>;
     type Memory = ();
-    // What is drawn follows from the evidence of each step alone; the picture is composited from it.
-    type State = ();
+    // Where nothing hides cells it is empty: what is drawn follows from the evidence of each step alone.
+    type State = Drawn<S>;
     type Note = Evidence<S>;
     const CARD: Card = Card {
         key: "color-cubes",
@@ -164,6 +210,14 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Sections 4 and 5",
         );
         knobs.words(primitives, &mut params.primitives);
+        let faces = Knob::new(
+            "faces",
+            "",
+            "how a face is made from primitives: sampled, the mean of samples; analytic, by the areas that \
+             show, but by 64×64 samples (in flatland 64) where light comes through one or very many are seen",
+            "Chamberlain et al. 1996, Section 4",
+        );
+        knobs.words(faces, &mut params.faces);
         let samples = Knob::new(
             "face-samples",
             "samples",
@@ -196,6 +250,15 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Section 5.1",
         );
         knobs.words(order, &mut params.order);
+        let occlusion = Knob::new(
+            "occlusion",
+            "",
+            "cells that are left out because they do not show, with order=exact and primitives=single: none; \
+             depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color cubes as well that \
+             let less than 1/1024 of the light through",
+            "Chamberlain et al. 1996, Section 6",
+        );
+        knobs.words(occlusion, &mut params.occlusion);
         surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
@@ -209,7 +272,7 @@ impl<S: Projected> Method<S> for ColorCubes {
     fn cull<O: Observer<Evidence<S>>>(
         frame: &Frame<'_, S, Self>,
         (): &mut (),
-        (): &mut (),
+        drawn: &mut Drawn<S>,
         out: &mut DrawList<S>,
         watch: &mut O,
     ) {
@@ -217,7 +280,7 @@ impl<S: Projected> Method<S> for ColorCubes {
         // Faces were made in this light.
         out.light = Light::Fixed;
         out.in_order = frame.params.order == Order::Paper;
-        Walk::new(frame, out, watch).run();
+        Walk::new(frame, out, watch).hiding(Hiding::new(frame, drawn)).run();
     }
     fn is_conservative(params: &Params) -> bool {
         params.pixel_threshold == 0.0

@@ -146,7 +146,13 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let samples = (!is_composed).then(|| {
         let (scene, params) = (moment.frame.scene, moment.frame.params);
         let prims = held(tree, id);
-        let baking = Baking { scene, surfaces: params.surfaces, side: params.face_samples, composes: true };
+        let baking = Baking {
+            scene,
+            surfaces: params.surfaces,
+            side: params.face_samples,
+            is_analytic: false,
+            composes: true,
+        };
         baking.samples(&tree.cell(id), &prims)
     });
     for (face, name) in FACE_NAMES.iter().enumerate().take(2 * S::Vector::AXES) {

@@ -11,25 +11,28 @@ use crate::scene::Scene;
 
 const FORMAT: Format = Format { magic: b"cullscope-c1", method: "color-cubes", has_bytes: false };
 
-/// What a tree was made for: levels at most, whether it refers to objects, samples of a face, whether inner faces are composed, whether
-/// errors are measured, and how surfaces are taken.
-pub type Key = saved::Key<6>;
+/// What a tree was made for: levels at most, whether it refers to objects, samples of a face, whether inner
+/// faces are composed, whether errors are measured, how surfaces are taken, and whether faces are worked out.
+pub type Key = saved::Key<7>;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     // Only what the tree depends on: the threshold is a matter of the frame.
     let surfaces = u32::from(params.surfaces.one_sided) | u32::from(params.surfaces.solid) << 1;
     let (composes, measures) = (params.composes().into(), params.measures().into());
+    let is_analytic = params.is_analytic().into();
     let objects = u32::from(params.primitives == Primitives::Objects);
-    let params = [params.tree_levels, objects, params.face_samples, composes, measures, surfaces];
+    let Params { tree_levels, face_samples, .. } = *params;
+    let params = [tree_levels, objects, face_samples, composes, measures, surfaces, is_analytic];
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, objects, samples, composed, measured, surfaces]: [u32; 6]) -> String {
+fn describe([levels, objects, samples, composed, measured, surfaces, analytic]: [u32; 7]) -> String {
     format!(
-        "tree-levels={levels} primitives={} face-samples={samples} interior={} error-bound={} backface-culling={} \
-         see-through={}",
+        "tree-levels={levels} primitives={} faces={} face-samples={samples} interior={} error-bound={} \
+         backface-culling={} see-through={}",
         if objects == 1 { "objects" } else { "single" },
+        if analytic == 1 { "analytic" } else { "sampled" },
         if composed == 1 { "composed" } else { "direct" },
         if measured == 1 { "above 0" } else { "0" },
         surfaces & 1 == 1,
@@ -55,7 +58,7 @@ pub fn read<S: Space>(
     scene: &Scene<S>,
     items: Items,
 ) -> Result<(CellTree<S::Vector>, Baked), String> {
-    let ([nodes, references, faces, errors], _) = FORMAT.read::<6, 4>(bytes, key, describe)?;
+    let ([nodes, references, faces, errors], _) = FORMAT.read::<7, 4>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit.
     let tree = CellTree::of_tables(scene, items, &nodes, references).ok_or_else(damaged)?;
     let (cubes, rest) = faces.as_chunks::<6>();

@@ -2,20 +2,23 @@
 
 use std::ops::Range;
 
+use crate::culling::depth::Faces;
 use crate::geometry::{Flat, Solid};
 use crate::index::tessellation::Cellular;
-use crate::raster::Drawable;
 
 /// Corners of a primitive from the lower end of a cell, in samples of its faces: 0 to as many as a side has.
 /// In flatland the third corner and the third axis are not used.
 pub type Corners = [[f64; 3]; 3];
 
 /// A space in which cells are seen along its axes.
-pub trait Projected: Cellular + Drawable {
+pub trait Projected: Cellular + Faces {
     /// What the faces of a cube cost that can face the eye, in primitives.
     const CUBE_COST: u32;
     /// Samples of a face that has so many along a side.
     fn sample_count(side: u32) -> usize;
+    /// What a primitive covers of a face of a cell, clipped to it, seen along an axis, with one sample a side;
+    /// `None` if that has no area.
+    fn outline(corners: &Corners, axis: usize) -> Option<Outline>;
     /// Calls `visit` with each sample of a face of a cell that a primitive covers, seen along an axis, and
     /// how far it is above the lower face there: 0 to `side`.
     fn cover(corners: &Corners, axis: usize, side: u32, visit: impl FnMut(usize, f64));
@@ -34,11 +37,47 @@ fn samples_in(low: f64, high: f64, side: u32) -> Range<u32> {
     up..past as u32
 }
 
+/// What a primitive covers of a face.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// Corners of a convex polygon, counterclockwise, 0 to 1 along both axes of the face. In flatland the face
+    /// is drawn out to a square.
+    pub corners: Vec<[f64; 2]>,
+    /// How far above the lower face it is there, in sizes of the cell: `a·x + b·y + c`.
+    pub height: [f64; 3],
+}
+
 impl Projected for Flat {
     // Two edges, a segment each.
     const CUBE_COST: u32 = 2;
     fn sample_count(side: u32) -> usize {
         side as usize
+    }
+    fn outline(corners: &Corners, axis: usize) -> Option<Outline> {
+        let place = |k: usize| [corners[k][1 - axis], corners[k][axis]];
+        let (a, b) = (place(0), place(1));
+        // The part of the segment that lies in the cell.
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for k in 0..2 {
+            let along = b[k] - a[k];
+            if along == 0.0 {
+                if !(0.0..=1.0).contains(&a[k]) {
+                    return None;
+                }
+                continue;
+            }
+            let ends = [-a[k] / along, (1.0 - a[k]) / along];
+            (first, last) = (first.max(ends[0].min(ends[1])), last.min(ends[0].max(ends[1])));
+        }
+        let ends = [first, last].map(|t| a[0] + t * (b[0] - a[0]));
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // No number is not less than another either.
+        if !(first < last && low < high) {
+            return None;
+        }
+        let slope = (b[1] - a[1]) / (b[0] - a[0]);
+        let corners = vec![[low, 0.0], [high, 0.0], [high, 1.0], [low, 1.0]];
+        Some(Outline { corners, height: [slope, 0.0, a[1] - slope * a[0]] })
     }
     fn cover(corners: &Corners, axis: usize, side: u32, mut visit: impl FnMut(usize, f64)) {
         let across = 1 - axis;
@@ -66,6 +105,38 @@ impl Projected for Solid {
     const CUBE_COST: u32 = 6;
     fn sample_count(side: u32) -> usize {
         (side * side) as usize
+    }
+    fn outline(corners: &Corners, axis: usize) -> Option<Outline> {
+        // Along both axes of the face, and above it.
+        let p = corners.map(|p| glam::DVec3::new(p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]));
+        let normal = (p[1] - p[0]).cross(p[2] - p[0]);
+        // Seen edge-on it covers nothing, and where a cell has no size there are no numbers.
+        if !(normal.z != 0.0 && normal.is_finite()) {
+            return None;
+        }
+        let (a, b) = (-normal.x / normal.z, -normal.y / normal.z);
+        let mut inside = p.to_vec();
+        for k in 0..3 {
+            for (sign, offset) in [(1.0, 0.0), (-1.0, 1.0)] {
+                // Sutherland and Hodgman 1974.
+                let from = std::mem::take(&mut inside);
+                for (at, point) in from.iter().enumerate() {
+                    let next = from[(at + 1) % from.len()];
+                    let [here, there] = [*point, next].map(|p| sign * p[k] + offset);
+                    if here >= 0.0 {
+                        inside.push(*point);
+                    }
+                    if (here < 0.0) != (there < 0.0) {
+                        inside.push(*point + (next - *point) * (here / (here - there)));
+                    }
+                }
+            }
+        }
+        let mut corners: Vec<[f64; 2]> = inside.iter().map(|p| [p.x, p.y]).collect();
+        if normal.z < 0.0 {
+            corners.reverse();
+        }
+        (corners.len() > 2).then_some(Outline { corners, height: [a, b, p[0].z - a * p[0].x - b * p[0].y] })
     }
     fn cover(corners: &Corners, axis: usize, side: u32, mut visit: impl FnMut(usize, f64)) {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);

@@ -64,7 +64,7 @@ fn a_wall_covers_the_faces_along_it_alone() {
 }
 
 fn baked<S: Projected>(scene: &Scene<S>, cell: &Aabb<S::Vector>, side: u32) -> Faces {
-    let baking = Baking { scene, surfaces: Surfaces::default(), side, composes: true };
+    let baking = Baking { scene, surfaces: Surfaces::default(), side, is_analytic: false, composes: true };
     baking.projected(cell, scene.live(), &mut Room::default())
 }
 
@@ -122,7 +122,13 @@ fn surfaces_are_more_wrong_than_clouds() {
         let mut parts = Parts::<Flat>::simple("segments", points, prims);
         parts.materials[0].color = [0.0; 3];
         let scene = Scene::new(parts).expect("segments");
-        let baking = Baking { scene: &scene, surfaces: Surfaces::default(), side: 64, composes: true };
+        let baking = Baking {
+            scene: &scene,
+            surfaces: Surfaces::default(),
+            side: 64,
+            is_analytic: false,
+            composes: true,
+        };
         let room = &mut Room::default();
         let faces = baking.projected(&cell, scene.live(), room);
         baking.error(&cell, scene.live(), &faces, room)
@@ -329,6 +335,86 @@ fn faces_show_by_their_projected_areas() {
     assert!((aside[0] - 0.634).abs() < 0.01 && (aside[2] - 0.366).abs() < 0.01, "{aside:?}");
 }
 
+/// A venetian blind (Section 3.2): slats as deep as they are apart cover min(1, tan φ) of what is behind them,
+/// seen at φ from their plane. Of a cell about one of them, as wide, two faces are covered and two are clear:
+/// its cube covers sin φ / (sin φ + cos φ) of its own outline.
+#[test]
+fn a_blind_is_not_what_its_cube_shows() {
+    let slat = |y: f32| [vec2(0.0, y + 0.5), vec2(1.0, y + 0.5)];
+    let points: Vec<_> = (-40..40).flat_map(|k| slat(k as f32)).collect();
+    let prims = (0..80).map(|k| [2 * k, 2 * k + 1]).collect();
+    let scene = Scene::<Flat>::new(Parts::simple("blind", points, prims)).expect("segments");
+    let cell = Aabb { min: vec2(0.0, 0.0), max: vec2(1.0, 1.0) };
+    let faces = baked(&scene, &cell, 16);
+    assert_eq!(faces.map(|f| f[3])[..4], [0.0, 0.0, 1.0, 1.0]);
+    let covers = [0.0, 15.0, 30.0, 45.0, 60.0].map(|degrees: f32| {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let middle = vec2(0.5, 0.5);
+        let position = middle + vec2(cosine, sine) * 2000.0;
+        // An outline of sin φ + cos φ, and some slats about it.
+        let fov = 4.0 / 2000.0;
+        let up = vec2(0.0, 1.0);
+        let eye = Eye { position, target: middle, up, fov, near: 1.0, far: 4000.0 };
+        let view = View::<Flat> { eye, width: 8000, height: 1 };
+        let slats = render(&scene, &view, scene.live());
+        let covered = slats.item.iter().filter(|item| **item != Target::NONE).count() as f32 / 8000.0;
+        let sum = |faces: &Faces| {
+            let faces = crate::raster::CubeFaces::new(faces);
+            let cube = crate::raster::StandIn { node: NodeId(0), bounds: cell, faces, after: 0 };
+            let mut canvas = Canvas::default();
+            canvas.clear(&view);
+            canvas.composite(&[cube], &Target::new(&view), &view, &Options::default());
+            canvas.samples().map(|s| 1.0 - s[3]).sum::<f32>()
+        };
+        [covered, sum(&faces) / sum(&[[1.0; 4]; 6])]
+    });
+    let wants = [[0.0, 0.0], [0.268, 0.211], [0.577, 0.366], [1.0, 0.5], [1.0, 0.634]];
+    for (got, want) in covers.iter().zip(wants) {
+        // Some four slats are in the image, so its ends are a part of one.
+        assert!((got[0] - want[0]).abs() < 0.08 && (got[1] - want[1]).abs() < 0.002, "{covers:?}");
+    }
+}
+
+/// With the eye on the upper side of all axes: cell 7 first, then 6, 5 and 3 and then 4, 2 and 1, either in
+/// any order, and 0 last.
+#[test]
+fn octants_come_by_the_planes_before_them() {
+    let mut dice = Dice::new(2);
+    let mut points = Vec::new();
+    for k in 0..8 * 9 {
+        let center = vec3((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2 & 1) as f32) * 4.0 - 2.0;
+        points.extend([0, 1, 2].map(|_| center + dice.vector::<glam::Vec3>(1.9)));
+    }
+    let prims = (0..72).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let scene = Arc::new(Scene::<Solid>::new(Parts::simple("octants", points, prims)).expect("triangles"));
+    let mut view = view_from(vec3(30.0, 31.0, 32.0), 128);
+    view.eye.near = 1.0;
+    // A side is about 17 pixels there, that of a child half as many.
+    let list = ready(&scene, &[("pixel-threshold", "12")]).cull(&view);
+    let octant = |cube: &crate::raster::StandIn<glam::Vec3>| {
+        (0..3).map(|a| usize::from(cube.bounds.center()[a] > 0.0) << a).sum::<usize>()
+    };
+    let order: Vec<usize> = list.stand_ins.iter().map(octant).collect();
+    assert_eq!((order.len(), order[0], order[7]), (8, 7, 0), "{order:?}");
+    let sorted = |part: &[usize]| {
+        let mut part = part.to_vec();
+        part.sort_unstable();
+        part
+    };
+    assert_eq!((sorted(&order[1..4]), sorted(&order[4..7])), (vec![3, 5, 6], vec![1, 2, 4]));
+    let picture = |cubes: &[crate::raster::StandIn<glam::Vec3>]| {
+        let mut canvas = Canvas::default();
+        canvas.clear(&view);
+        canvas.composite(cubes, &Target::new(&view), &view, &Options::default());
+        canvas
+    };
+    let mut other = list.stand_ins.clone();
+    (other[1..4].reverse(), other[4..7].rotate_left(1));
+    assert_eq!(picture(&other), picture(&list.stand_ins));
+    other.swap(0, 7);
+    assert_ne!(picture(&other), picture(&list.stand_ins), "the order does matter");
+}
+
 /// Without cubes it is the z-buffer, and the picture of one, byte for byte. With a high threshold all of a
 /// view is one cube.
 fn thresholds_bound_what_is_drawn<S: Projected>() {
@@ -374,9 +460,9 @@ fn what_cells_share_is_drawn_once() {
         let frame: Frame<'_, Solid, ColorCubes> =
             Frame { index: &index, scene: &scene, view, params: &params, limit: None };
         let (mut list, mut film) = (DrawList::default(), Recorder::new(usize::MAX));
-        ColorCubes::cull(&frame, &mut (), &mut (), &mut list, &mut film);
+        ColorCubes::cull(&frame, &mut (), &mut Drawn::default(), &mut list, &mut film);
         let mut plain = DrawList::default();
-        ColorCubes::cull(&frame, &mut (), &mut (), &mut plain, &mut Unobserved);
+        ColorCubes::cull(&frame, &mut (), &mut Drawn::default(), &mut plain, &mut Unobserved);
         assert_eq!(plain, list);
         let verdict = |prim: PrimId| {
             film.events.iter().find_map(|e| match *e {
@@ -414,7 +500,7 @@ fn cubes_that_are_too_wrong_are_refined() {
         let frame: Frame<'_, Flat, ColorCubes> =
             Frame { index: &index, scene: &scene, view: &view, params: &params, limit: None };
         let mut list = DrawList::default();
-        ColorCubes::cull(&frame, &mut (), &mut (), &mut list, &mut Unobserved);
+        ColorCubes::cull(&frame, &mut (), &mut Drawn::default(), &mut list, &mut Unobserved);
         let forward = view.eye.forward();
         for cube in &list.stand_ins {
             let depth = forward.dot(cube.bounds.center() - view.eye.position);
@@ -450,6 +536,11 @@ fn what_was_saved_comes_back_or_is_refused() {
         assert!(
             refused(scene, &others, &bytes).contains("face-samples=4 interior=direct error-bound=above 0")
         );
+        let others = Params { faces: Coverage::Analytic, ..params };
+        assert!(refused(scene, &others, &bytes).contains("faces=sampled"));
+        // What hides cells is a matter of the frame.
+        let hiding = Params { occlusion: Occlusion::Depth, ..params };
+        assert!(read(scene, &hiding, &bytes).is_ok_and(|tree| tree.occluders().is_some()));
         let mut dice = Dice::new(5);
         for _ in 0..40 {
             let mut damaged = bytes.clone();
@@ -502,7 +593,8 @@ fn objects_are_drawn_whole() {
     let params = Params { primitives: Primitives::Objects, pixel_threshold: 6.0, ..Params::default() };
     let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
     let tree = index.tree();
-    let baking = Baking { scene: &*scene, surfaces: Surfaces::default(), side: 4, composes: true };
+    let baking =
+        Baking { scene: &*scene, surfaces: Surfaces::default(), side: 4, is_analytic: false, composes: true };
     for (at, _) in tree.nodes().iter().enumerate().filter(|(_, node)| node.is_leaf()).step_by(7) {
         let id = NodeId(at as u32);
         let faces = baking.projected(&tree.cell(id), scene.live(), &mut Room::default());
@@ -513,7 +605,7 @@ fn objects_are_drawn_whole() {
         let frame: Frame<'_, Solid, ColorCubes> =
             Frame { index: &index, scene: &scene, view: &view, params: &params, limit: None };
         let mut list = DrawList::default();
-        ColorCubes::cull(&frame, &mut (), &mut (), &mut list, &mut Unobserved);
+        ColorCubes::cull(&frame, &mut (), &mut Default::default(), &mut list, &mut Unobserved);
         let mut times: BTreeMap<_, usize> = BTreeMap::new();
         for prim in &list.prims {
             *times.entry(scene.object_of(*prim)).or_default() += 1;

@@ -2,7 +2,9 @@
 
 use super::code::line;
 use super::evidence::{CubeDrawn, Erring, Evidence, Settled, Sized};
+use super::hiding::{ASKED_PX, Hiding};
 use super::index::CubeTree;
+use super::space::Projected;
 use super::{Order, Params};
 use crate::drawing::Subject;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, PrimId, Space, Vector, View};
@@ -52,7 +54,7 @@ fn ascend(prims: &mut Vec<PrimId>, count: usize) {
 }
 
 /// The traversal of one frame.
-pub(super) struct Walk<'a, S: Space, O> {
+pub(super) struct Walk<'a, S: Projected, O> {
     index: &'a CubeTree<S>,
     tree: &'a CellTree<S::Vector>,
     scene: &'a Scene<S>,
@@ -72,6 +74,10 @@ pub(super) struct Walk<'a, S: Space, O> {
     done: Marks,
     /// Items that are in some cube that was drawn; kept only where somebody listens.
     in_cubes: Marks,
+    /// What is drawn so far, where cells behind it are left out; and what is in cells that were, behind
+    /// geometry, or cubes as well.
+    hiding: Option<Hiding<'a, S>>,
+    behind: [Marks; 2],
     out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
@@ -83,7 +89,7 @@ pub(super) fn pixels_at_depth_1<S: Space>(view: &View<S>) -> f32 {
     (f64::from(pixels) * 0.5 / (f64::from(view.eye.fov) * 0.5).tan()) as f32
 }
 
-impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
+impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// A frame that is yet to be walked.
     pub(super) fn new<M: Method<S, Params = Params, Index = CubeTree<S>>>(
         frame: &Frame<'a, S, M>,
@@ -107,9 +113,19 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             pixels_of_half: 0.5 / pixels,
             done: Marks::new(scene.prim_count()),
             in_cubes: Marks::new(if O::LISTENS { scene.prim_count() } else { 0 }),
+            hiding: None,
+            behind: Default::default(),
             out,
             watch,
         }
+    }
+    /// Leaves out cells that are hidden, if it is asked to.
+    pub(super) fn hiding(mut self, hiding: Option<Hiding<'a, S>>) -> Self {
+        if O::LISTENS && hiding.is_some() {
+            self.behind = [0, 1].map(|_| Marks::new(self.scene.prim_count()));
+        }
+        self.hiding = hiding;
+        self
     }
     /// The whole of it.
     pub(super) fn run(&mut self) {
@@ -142,18 +158,24 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             FrustumTest::Inside => 0,
         };
         self.line(line::CUTTING);
-        self.line(line::SIZE);
         let depth = self.forward.dot(cell.center() - self.view.eye.position);
         let side = self.sides[usize::from(node.level)];
         // About the eye a cell has no size on the screen, and is as large as can be.
         let size = if depth > self.view.eye.near { side / depth } else { f32::INFINITY };
+        if size >= ASKED_PX
+            && let Some(hiding) = &mut self.hiding
+            && let Some(verdict) = hiding.hides(id, &cell, self.watch)
+        {
+            return self.leave_hidden(id, verdict);
+        }
+        self.line(line::SIZE);
         let threshold = self.params.pixel_threshold;
         self.watch.note(move || Evidence::Sized(Sized { node: id, depth, size, threshold }));
         if size <= threshold && self.is_good(id, size) {
             return self.draw_cube(id, cell);
         }
         self.line(line::LEAF);
-        if node.is_leaf() || cutting == 0 && self.needs_geometry(id, depth) {
+        if node.is_leaf() || cutting == 0 && self.hiding.is_none() && self.needs_geometry(id, depth) {
             self.line(line::CALL_DRAW);
             self.line(line::DRAW);
             self.draw_geometry(id);
@@ -172,6 +194,15 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.watch.event(Event::Left(id));
     }
 
+    /// Leaves out a cell, and notes what it holds.
+    fn leave_hidden(&mut self, id: NodeId, verdict: Verdict) {
+        if O::LISTENS {
+            let marks = &mut self.behind[usize::from(verdict == Verdict::Presumed)];
+            self.tree.references(id).iter().for_each(|&prim| _ = marks.mark(prim));
+        }
+        self.leave(id, verdict);
+    }
+
     /// Whether a cell's cube is no more wrong than the bound says, where there is one.
     fn is_good(&mut self, id: NodeId, size: f32) -> bool {
         let Some(error) = self.index.error(id) else { return true };
@@ -186,7 +217,11 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.line(line::CUBE);
         let faces = *self.index.faces(id);
         let after = self.out.prims.len() as u32;
-        self.out.stand_ins.push(StandIn { node: id, bounds: cell, faces, after });
+        let cube = StandIn { node: id, bounds: cell, faces, after };
+        self.out.stand_ins.push(cube);
+        if let Some(hiding) = &mut self.hiding {
+            hiding.add_cube(&cube);
+        }
         self.watch.note(move || Evidence::Cube(CubeDrawn { node: id, cell, faces }));
         if O::LISTENS {
             // What it shares with other cells is settled with the cell above them all.
@@ -233,6 +268,9 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     fn draw_geometry(&mut self, id: NodeId) {
         let (tree, scene) = (self.tree, self.scene);
         let node = &tree.nodes()[id.at()];
+        if let Some(hiding) = &mut self.hiding {
+            hiding.add_leaf(id);
+        }
         let looks_at_each = self.params.surfaces.one_sided;
         if id == NodeId(0) && !looks_at_each {
             // All of the scene: nothing is left to be shared.
@@ -284,17 +322,29 @@ impl<'a, S: Space, O: Observer<Evidence<S>>> Walk<'a, S, O> {
                 continue;
             }
             self.line(line::SETTLED);
-            // No part of it lies in a cell that is in view; or none in one that was drawn as geometry.
-            let is_in_cube = self.in_cubes.has(item);
-            self.watch.note(move || {
-                Evidence::Settled(if is_in_cube {
-                    Settled::InCubes { prim, node: id }
-                } else {
-                    Settled::OutOfView { prim, node: id }
-                })
-            });
-            let verdict = if is_in_cube { Verdict::Approximated } else { Verdict::Hidden };
+            let settled = self.settled(prim, item, id);
+            self.watch.note(move || Evidence::Settled(settled));
+            let verdict = match settled {
+                Settled::InCubes { .. } => Verdict::Approximated,
+                Settled::BehindCubes { .. } => Verdict::Presumed,
+                _ => Verdict::Hidden,
+            };
             self.watch.event(Event::DecidedPrim(prim, verdict));
+        }
+    }
+
+    /// What became of a primitive that several cells below one share, none of which was drawn as geometry.
+    fn settled(&self, prim: PrimId, item: PrimId, node: NodeId) -> Settled {
+        let [is_behind, is_behind_cubes] = [0, 1].map(|k| self.hiding.is_some() && self.behind[k].has(item));
+        if self.in_cubes.has(item) {
+            Settled::InCubes { prim, node }
+        } else if is_behind_cubes {
+            Settled::BehindCubes { prim, node }
+        } else if is_behind {
+            Settled::Behind { prim, node }
+        } else {
+            // No part of it lies in a cell that is in view.
+            Settled::OutOfView { prim, node }
         }
     }
 }

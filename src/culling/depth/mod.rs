@@ -22,7 +22,7 @@ mod tiled;
 pub use answer::{Answer, Decisive, Summary};
 pub use buffer::{Buffer, Step};
 pub use evidence::{
-    Answered, Asking, DepthNote, Ground, QueryReporter, Rasterized, Stage, place_in_view, sight_lines,
+    Answered, Asking, DepthNote, Ground, QueryReporter, Rasterized, Stage, place, place_in_view, sight_lines,
 };
 pub use faces::{Faces, footprint, project_sphere};
 pub use levels::TileLevels;

@@ -7,6 +7,7 @@ pub(crate) mod moved_edge;
 mod opacity;
 mod pyramid;
 mod rules;
+mod saturation;
 mod tile_answers;
 mod tile_edges;
 mod tile_questions;
