@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::geometry::{Space, Vector, View};
 use crate::measure::experiment::World;
-use crate::measure::harness::{ready, settings};
+use crate::measure::harness::ready;
 use crate::measure::{ExperimentError, Setup};
 use crate::method::{DrawList, Run};
 use crate::papers::keys::{COLOR_CUBES, Z_BUFFER};
@@ -44,8 +44,9 @@ pub fn color_cubes<S: World>(
     on_top: &[(&str, &str)],
     progress: &dyn Progress,
 ) -> Result<Box<dyn Run<S>>, ExperimentError> {
-    let given = settings::<S>(COLOR_CUBES, setup, on_top)?;
-    let pixels: f32 = given.0.get("pixel-threshold").map_or(1.0, |value| value.parse().unwrap_or(1.0));
+    // The method itself says what is wrong with a value.
+    let pixels = |value: &String| value.parse().unwrap_or(1.0);
+    let pixels: f32 = setup.settings.0.get("pixel-threshold").map_or(1.0, pixels);
     let threshold = (pixels * SAMPLES as f32).to_string();
     let on_top: Vec<_> = on_top.iter().copied().chain([("pixel-threshold", &*threshold)]).collect();
     ready(scene, COLOR_CUBES, setup, &on_top, progress)
