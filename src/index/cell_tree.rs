@@ -114,7 +114,16 @@ impl<V: Vector> CellTree<V> {
         stop: &dyn Fn(f64, u32) -> bool,
         cancelled: &dyn Fn() -> bool,
     ) -> Option<Self> {
-        let root = cube_around(&scene.bounds());
+        Self::build_in(cube_around(&scene.bounds()), scene, levels, stop, cancelled)
+    }
+    /// The same from another cube around the scene.
+    pub fn build_in<S: Cellular<Vector = V>>(
+        root: Aabb<V>,
+        scene: &Scene<S>,
+        levels: u32,
+        stop: &dyn Fn(f64, u32) -> bool,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<Self> {
         let mut making = Making {
             scene,
             levels: levels.min(Self::MOST_LEVELS),

@@ -39,10 +39,16 @@ impl<S: Projected> CubeTree<S> {
             return Ok(Some(Self { deep: deep(&tree, scene), tree, baked, key }));
         }
         progress.report(0.0, "dividing cells");
-        let Some(tree) = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled())
-        else {
-            return Ok(None);
-        };
+        let tree = CellTree::build(scene, params.tree_levels, &is_small::<S>, &|| progress.cancelled());
+        Ok(tree.and_then(|tree| Self::of_tree(tree, scene, params, progress)))
+    }
+    /// Makes the cubes of a tree over the scene; `None` when cancelled.
+    pub fn of_tree(
+        tree: CellTree<S::Vector>,
+        scene: &Scene<S>,
+        params: &Params,
+        progress: &dyn Progress,
+    ) -> Option<Self> {
         let baking = Baking {
             scene,
             surfaces: params.surfaces,
@@ -50,8 +56,8 @@ impl<S: Projected> CubeTree<S> {
             composes: params.composes(),
         };
         let part = Part { whole: progress, start: 0.5, length: 0.5 };
-        let baked = baking.bake(&tree, params.measures(), &part);
-        Ok(baked.map(|baked| Self { deep: deep(&tree, scene), tree, baked, key }))
+        let baked = baking.bake(&tree, params.measures(), &part)?;
+        Some(Self { deep: deep(&tree, scene), tree, baked, key: saved::key(scene, params) })
     }
 }
 

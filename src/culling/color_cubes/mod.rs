@@ -20,6 +20,7 @@
 mod code;
 mod evidence;
 mod faces;
+pub(crate) mod forest;
 mod index;
 mod picture;
 mod saved;
@@ -196,7 +197,7 @@ impl<S: Projected> Method<S> for ColorCubes {
         // Faces were made in this light.
         out.light = Light::Fixed;
         out.in_order = frame.params.order == Order::Paper;
-        Walk::new(frame, out, watch).run();
+        Walk::new((frame.index, frame.scene), frame.view, frame.params, out, watch).run();
     }
     fn is_conservative(params: &Params) -> bool {
         params.pixel_threshold == 0.0
