@@ -189,6 +189,7 @@ fn generated_models_lose_nothing() {
         ("tree-quadrupling", 4_000),
         ("venetian-blind", 4_000),
         ("bust", 10_000),
+        ("suspension", 6_000),
     ] {
         let call = if full { format!("generate:{name}") } else { format!("generate:{name}?polygons={few}") };
         check_file(&call, every, random, side_px);

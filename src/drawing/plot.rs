@@ -38,6 +38,8 @@ pub enum Shape {
         /// The places along x that are labeled; empty: round ones.
         ticks: Vec<f64>,
     },
+    /// Lines through points, with equal steps along both axes equal factors: powers are straight.
+    Powers,
 }
 
 /// A chart.

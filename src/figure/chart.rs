@@ -51,8 +51,8 @@ pub fn charts(plots: &[Plot]) -> (Drawing, Vec<Entry>) {
         for series in plot.series.iter().filter(|s| !s.points.is_empty()) {
             let swatch = match plot.shape {
                 Shape::Bars { .. } => Swatch::Area,
-                Shape::Lines { .. } if series.points.len() > 1 => Swatch::Line,
-                Shape::Lines { .. } => Swatch::Dot,
+                _ if series.points.len() > 1 => Swatch::Line,
+                _ => Swatch::Dot,
             };
             let entry = Entry { role: series.role, label: series.label.clone(), swatch };
             if !legend.contains(&entry) {
@@ -78,7 +78,15 @@ fn draw(to: &mut Drawing, plot: &Plot, [mut min, max]: [Vec2; 2]) {
     }
     match &plot.shape {
         Shape::Bars { groups, stacked } => bars(to, plot, groups, *stacked, [min, max]),
-        Shape::Lines { logarithmic, ticks } => lines(to, plot, *logarithmic, ticks, [min, max]),
+        Shape::Lines { logarithmic, ticks } => {
+            let y = Axis::of(plot.y_label.clone(), values(plot).map(|p| p.1).chain([0.0]), false);
+            lines(to, plot, &places(plot, *logarithmic, ticks), &y, ticks, [min, max]);
+        }
+        Shape::Powers => {
+            let x = Axis::of(plot.x_label.clone(), values(plot).map(|p| p.0), true);
+            let y = Axis::of(plot.y_label.clone(), values(plot).map(|p| p.1), true);
+            lines(to, plot, &x, &y, &[], [min, max]);
+        }
     }
 }
 
@@ -145,29 +153,42 @@ fn short(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-fn lines(to: &mut Drawing, plot: &Plot, logarithmic: bool, ticks: &[f64], place: [Vec2; 2]) {
-    let points = || plot.series.iter().flat_map(|s| &s.points);
-    let y = Axis::of(plot.y_label.clone(), points().map(|p| p.1).chain([0.0]), false);
+/// The points of all series.
+fn values(plot: &Plot) -> impl Iterator<Item = &(f64, f64)> {
+    plot.series.iter().flat_map(|s| &s.points)
+}
+
+/// Whether a value has a place on an axis.
+fn is_on(axis: &Axis, value: f64) -> bool {
+    value.is_finite() && (!axis.logarithmic || value > 0.0)
+}
+
+/// The axis along x of a chart of lines.
+fn places(plot: &Plot, logarithmic: bool, ticks: &[f64]) -> Axis {
     let usable = |x: &f64| x.is_finite() && (!logarithmic || *x > 0.0);
-    let xs = || points().map(|p| p.0).chain(ticks.iter().copied()).filter(usable);
+    let xs = || values(plot).map(|p| p.0).chain(ticks.iter().copied()).filter(usable);
     let mut x = Axis::of(plot.x_label.clone(), xs().chain((!logarithmic).then_some(0.0)), logarithmic);
     if logarithmic && xs().count() > 1 {
         // The ends of the values and not whole powers of ten; a little air, so that no point lies on the
         // frame.
         (x.low, x.high) = (xs().fold(f64::INFINITY, f64::min) / 1.15, xs().fold(0.0, f64::max) * 1.15);
     }
+    x
+}
+
+fn lines(to: &mut Drawing, plot: &Plot, x: &Axis, y: &Axis, ticks: &[f64], place: [Vec2; 2]) {
     let marks: Vec<(f32, String)> = if ticks.is_empty() {
         x.marks(6).into_iter().map(|(value, text)| (x.place(value), text)).collect()
     } else {
         ticks.iter().map(|t| (x.place(*t), t.to_string())).collect()
     };
-    let [low, high] = axes_with(to, &marks, &plot.x_label, true, &y, place);
+    let [low, high] = axes_with(to, &marks, &plot.x_label, true, y, place);
     let at = |p: &(f64, f64)| {
         vec2(low.x + x.place(p.0) * (high.x - low.x), high.y - y.place(p.1) * (high.y - low.y))
     };
     for series in &plot.series {
         let points: Vec<Vec2> =
-            series.points.iter().filter(|p| usable(&p.0) && p.1.is_finite()).map(at).collect();
+            series.points.iter().filter(|p| is_on(x, p.0) && is_on(y, p.1)).map(at).collect();
         let radius_pt = if points.len() > 1 { DOT_PT } else { ALONE_PT };
         if points.len() > 1 {
             to.line(Layer::Evidence, series.role, Subject::None, points.clone());
@@ -223,6 +244,24 @@ mod tests {
             _ => None,
         });
         assert!(at.into_iter().all(|y| (y - zero.1).abs() < 4.0));
+    }
+
+    /// A power is a straight line, and what has no logarithm is left out.
+    #[test]
+    fn powers_are_straight() {
+        let points = vec![(10.0, 2.0), (1e3, 20.0), (1e7, 2000.0), (1e4, 0.0), (0.0, 5.0)];
+        let series = vec![Series::new("a", Role::Visible, points)];
+        let plot = Plot { shape: Shape::Powers, x_label: "n".into(), series, ..sample(false) };
+        let items = chart("t", &[plot], "c").items.into_iter();
+        let dots = items.filter_map(|i| match i.mark {
+            Mark::Dot { at, .. } if i.layer == Layer::Emphasis => Some(at),
+            _ => None,
+        });
+        let at: Vec<Vec2> = dots.collect();
+        assert_eq!(at.len(), 3);
+        let slope = |a: Vec2, b: Vec2| (b.y - a.y) / (b.x - a.x);
+        assert!((slope(at[0], at[1]) - slope(at[1], at[2])).abs() < 1e-4 && at[2].y < at[1].y, "{at:?}");
+        assert!(((at[2].x - at[1].x) / (at[1].x - at[0].x) - 2.0).abs() < 1e-3, "{at:?}");
     }
 
     #[test]

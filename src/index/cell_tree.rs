@@ -108,9 +108,9 @@ impl<V: Vector> CellTree<V> {
     /// Levels at most.
     pub const MOST_LEVELS: u32 = 20;
 
-    /// The tree of items of a scene with so many levels at most. `stop`: whether a cell is not divided, by its sum of
-    /// shares and the children that would hold something; it says so of fewer shares, and of more children,
-    /// too. `None` when cancelled.
+    /// The tree of items of a scene with so many levels at most. `stop`: whether a cell is not divided, by its
+    /// sum of shares and the children that would hold something; it says so of fewer shares, and of more
+    /// children, too. `None` when cancelled.
     pub fn build<S: Cellular<Vector = V>>(
         scene: &Scene<S>,
         items: Items,
@@ -118,7 +118,17 @@ impl<V: Vector> CellTree<V> {
         stop: &dyn Fn(f64, u32) -> bool,
         cancelled: &dyn Fn() -> bool,
     ) -> Option<Self> {
-        let root = cube_around(&scene.bounds());
+        Self::build_in(cube_around(&scene.bounds()), scene, items, levels, stop, cancelled)
+    }
+    /// The same from another cube around the scene.
+    pub fn build_in<S: Cellular<Vector = V>>(
+        root: Aabb<V>,
+        scene: &Scene<S>,
+        items: Items,
+        levels: u32,
+        stop: &dyn Fn(f64, u32) -> bool,
+        cancelled: &dyn Fn() -> bool,
+    ) -> Option<Self> {
         let mut making = Making {
             scene,
             items: &items,

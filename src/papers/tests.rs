@@ -436,6 +436,56 @@ fn zhang_open_views_turn_culling_off() {
 }
 
 #[test]
+fn chamberlain_forests_grow_fourfold_and_their_time_does_not() {
+    let scene = small("generate:tree?polygons=2000");
+    let report = run("chamberlain-figure-5", &scene, &Setup { size_px: Some([64, 64]), ..setup(2) });
+    assert_eq!(report.table.rows.len(), 2 * 12 + 3);
+    for first in [0, 12] {
+        for level in 0..11 {
+            let row = first + level;
+            let trees = 4f64.powi(level as i32);
+            assert_eq!(report.row(row, ["trees", "triangles"]), [trees, 2_000.0 * trees]);
+            let [cells, drawn] = report.row(row, ["visited_cells", "drawn_triangles"]);
+            assert!(cells >= 1.0 && drawn <= 2_000.0 * trees, "{cells} cells, {drawn} triangles");
+            // A frame pays for 4 million triangles at most.
+            let is_timed = report.table.number(row, "geometry_ms").is_some();
+            assert_eq!(is_timed, level <= 5, "{trees} trees");
+        }
+        // Four thousand times as many trees, and not twice as many cells.
+        assert!(report.at(first + 10, "visited_cells") < 2.0 * report.at(first + 4, "visited_cells"));
+        let grown = report.row(first + 11, ["cells_power", "memory_power"]);
+        assert!(grown.iter().all(|p| p.abs() < 0.1), "{grown:?}");
+    }
+    let keys = ["trees", "triangles", "speedup_ratio"];
+    assert_eq!(report.row(24, keys), [20.0, 1_049_400.0, 1.0]);
+    let [trees, triangles, faster] = report.row(25, keys);
+    assert!(trees == 16_384.0 && triangles == 859_668_480.0 && near(faster, 88.0));
+    assert!((report.at(26, "time_power") - 0.33).abs() < 0.005);
+}
+
+/// Between a depth and its double a view 60° across and high holds 28/9 times its cube: where cells are drawn
+/// from 2√3 of their sides on, 129 of them, and those that stick out of it.
+#[test]
+fn chamberlain_shells_hold_as_many_cells() {
+    let scene = small("generate:suspension?polygons=100000");
+    let report = run("chamberlain-shells", &scene, &Setup { size_px: Some([64, 64]), ..setup(24) });
+    let whole = |row: &usize| report.table.number(*row, "mean_ratio").is_some();
+    let rows: Vec<usize> = (0..report.table.rows.len()).filter(whole).collect();
+    assert_eq!(
+        rows,
+        [3, 4],
+        "of level 2 the shell is wider than the scene, at level 5 some are larger leaves"
+    );
+    for row in rows {
+        let [side, from, to, cubes, ratio] =
+            report.row(row, ["cell_side", "shell_from", "shell_to", "drawn_cubes", "mean_ratio"]);
+        assert!((from - 12f64.sqrt() * side).abs() < 1e-3 * from && near(to, 2.0 * from));
+        assert!(cubes > 129.0 && cubes < 2.0 * 129.0, "{cubes} cubes");
+        assert!(ratio > 1.0 / 1.2 && ratio < 1.2, "{ratio}");
+    }
+}
+
+#[test]
 fn names_begin_with_their_papers_key_and_are_taken_once() {
     let mut names = BTreeSet::new();
     let mut once = |name: &'static str| assert!(names.insert(name), "{name} is taken twice");

@@ -77,6 +77,17 @@ impl Canvas {
         view: &View<S>,
         options: &Options,
     ) {
+        self.composite_copies(&[(view.eye.position, boxes)], image, view, options);
+    }
+    /// The same with boxes of several spaces that differ by translations alone: each list with where the eye
+    /// of the view is in its space. So boxes that are far from everything but the eye are as exact as others.
+    pub fn composite_copies<S: Space>(
+        &mut self,
+        copies: &[(S::Vector, &[StandIn<S::Vector>])],
+        image: &Target,
+        view: &View<S>,
+        options: &Options,
+    ) {
         let rays = Rays::new(view);
         let threads = options.thread_count();
         // A band of rows is one thread's, which keeps the order; so the bytes do not depend on their number.
@@ -89,11 +100,15 @@ impl Canvas {
             Band { first: band * rows, width, samples, depths, spans, clear: CLEAR }
         });
         let work = |mut band: Band<'_, [f32; 4], &[f32]>| {
-            for one in boxes {
-                // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows
-                // nothing more.
-                let under = |sample: &mut [f32; 4], face: usize| put_under(sample, one.faces.get(face));
-                band.meet(&rays, &one.bounds, |sample| sample[3] < FULL, under);
+            let mut rays = rays;
+            for (eye, boxes) in copies {
+                rays.eye = widened(*eye);
+                for one in *boxes {
+                    // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows
+                    // nothing more.
+                    let under = |sample: &mut [f32; 4], face: usize| put_under(sample, one.faces.get(face));
+                    band.meet(&rays, &one.bounds, |sample| sample[3] < FULL, under);
+                }
             }
         };
         if threads <= 1 {
@@ -115,7 +130,7 @@ fn put_under(sample: &mut [f32; 4], face: [f32; 4]) {
 }
 
 /// The rays of a view's samples. Flatland has no third axis and no rows: they are 0.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rays {
     /// Image axes across and up, as the projection scales them, and the line of sight.
     rows: [[f64; 3]; 3],

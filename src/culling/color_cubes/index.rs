@@ -77,9 +77,16 @@ impl<S: Projected> CubeTree<S> {
         }
         progress.report(0.0, "dividing cells");
         let (levels, cancelled) = (params.tree_levels, || progress.cancelled());
-        let Some(tree) = CellTree::build(scene, items, levels, &is_small::<S>, &cancelled) else {
-            return Ok(None);
-        };
+        let tree = CellTree::build(scene, items, levels, &is_small::<S>, &cancelled);
+        Ok(tree.and_then(|tree| Self::of_tree(tree, scene, params, progress)))
+    }
+    /// Makes the cubes of a tree over the scene; `None` when cancelled.
+    pub fn of_tree(
+        tree: CellTree<S::Vector>,
+        scene: &Scene<S>,
+        params: &Params,
+        progress: &dyn Progress,
+    ) -> Option<Self> {
         let baking = Baking {
             scene,
             surfaces: params.surfaces,
@@ -88,8 +95,8 @@ impl<S: Projected> CubeTree<S> {
             composes: params.composes(),
         };
         let part = Part { whole: progress, start: 0.5, length: 0.5 };
-        let baked = baking.bake(&tree, params.measures(), &part);
-        Ok(baked.map(|baked| Self::of(scene, params, (tree, baked), key)))
+        let baked = baking.bake(&tree, params.measures(), &part)?;
+        Some(Self::of(scene, params, (tree, baked), saved::key(scene, params)))
     }
     /// What follows from the tree is made anew, and not kept.
     fn of(

@@ -24,6 +24,7 @@ mod code;
 mod costs;
 mod evidence;
 mod faces;
+pub(crate) mod forest;
 mod hiding;
 #[cfg(test)]
 mod hiding_tests;
@@ -280,7 +281,8 @@ impl<S: Projected> Method<S> for ColorCubes {
         // Faces were made in this light.
         out.light = Light::Fixed;
         out.in_order = frame.params.order == Order::Paper;
-        Walk::new(frame, out, watch).hiding(Hiding::new(frame, drawn)).run();
+        let walk = Walk::new((frame.index, frame.scene), frame.view, frame.params, out, watch);
+        walk.hiding(Hiding::new(frame, drawn)).run();
     }
     fn is_conservative(params: &Params) -> bool {
         params.pixel_threshold == 0.0

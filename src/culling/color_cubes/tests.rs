@@ -152,22 +152,6 @@ fn surfaces_are_more_wrong_than_clouds() {
     assert!(cloud < 0.25, "{cloud}");
 }
 
-/// Four times as many trees on a square (Section 5.2): seen from the side two in a row cover half the face.
-#[test]
-fn a_square_of_four_cells_from_its_sides() {
-    let mut cell: Faces = [[0.0, 0.0, 0.0, 0.5]; 6];
-    let mut sides = vec![];
-    for _ in 0..3 {
-        let of = |octant: usize, face: usize| if octant & 2 == 0 { cell[face] } else { [0.0; 4] };
-        cell = composed::<glam::Vec3>(of);
-        sides.push([cell[0][3], cell[5][3], cell[2][3]]);
-    }
-    let want = [0.375, 0.304_687_5, 0.258_270_26];
-    for (got, want) in sides.iter().zip(want) {
-        assert!(is_near([got[0], got[1], got[2], 0.0], [want, want, 0.5, 0.0]), "{sides:?}");
-    }
-}
-
 /// Section 4: no more than the cubes of the children would cost.
 #[test]
 fn a_cell_is_a_leaf_by_what_its_childrens_cubes_cost() {
@@ -271,7 +255,7 @@ fn ready<S: Projected>(scene: &Arc<Scene<S>>, pairs: &[(&str, &str)]) -> Box<dyn
 
 /// Whether no cube of a list hides one before it: some plane parts each two, with the eye on the side of the
 /// first, or in it.
-fn is_front_to_back<V: Vector>(cells: &[Aabb<V>], eye: V) -> bool {
+pub(super) fn is_front_to_back<V: Vector>(cells: &[Aabb<V>], eye: V) -> bool {
     let parts = |a: &Aabb<V>, b: &Aabb<V>| {
         (0..V::AXES).any(|k| {
             a.max.get(k) <= b.min.get(k) && eye.get(k) <= b.min.get(k)

@@ -10,7 +10,7 @@ use crate::drawing::Subject;
 use crate::geometry::{Aabb, Frustum, FrustumTest, NodeId, PrimId, Space, Vector, View};
 use crate::index::{CellTree, octant_of};
 use crate::method::evidence::{Facing, Tested};
-use crate::method::{DrawList, Event, Frame, Method, Observer, Verdict};
+use crate::method::{DrawList, Event, Observer, Verdict};
 use crate::raster::StandIn;
 use crate::scene::Scene;
 
@@ -33,24 +33,45 @@ impl Marks {
     fn has(&self, prim: PrimId) -> bool {
         self.0[prim.at() / 64] >> (prim.at() % 64) & 1 == 1
     }
+    /// No primitive is marked.
+    fn clear(&mut self) {
+        self.0.fill(0);
+    }
 }
 
 /// Sorts distinct primitives of a scene of so many.
-fn ascend(prims: &mut Vec<PrimId>, count: usize) {
+fn ascend(prims: &mut [PrimId], count: usize) {
     // A mark for each is faster than a sort, unless most have none.
     if prims.len() * 32 < count {
         return prims.sort_unstable();
     }
     let mut marks = Marks::new(count);
     prims.iter().for_each(|&prim| _ = marks.mark(prim));
-    prims.clear();
+    let mut places = prims.iter_mut();
     for (at, &word) in marks.0.iter().enumerate() {
         let mut bits = word;
         while bits != 0 {
-            prims.push(PrimId(at as u32 * 64 + bits.trailing_zeros()));
+            let prim = PrimId(at as u32 * 64 + bits.trailing_zeros());
+            places.next().into_iter().for_each(|place| *place = prim);
             bits &= bits - 1;
         }
     }
+}
+
+/// The size on the screen, pixels, of what has so many at depth 1. About the eye a cell has no size there,
+/// and is as large as can be.
+#[inline]
+pub(super) fn size_at(depth: f32, side: f32, near: f32) -> f32 {
+    if depth > near { side / depth } else { f32::INFINITY }
+}
+
+/// The octant of a cell in which the eye is, or to which it is nearest. Cells are disjoint, and a child is
+/// before another if the planes that part it from the eye's octant are among those that part the other: so by
+/// ascending number, seen from that octant, none is before one that it hides.
+#[inline]
+pub(super) fn nearest_octant<V: Vector>(cell: &Aabb<V>, eye: V) -> usize {
+    let center = cell.center();
+    (0..V::AXES).map(|a| usize::from(eye.get(a) > center.get(a)) << a).sum()
 }
 
 /// The traversal of one frame.
@@ -58,7 +79,8 @@ pub(super) struct Walk<'a, S: Projected, O> {
     index: &'a CubeTree<S>,
     tree: &'a CellTree<S::Vector>,
     scene: &'a Scene<S>,
-    view: &'a View<S>,
+    /// From the cells' own space: of a copy that was moved, with the eye moved the other way.
+    view: View<S>,
     params: &'a Params,
     frustum: Frustum<S::Vector>,
     /// Line of sight.
@@ -78,6 +100,8 @@ pub(super) struct Walk<'a, S: Projected, O> {
     /// geometry, or cubes as well.
     hiding: Option<Hiding<'a, S>>,
     behind: [Marks; 2],
+    /// Whether any is marked.
+    is_marked: bool,
     out: &'a mut DrawList<S>,
     watch: &'a mut O,
 }
@@ -91,12 +115,13 @@ pub(super) fn pixels_at_depth_1<S: Space>(view: &View<S>) -> f32 {
 
 impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// A frame that is yet to be walked.
-    pub(super) fn new<M: Method<S, Params = Params, Index = CubeTree<S>>>(
-        frame: &Frame<'a, S, M>,
+    pub(super) fn new(
+        (index, scene): (&'a CubeTree<S>, &'a Scene<S>),
+        view: &View<S>,
+        params: &'a Params,
         out: &'a mut DrawList<S>,
         watch: &'a mut O,
     ) -> Self {
-        let Frame { index, scene, view, params, .. } = *frame;
         let (tree, forward) = (index.tree(), view.eye.forward());
         let side = (0..S::Vector::AXES).map(|a| tree.root().size().get(a)).fold(0.0, f32::max);
         let pixels = pixels_at_depth_1(view);
@@ -104,7 +129,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             index,
             tree,
             scene,
-            view,
+            view: *view,
             params,
             frustum: view.frustum(),
             forward,
@@ -115,6 +140,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             in_cubes: Marks::new(if O::LISTENS { scene.prim_count() } else { 0 }),
             hiding: None,
             behind: Default::default(),
+            is_marked: false,
             out,
             watch,
         }
@@ -130,12 +156,31 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     /// The whole of it.
     pub(super) fn run(&mut self) {
         self.watch.stage("visit");
-        self.render(NodeId(0), *self.tree.root(), Frustum::<S::Vector>::ALL);
+        self.visit(Frustum::<S::Vector>::ALL);
+    }
+    /// The tree, where no other planes than these can cut its root's cell.
+    pub(super) fn visit(&mut self, planes: u8) {
+        let first = self.out.prims.len();
+        self.render(NodeId(0), *self.tree.root(), planes);
         // Their order is of no matter, unless it is the paper's; by number those that share points are near
         // each other, as they are in the scene.
         if self.params.order == Order::Exact {
-            ascend(&mut self.out.prims, self.scene.prim_count());
+            ascend(&mut self.out.prims[first..], self.scene.prim_count());
         }
+    }
+    /// The eye stands elsewhere and looks the same way: as if another copy of the scene were seen, of which
+    /// nothing is drawn yet.
+    pub(super) fn move_eye(&mut self, eye: S::Vector) {
+        (self.view.eye.position, self.frustum.eye) = (eye, eye);
+        // Most copies are drawn as cubes, and mark nothing.
+        if std::mem::take(&mut self.is_marked) {
+            self.done.clear();
+            self.in_cubes.clear();
+        }
+    }
+    /// What was drawn so far.
+    pub(super) fn drawn(&mut self) -> &mut DrawList<S> {
+        self.out
     }
     fn line(&mut self, line: u8) {
         self.watch.event(Event::Line(line));
@@ -160,8 +205,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.line(line::CUTTING);
         let depth = self.forward.dot(cell.center() - self.view.eye.position);
         let side = self.sides[usize::from(node.level)];
-        // About the eye a cell has no size on the screen, and is as large as can be.
-        let size = if depth > self.view.eye.near { side / depth } else { f32::INFINITY };
+        let size = size_at(depth, side, self.view.eye.near);
         if size >= ASKED_PX
             && let Some(hiding) = &mut self.hiding
             && let Some(verdict) = hiding.hides(id, &cell, self.watch)
@@ -226,6 +270,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if O::LISTENS {
             // What it shares with other cells is settled with the cell above them all.
             let below = self.tree.references(id);
+            self.is_marked = true;
             below.iter().for_each(|&prim| _ = self.in_cubes.mark(prim));
         }
         self.leave(id, Verdict::Approximated);
@@ -246,12 +291,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let is_from_back = self.params.order == Order::Paper;
         self.line(if is_from_back { line::FROM_BACK } else { line::CHILDREN });
         self.watch.event(Event::DecidedNode(id, Verdict::Partial));
-        // Cells are disjoint, and a child is before another if the planes that part it from the eye's octant
-        // are among those that part the other: so by ascending number, seen from that octant, none is before
-        // one that it hides.
-        let (eye, center) = (self.view.eye.position, cell.center());
-        let nearest =
-            (0..S::Vector::AXES).map(|a| usize::from(eye.get(a) > center.get(a)) << a).sum::<usize>();
+        let nearest = nearest_octant(cell, self.view.eye.position);
         let farthest = (1 << S::Vector::AXES) - 1 - nearest;
         for octant in (0..1 << S::Vector::AXES).map(|k| k ^ if is_from_back { farthest } else { nearest }) {
             if let Some(child) = node.child(octant) {
@@ -289,6 +329,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.line(line::OWN);
             items.extend(&mut self.out.prims, own);
         }
+        self.is_marked |= !shared.is_empty();
         for &item in shared {
             self.line(line::EACH);
             self.line(line::ONCE);

@@ -1,8 +1,9 @@
-//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, 1996: what is drawn of the hierarchy (Figure 1), and
-//! how faces are composed (3).
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, 1996: what is drawn of the hierarchy (Figure 1), how
+//! faces are composed (3), forests (Plate 5), and how time grows with them (Figure 5).
 
 mod figures;
 mod tables;
+mod views;
 
 use super::keys::COLOR_CUBES;
 use super::paper::Paper;

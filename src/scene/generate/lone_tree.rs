@@ -127,18 +127,31 @@ fn grow(polygons: u64, seed: u64, detail: u32) -> Mesh {
     TREE.foliage(&mut sink, &twigs, (left, DENSITY), (LEAF, GREENS), &mut rng);
     let mut mesh = sink.into_mesh();
     mesh.points.iter_mut().for_each(|p| *p = (*p * GRID).round() / GRID);
+    fill_cube(&mut mesh);
     mesh.materials[LEAF as usize..].iter_mut().for_each(|m| m.two_sided = true);
     mesh
 }
 
-/// How far apart trees stand: the side of the cube around one, up to the next multiple of the grid, so that
-/// cells of copies lie side by side (the cubes of an octree over them are those of its own).
+/// The box around a tree.
+fn span(tree: &Mesh) -> (DVec3, DVec3) {
+    let all = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    tree.points.iter().fold(all, |(low, high), p| (low.min(*p), high.max(*p)))
+}
+
+/// How far apart trees stand: the side of the cube around one, a multiple of the grid, so that cells of copies
+/// lie side by side (the cubes of an octree over them are those of its own).
 fn pitch(tree: &Mesh) -> f64 {
-    let (low, high) = tree
-        .points
-        .iter()
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+    let (low, high) = span(tree);
     ((high - low).max_element() * PITCH_GRID).ceil() / PITCH_GRID
+}
+
+/// Moves the ends of a tree's longest side out, by less than a millimeter, until the cube around it is one that
+/// copies can stand in without a gap.
+fn fill_cube(tree: &mut Mesh) {
+    let ((low, high), pitch) = (span(tree), pitch(tree));
+    let axis = (high - low).max_position();
+    let ends = tree.points.iter_mut().filter(|p| p[axis] == high[axis]);
+    ends.for_each(|p| p[axis] = low[axis] + pitch);
 }
 
 /// A tree at each place.
@@ -208,7 +221,7 @@ mod tests {
         let size = one.bounds().max - one.bounds().min;
         let pitch = (four.bounds().max.x - four.bounds().min.x) - size.x;
         let side = size.max_element();
-        assert!(pitch >= side && pitch < side + 1.0 / 1024.0, "{pitch} for a cube of {side}");
+        assert_eq!(pitch, side, "cells of copies lie side by side");
         assert_eq!(pitch * 1024.0, (pitch * 1024.0).round());
         for (k, corner) in [(0, [-0.5, -0.5]), (1, [0.5, -0.5]), (2, [-0.5, 0.5]), (3, [0.5, 0.5])] {
             let offset = glam::Vec3::new(corner[0] * pitch, 0.0, corner[1] * pitch);

@@ -28,6 +28,7 @@ mod seminar_room;
 mod shapes;
 mod stand;
 mod street;
+mod suspension;
 mod swarm;
 mod terrain;
 mod thin_slabs;
@@ -97,6 +98,7 @@ static GENERATORS: &[Generator] = &[
     island::GENERATOR,
     venetian_blind::GENERATOR,
     bust::GENERATOR,
+    suspension::GENERATOR,
 ];
 
 /// All generators, by name.

@@ -2,6 +2,7 @@
 //! Graphics Interface 1996, made anew.
 
 mod notes;
+mod plate_5;
 
 use self::notes::{cubes, leaves, step_of_inner_cell};
 use crate::drawing::{Drawing, Role};
@@ -27,6 +28,12 @@ pub const FIGURES: &[Figure] = &[
         former: None,
         summary: "Faces of a cell composed of those of its children",
         make: composition,
+    },
+    Figure {
+        name: "chamberlain-plate-5",
+        former: None,
+        summary: "1, 16, 64 and 4,096 trees, up to 215 million triangles, drawn by color cubes",
+        make: plate_5::forests,
     },
 ];
 

@@ -1,12 +1,16 @@
 //! Chamberlain, DeRose, Lischinski, Salesin and Snyder, measured: what the hierarchy takes (Table 1), how much
-//! faster frames are (Table 2, Section 5), and what images look like (Sections 5 and 5.1).
+//! faster frames are (Table 2, Section 5), what images look like (Sections 5 and 5.1), how time grows with the
+//! number of trees (Section 5.2, Figure 5), and that each level of the hierarchy is drawn as often as any other
+//! (Section 3.1).
 //!
-//! Cost: O(frames) images of the scene.
+//! Cost: O(frames) images of the scene; of forests O(levels · (cells visited + triangles drawn)).
 
 mod built;
 mod errors;
+mod figure_5;
 mod frames;
 mod samples;
+mod shells;
 mod tearing;
 
 use crate::measure::Experiment;
@@ -76,4 +80,6 @@ pub const TABLES: &[Experiment] = &[
         settings: &[],
         sweep: &tearing::SWEEP,
     },
+    figure_5::TABLE,
+    shells::TABLE,
 ];

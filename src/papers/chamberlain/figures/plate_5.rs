@@ -1,0 +1,89 @@
+//! Plate 5: forests that grow fourfold and sixteenfold, up to 4,096 trees.
+
+use crate::culling::color_cubes::forest::Stock;
+use crate::drawing::words::grouped;
+use crate::drawing::{Drawing, Pixels, Role};
+use crate::figure::tools::{Maker, WIDTH_PT};
+use crate::figure::{Panel, Paper, Picture, panels};
+use crate::geometry::Solid;
+use crate::method::Settings;
+use crate::papers::chamberlain::views::Place;
+use crate::papers::keys::COLOR_CUBES;
+use crate::raster::{Options, linear, srgb_bytes};
+use crate::scene::{AnyScene, LoadOptions, Quiet, SceneError, load};
+
+/// Pixels of an image, as the paper's.
+const SIDE_PX: u32 = 124;
+/// Four to the power of these are the trees of the plate.
+const LEVELS: [u32; 4] = [0, 2, 3, 6];
+
+/// An image of half the width and height: each pixel the mean of four, in linear light.
+fn halved(rgba: &[u8], width: u32) -> Pixels {
+    let (side, wide) = (width as usize / 2, width as usize);
+    let mean = |at: usize| {
+        let (x, y) = (at % side, at / side);
+        let four = [0, 1, wide, wide + 1].map(|k| 4 * (2 * y * wide + 2 * x + k));
+        std::array::from_fn(|c| four.iter().map(|p| linear(rgba[p + c])).sum::<f32>() / 4.0)
+    };
+    let rgba: Vec<u8> = (0..side * side).flat_map(|at| srgb_bytes(mean(at))).collect();
+    Pixels { width: width / 2, height: width / 2, rgba: rgba.into() }
+}
+
+pub fn forests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let AnyScene::Solid(tree) = load("generate:tree", &LoadOptions::default(), &Quiet)? else {
+        unreachable!("a generated scene is in space")
+    };
+    // Of a pixel there are two samples a side, and a cell no larger than a pixel is a cube.
+    let settings = [("pixel-threshold", "2")];
+    let stock = Stock::<Solid>::new(&tree, &Settings::of(&settings), &Quiet);
+    let stock = stock.expect("figures use settings that exist").expect("nobody cancels a figure");
+    let paper = (maker.tint)(Role::Paper);
+    let view = |levels: u32| Place::Above.view(&stock, 1 << levels, [2 * SIDE_PX; 2]);
+    let panel = |rgba: &[u8], levels: u32, cubes: usize, triangles: usize| {
+        let trees = grouped(4f64.powi(levels as i32), 0);
+        let [cubes, triangles] = [cubes, triangles].map(|count| grouped(count as f64, 0));
+        let label = format!(
+            "{trees} {}: {cubes} cubes, {triangles} triangles",
+            if levels == 0 { "tree" } else { "trees" }
+        );
+        Panel { label, picture: Picture::Pixels(halved(rgba, 2 * SIDE_PX)) }
+    };
+    // One tree is what the method draws; a forest is what it draws of copies.
+    let alone = maker.ready(&tree, COLOR_CUBES, &settings).cull(&view(0));
+    let rgba = alone.paint(&tree, &view(0), &Options::default(), paper);
+    let mut all = vec![panel(&rgba, 0, alone.stand_ins.len(), alone.prims.len())];
+    for levels in LEVELS.into_iter().skip(1) {
+        let (forest, view) = (stock.forest(levels), view(levels));
+        let seen = forest.cull(&view);
+        let rgba = forest.paint(&seen, &view, paper);
+        all.push(panel(&rgba, levels, seen.list.stand_ins.len(), seen.list.prims.len()));
+    }
+    let content = panels(WIDTH_PT, 2, &all);
+    let most = stock.forest(LEVELS[3]).prims();
+    let caption = format!(
+        "A tree of {} triangles, and squares of 16, 64 and 4,096 of it, the largest of {} triangles, in images \
+         of 124 × 124 pixels with 2 × 2 samples each. No tree is copied: one is stored, with its hierarchy, and \
+         seen from shifted eyes; above it stands a hierarchy of squares of four, whose color cubes are composed \
+         of their parts'. Below each image is how much is drawn for it. As all of a square is in view, trees \
+         shrink as they become more, until cubes of several trees stand for them.",
+        grouped(tree.live().len() as f64, 0),
+        grouped(most as f64, 0),
+    );
+    let title = "Chamberlain et al. 1996, Plate 5: forests that grow fourfold";
+    Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &content))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Black and white halves are half the light, 188 of 255 encoded.
+    #[test]
+    fn pixels_are_averaged_in_linear_light() {
+        let row = |a: u8, b: u8| [[a; 3], [b; 3], [a; 3], [b; 3]].map(|[r, g, b]| [r, g, b, 255]).concat();
+        let image = [row(0, 255), row(255, 0), row(255, 255), row(0, 0)].concat();
+        let small = halved(&image, 4);
+        assert_eq!((small.width, small.height), (2, 2));
+        assert_eq!(small.rgba.chunks(4).map(|p| (p[0], p[3])).collect::<Vec<_>>(), [(188, 255); 4]);
+    }
+}
