@@ -2,13 +2,16 @@
 //! Graphics Interface 1996, made anew.
 
 mod notes;
+mod plates;
+mod tearing;
 
 use self::notes::{cubes, leaves, step_of_inner_cell};
 use crate::drawing::{Drawing, Role};
 use crate::figure::page::legend;
-use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
-use crate::figure::{Look, Paper, Swatch, panels};
+use crate::figure::tools::{Maker, TWO_COLUMNS_PT, WIDTH_PT, entry, eye, flat_panel};
+use crate::figure::{Look, Paper, Swatch, listing, panels};
 use crate::geometry::View;
+use crate::method::CodeLine;
 use crate::papers::keys::COLOR_CUBES;
 use crate::papers::paper::Figure;
 use crate::raster::DepthScale;
@@ -23,11 +26,23 @@ pub const FIGURES: &[Figure] = &[
         make: traversal,
     },
     Figure {
+        name: "chamberlain-figure-2",
+        former: None,
+        summary: "Render, the traversal, in pseudocode with its departures",
+        make: pseudocode,
+    },
+    Figure {
         name: "chamberlain-figure-3",
         former: None,
         summary: "Faces of a cell composed of those of its children",
         make: composition,
     },
+    tearing::FIGURE,
+    plates::TREE,
+    plates::MOLECULE,
+    plates::ISLAND,
+    plates::BUST,
+    plates::ORDER,
 ];
 
 /// The method's picture of how a face is made.
@@ -55,6 +70,19 @@ pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         caption,
         &content,
     ))
+}
+
+/// The figure itself is lost in the paper; by its place it is this.
+pub fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("forest")?;
+    let film = maker.film(&scene, &eye(&scene, 0), COLOR_CUBES, &[]);
+    let lines = film.card().code.iter().zip(0..).filter(|(_, line)| film.has_line(*line));
+    let code: Vec<CodeLine> = lines.map(|(line, _)| *line).collect();
+    let caption = "Render, called with the root of the octree and the planes of the view frustum, as the \
+                   explorer steps through it. The paper's own figure was not at hand: this is what its text says, \
+                   in lines. In gray below a line: what the paper has in its place.";
+    let title = "Chamberlain et al. 1996, Figure 2: Render";
+    Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &listing(&code, TWO_COLUMNS_PT)))
 }
 
 pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
