@@ -93,7 +93,6 @@ mod tests {
             let recorded = stage.recorded.as_ref().expect("a film");
             let (view, end) = (recorded.film.view(), recorded.film.events().len());
             let drawn = stage.drawn(end).expect("cubes");
-            eprintln!("{} cubes {} prims", drawn.stand_ins.len(), drawn.prims.len());
             assert!(drawn.stand_ins.len() > 5 && drawn.stand_ins.len() == list.stand_ins.len());
             let want = list.paint(recorded.film.scene(), view, &Options::default(), [1.0; 3]);
             let shown = stage.painted(&drawn, [1.0; 3]).expect("an image").rgba;

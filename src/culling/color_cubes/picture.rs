@@ -3,13 +3,13 @@
 
 use glam::vec2;
 
-use super::Params;
 use super::evidence::{Evidence, FACE_NAMES};
 use super::faces::{Baking, over};
 use super::sketch::{At, bytes, cell_of, patch, say};
 use super::so_far::{beside, so_far};
 use super::space::Projected;
 use super::turning::by_direction;
+use super::{Order, Params};
 use crate::culling::depth::picture::{WIDTH_PT, finished};
 use crate::drawing::{Anchor, Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, NodeId, Vector};
@@ -30,18 +30,20 @@ const MOST_SHOWN: usize = 3000;
 pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
     let eye = moment.frame.view.eye.position;
     let cubes = moment.notes.iter().filter_map(|n| if let Evidence::Cube(c) = n { Some(c) } else { None });
-    // Those that come later are behind.
-    let cubes: Vec<_> = cubes.take(MOST_SHOWN).collect();
-    for cube in cubes.into_iter().rev() {
-        if S::Vector::AXES == 2 {
-            // The pattern of its state would hide its colors.
-            let corners = [0, 1, 3, 2].map(|i| cube.cell.corner(i)).to_vec();
-            to.push(Layer::Areas, Role::Paper, Subject::Node(cube.node), Mark::Area(corners));
-        }
+    let mut cubes: Vec<_> = cubes.collect();
+    // The farthest first; in the paper's order they came so.
+    if moment.frame.params.order == Order::Exact {
+        cubes.reverse();
+    }
+    for cube in cubes.split_off(cubes.len().saturating_sub(MOST_SHOWN)) {
         for face in cube.facing(eye) {
+            let (points, subject) = (corners(&cube.cell, face), Subject::Node(cube.node));
+            if S::Vector::AXES == 2 {
+                // The pattern of the cell's state would show through, and no color could be told.
+                to.push(Layer::Areas, Role::Paper, subject, Mark::Area(points.clone()));
+            }
             let rgba = bytes(cube.faces.get(face));
-            let mark = Mark::Swatch { points: corners(&cube.cell, face), rgba };
-            to.push(Layer::Areas, Role::Approximated, Subject::Node(cube.node), mark);
+            to.push(Layer::Areas, Role::Approximated, subject, Mark::Swatch { points, rgba });
         }
     }
     if let Some(note) = moment.note {
@@ -49,11 +51,11 @@ pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::V
     }
 }
 
-/// The corners of a face of a box in order; of an edge of flatland a band a tenth of the box wide, inside it.
+/// The corners of a face of a box in order; of an edge of flatland a band a fifth of the box wide, inside it.
 fn corners<V: Vector>(cell: &Aabb<V>, face: usize) -> Vec<V> {
     let (axis, is_upper) = (face / 2, face % 2 == 1);
     let (low, high) = (cell.min.get(axis), cell.max.get(axis));
-    let depth = if V::AXES == 2 { 0.1 * (high - low) } else { 0.0 };
+    let depth = if V::AXES == 2 { 0.2 * (high - low) } else { 0.0 };
     let (outer, inner) = if is_upper { (high, high - depth) } else { (low, low + depth) };
     let along: Vec<usize> = (0..V::AXES).filter(|a| *a != axis).collect();
     let place = |at: [f32; 2]| {

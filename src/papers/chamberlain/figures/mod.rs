@@ -5,6 +5,8 @@ mod notes;
 mod plates;
 mod tearing;
 
+use glam::vec2;
+
 use self::notes::{cubes, leaves, step_of_inner_cell};
 use crate::drawing::{Drawing, Role};
 use crate::figure::page::legend;
@@ -22,7 +24,7 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "chamberlain-figure-1",
         former: None,
-        summary: "A forest from above: leaves drawn as geometry, cells drawn as color cubes, cells culled",
+        summary: "A molecule from above: leaves drawn as geometry, cells drawn as color cubes, cells culled",
         make: traversal,
     },
     Figure {
@@ -49,18 +51,22 @@ pub const FIGURES: &[Figure] = &[
 const MAKING: usize = 1;
 
 pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    let scene = example("forest")?;
-    let view = View { width: 96, ..eye(&scene, 0) };
+    let scene = example("molecule")?;
+    let mut view = View { width: 96, ..eye(&scene, 0) };
+    // At its rim, looking in.
+    (view.eye.position, view.eye.target) = (vec2(-13.0, -7.0), vec2(0.0, 1.0));
+    (view.eye.near, view.eye.far) = (0.5, 40.0);
     let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "12")]);
     let (cubes, leaves) = (cubes(&*film), leaves(&*film));
     let label = format!("{cubes} cells drawn as color cubes, {leaves} as geometry");
     let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
     let caption = format!(
-        "A forest from above, seen in a line of {} pixels. The threshold is 12 pixels, so that cubes are \
-         large enough to be looked at. Near the eye cells are larger and are divided down to leaves, which \
-         are drawn as geometry; farther off cells of ever greater size are drawn as their color cubes, in \
-         the colors of the edges that face the eye; what is outside the view is culled, a whole cell at a \
-         time. As in the paper's Figure 1 each level takes up a band about the eye.",
+        "A molecule in flatland from above, seen in a line of {} pixels. The threshold is 12 pixels, so that \
+         cubes are large enough to be looked at. Near the eye cells are larger and are divided down to \
+         leaves, which are drawn as geometry; farther off cells are drawn as their color cubes: along the \
+         edges that face the eye stand the colors of its faces, on paper, which shows through as far as they \
+         are not covered. What is outside the view is culled, a whole cell at a time. As in the paper's \
+         Figure 1 each level takes up a band about the eye.",
         view.width
     );
     Ok(maker.page(
@@ -86,7 +92,7 @@ pub fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 }
 
 pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    let scene = example("forest")?;
+    let scene = example("molecule")?;
     let view = View { width: 96, ..eye(&scene, 0) };
     let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "30")]);
     let content = film.picture(step_of_inner_cell(&*film), MAKING, DepthScale::Linear);

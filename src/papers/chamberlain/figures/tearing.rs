@@ -213,7 +213,6 @@ mod tests {
         }
         let pixels = shot.pixels();
         let torn = pixels.iter().filter(|p| p.is_covered && p.left > TORN).count();
-        eprintln!("torn {torn} of {}", pixels.iter().filter(|p| p.is_covered).count());
         assert!(torn > 3 && torn < PIXELS as usize / 2, "{torn}");
     }
 }

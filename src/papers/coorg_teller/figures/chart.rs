@@ -5,7 +5,7 @@
 use glam::{DVec3, Vec2, Vec3, vec2};
 
 use crate::culling::anatomy::Blockers;
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::axis::{Axis, axes};
 use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
 use crate::figure::{Paper, Sheet, Swatch, clip, listing};
@@ -198,6 +198,7 @@ pub(super) fn area_angle(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawing::metrics;
 
     #[test]
     fn the_true_solid_angle_is_true() {
