@@ -18,6 +18,7 @@ mod legend;
 mod measured;
 mod open;
 mod outline;
+mod painted;
 mod pick;
 mod recall;
 mod session;

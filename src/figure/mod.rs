@@ -6,6 +6,7 @@
 pub mod axis;
 mod chart;
 mod clip;
+mod listing;
 mod look;
 pub mod page;
 mod panels;
@@ -15,6 +16,7 @@ pub mod tools;
 
 pub use chart::{chart, charts};
 pub use clip::clip;
+pub use listing::listing;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};
 pub use panels::{Panel, Picture, panels, plate_labels};

@@ -223,6 +223,11 @@ pub trait Shown<S: Space>: Method<S> {
     /// Draws, in world coordinates, what is private to the method at a step: its large state, and the
     /// evidence of the current note.
     fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>);
+    /// What has been drawn up to a step, of a method that stands something for primitives; `None` for one
+    /// that draws primitives alone, of which verdicts tell.
+    fn drawn(_: &Moment<'_, S, Self>) -> Option<DrawList<S>> {
+        None
+    }
     /// Names of the method's pictures that are not of the world, such as of its image-space structures.
     const PICTURES: &'static [&'static str] = &[];
     /// Draws picture `which < PICTURES.len()` at a step, in paper coordinates with its size.

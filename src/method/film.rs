@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::{
-    Card, Claim, Compared, Context, Derived, Event, Field, Frame, Knob, KnobValue, Method, Moment, Note,
-    Recorder, Shown, State, Verdict,
+    Card, Claim, Compared, Context, Derived, DrawList, Event, Field, Frame, Knob, KnobValue, Method, Moment,
+    Note, Recorder, Shown, State, Verdict,
 };
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, Space, View};
@@ -70,6 +70,9 @@ pub trait Film<S: Space>: Reel {
     fn claim(&self, at: usize) -> Option<Claim<S::Vector>>;
     /// Draws the method's private state and evidence at a step, in world coordinates.
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>);
+    /// What has been drawn up to a step, of a method that stands something for primitives; `None` for one
+    /// that draws primitives alone, of which verdicts tell.
+    fn drawn(&self, step: usize) -> Option<DrawList<S>>;
 }
 
 /// The evidence of a film of method `M`, with the event that each piece is; nothing if it is another
@@ -391,6 +394,9 @@ impl<S: Space, M: Shown<S>> Film<S> for Footage<S, M> {
     }
     fn explain(&self, step: usize, to: &mut Drawing<S::Vector>) {
         self.at(step, |moment| M::explain(moment, to));
+    }
+    fn drawn(&self, step: usize) -> Option<DrawList<S>> {
+        self.at(step, M::drawn)
     }
 }
 

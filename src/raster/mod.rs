@@ -18,6 +18,7 @@ mod blend;
 mod blocks;
 mod closing;
 mod fill;
+mod flip;
 mod frame;
 mod image;
 mod line;
@@ -38,6 +39,7 @@ mod turns;
 mod vertex;
 
 pub use blend::Canvas;
+pub use flip::{Flip, SEEN, difference_color, flip, flip_map, flip_mean, shade_differences};
 pub use opacity::Opacity;
 pub use pyramid::{Pyramid, PyramidCell};
 pub use saturation::Saturation;

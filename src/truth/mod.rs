@@ -12,12 +12,11 @@
 //! (`generate:thin-slabs`) a grid of 1/16 pixel changes 18 % of what is visible.
 
 pub mod certificate;
-mod flip;
 mod hidden;
 mod layering;
 mod reference;
 
-pub use flip::{Flip, SEEN, flip, flip_mean};
+pub use crate::raster::{Flip, SEEN, flip, flip_mean};
 pub use layering::{Unranked, layer_correlation, layering_numbers, layering_numbers_within};
 pub use reference::Reference;
 

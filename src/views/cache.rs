@@ -13,7 +13,7 @@ pub struct Cache {
     /// Of flatland from above.
     pub world: Option<canvas::World>,
     /// Of flatland through the Eye.
-    pub image: Option<strip::Image>,
+    pub image: strip::Image,
     /// Of space.
     pub uploaded: space::Uploaded,
     /// Of the method's own pictures.

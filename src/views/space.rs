@@ -23,6 +23,9 @@ pub struct Uploaded {
     film: u64,
     /// The marks of a step, and the film, step and look that they were drawn for.
     marks: Option<((u64, usize, figure::Look), Drawing<Vec3>)>,
+    /// What the Eye sees of a method that stands something for primitives, painted for a film, a step and a
+    /// theme; nothing of other methods.
+    painted: Option<((u64, usize, Theme), Option<Pixels>)>,
 }
 
 /// What the pictures of space need beside the state.
@@ -65,7 +68,8 @@ pub fn show(
     match gpu {
         Some(gpu) => {
             upload(state, stage, uploaded, gpu);
-            picture(state, stage, is_eye, ui, rect, &view);
+            let is_painted = is_eye && paint(state, stage, uploaded, ui, rect);
+            picture(state, stage, (is_eye, is_painted), ui, rect, &view);
         }
         None => {
             ui.painter().text(
@@ -116,22 +120,45 @@ fn fitted(pane: egui::Rect, aspect: f32) -> egui::Rect {
     egui::Rect::from_center_size(pane.center(), size)
 }
 
+/// Paints what the Eye sees of a method that stands something for primitives; whether it is one.
+fn paint(state: &State, stage: &Stage<Solid>, now: &mut Uploaded, ui: &egui::Ui, rect: egui::Rect) -> bool {
+    let Some(recorded) = &stage.recorded else { return false };
+    // While the Eye moves, the picture is that of the film, and is not shown where it no longer fits.
+    if *recorded.film.view() != stage.view || state.shown.surface != Surface::Solid || !state.shown.prims {
+        return false;
+    }
+    let key = (recorded.serial, state.step, state.shown.theme);
+    if now.painted.as_ref().is_none_or(|(k, _)| *k != key) {
+        let background = state.shown.theme.flat_linear(Role::Paper);
+        let pixels = stage.drawn(state.step).and_then(|list| stage.painted(&list, background));
+        now.painted = Some((key, pixels));
+    }
+    let Some((_, Some(pixels))) = &now.painted else { return false };
+    let mut paper = Drawing { size_pt: Vec2::new(rect.width(), rect.height()), ..Drawing::default() };
+    let mark = Mark::Image { corners: [Vec2::ZERO, paper.size_pt], pixels: pixels.clone() };
+    paper.push(Layer::Ground, Role::Paper, Subject::None, mark);
+    screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
+    true
+}
+
 fn picture(
     state: &State,
     stage: &Stage<Solid>,
-    is_eye: bool,
+    (is_eye, is_painted): (bool, bool),
     ui: &egui::Ui,
     rect: egui::Rect,
     view: &View<Solid>,
 ) {
     let ppp = ui.ctx().pixels_per_point();
     let size_px = [(rect.width() * ppp).round() as u32, (rect.height() * ppp).round() as u32];
-    let call = Call {
-        id: ViewportId(u32::from(is_eye)),
-        size_px,
-        camera: view.eye.into(),
-        style: style(state, stage, is_eye, ppp),
-    };
+    let mut style = style(state, stage, is_eye, ppp);
+    if is_painted {
+        // What is drawn is painted already; over it comes what is marked.
+        style.surface = gpu::Surface::Hidden;
+        style.transparent = true;
+    }
+    let id = ViewportId(u32::from(is_eye));
+    let call = Call { id, size_px, camera: view.eye.into(), style };
     ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, call));
 }
 

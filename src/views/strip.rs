@@ -1,16 +1,18 @@
 //! Flatland through the Eye: its image is one line of pixels. Above the line each column stands as high as
-//! what it shows is near, as in the first games with walls; below it are the depths as a graph.
+//! what it shows is near, as in the first games with walls. What a method stands for segments has its own
+//! colors.
 
-use eframe::egui::{self, Align2, FontId, Rangef, Rect, Sense, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, Color32, FontId, Rangef, Rect, Sense, Stroke, pos2, vec2};
 
 use super::handles::Hand;
 use super::{Answers, palette};
-use crate::app::{Column, Command, Gesture, PoseKey, Stage, State};
+use crate::app::{Column, Command, Gesture, PoseKey, Stage, State, Theme};
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Role, Subject};
 use crate::figure::role_of;
 use crate::geometry::{Either, Flat, PrimId, View};
 use crate::method::Verdict;
+use crate::render::screen;
 use crate::trace::State as Known;
 
 /// The gesture of turning the Eye in its picture: all turns in a row are one step of undo.
@@ -18,14 +20,26 @@ const LOOK_GESTURE: Gesture = Gesture::MAX;
 /// Height of the strip itself.
 const STRIP: f32 = 22.0;
 
-/// The columns of the image, and the scene and view that they were rendered for.
-pub type Image = ((PoseKey, View<Flat>), Vec<Column>);
+/// The columns of the image, and the scene and view that they were rendered for; and those of what is drawn
+/// of a method that stands something for segments.
+#[derive(Default)]
+pub struct Image {
+    rendered: Option<((PoseKey, View<Flat>), Vec<Column>)>,
+    painted: Option<((u64, usize, Theme), Option<Painted>)>,
+}
+
+/// What a method that stands something for segments has drawn: the color of each column, and how far what it
+/// shows is.
+struct Painted {
+    colors: Vec<Color32>,
+    nearest: Vec<Option<f32>>,
+}
 
 /// Shows what the Eye sees.
 pub fn show(
     state: &State,
     stage: &Stage<Flat>,
-    rendered: &mut Option<Image>,
+    kept: &mut Image,
     hand: &mut Hand,
     ui: &mut egui::Ui,
     answers: &mut Answers,
@@ -43,12 +57,17 @@ pub fn show(
     let colors = palette::panel(state);
     painter.rect_filled(rect, 0.0, colors.canvas);
     let key = (stage.pose_key(), stage.view);
-    if rendered.as_ref().is_none_or(|(k, _)| *k != key) {
-        *rendered = Some((key, stage.image()));
+    if kept.rendered.as_ref().is_none_or(|(k, _)| *k != key) {
+        kept.rendered = Some((key, stage.image()));
     }
-    let Some((_, image)) = rendered else { return };
+    find_painted(state, stage, kept);
+    let Some((_, image)) = &kept.rendered else { return };
     let per_column = rect.width() / image.len().max(1) as f32;
-    paint_columns(state, stage, image, &painter, rect);
+    match &kept.painted {
+        Some((_, Some(painted))) => paint_drawn(painted, &painter, rect),
+        _ => paint_columns(state, stage, image, &painter, rect),
+    }
+    underline(state, stage, &painter, rect);
     painter.rect_stroke(layout(rect).1, 0.0, Stroke::new(1.0, colors.border), egui::StrokeKind::Outside);
     let distinct: std::collections::BTreeSet<_> = image.iter().flat_map(seen).map(|(p, _)| p).collect();
     let plural = if distinct.len() == 1 { "" } else { "s" };
@@ -103,7 +122,47 @@ fn paint_columns(state: &State, stage: &Stage<Flat>, image: &[Column], painter: 
             }
         }
     }
-    // What is selected stands below the strip, what the step is about on it.
+}
+
+/// Paints what a method stands for segments up to the step, if that has changed; nothing of other methods,
+/// and while the film is not that of the present Eye.
+fn find_painted(state: &State, stage: &Stage<Flat>, kept: &mut Image) {
+    let Some(recorded) = stage.recorded.as_ref().filter(|r| *r.film.view() == stage.view) else {
+        kept.painted = None;
+        return;
+    };
+    let key = (recorded.serial, state.step, state.shown.theme);
+    if kept.painted.as_ref().is_some_and(|(k, _)| *k == key) {
+        return;
+    }
+    let painted = stage.drawn(state.step).and_then(|list| {
+        let pixels = stage.painted(&list, state.shown.theme.flat_linear(Role::Paper))?;
+        let colors = pixels.rgba.chunks_exact(4).map(|p| screen::color([p[0], p[1], p[2]])).collect();
+        Some(Painted { colors, nearest: stage.nearest_drawn(&list) })
+    });
+    kept.painted = Some((key, painted));
+}
+
+/// Paints the columns of what is drawn in their own colors.
+fn paint_drawn(painted: &Painted, painter: &egui::Painter, rect: Rect) {
+    let (walls, strip) = layout(rect);
+    let nearest = painted.nearest.iter().flatten().copied().fold(f32::INFINITY, f32::min);
+    let per_column = rect.width() / painted.colors.len().max(1) as f32;
+    for (i, (color, depth)) in painted.colors.iter().zip(&painted.nearest).enumerate() {
+        let x = rect.left() + i as f32 * per_column;
+        let width = Rangef::new(x, x + per_column.max(1.0));
+        if let Some(depth) = depth {
+            let half = walls.height() * 0.46 * (nearest / depth).sqrt();
+            let band = Rangef::new(walls.center().y - half, walls.center().y + half);
+            painter.rect_filled(Rect::from_x_y_ranges(width, band), 0.0, *color);
+        }
+        painter.rect_filled(Rect::from_x_y_ranges(width, strip.y_range()), 0.0, *color);
+    }
+}
+
+/// What is selected stands below the strip, what the step is about on it.
+fn underline(state: &State, stage: &Stage<Flat>, painter: &egui::Painter, rect: Rect) {
+    let strip = layout(rect).1;
     for (subject, role, y) in [
         (state.selection, Role::Selected, strip.bottom() + 4.0),
         (state.current_subject(), Role::Current, strip.top() - 4.0),

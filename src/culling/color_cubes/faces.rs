@@ -10,7 +10,7 @@
 //! Colors are linear, under light that is fixed in the world: what the paper bakes cannot depend on the eye.
 
 use super::analytic::{self, Surface};
-use super::space::{Corners, Projected};
+use super::space::{Corners, Projected, Window};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
 use crate::index::{CellTree, octant_of};
 use crate::raster::{CubeFaces, VEIL, fixed_light};
@@ -183,25 +183,13 @@ impl<S: Projected> Baking<'_, S> {
     }
     /// Primitives as the faces of a cell see them that have so many samples a side.
     fn light(&self, cell: &Aabb<S::Vector>, prims: &[PrimId], side: u32, to: &mut Vec<Lit<S>>) {
-        let (scene, side) = (self.scene, f64::from(side));
-        let (origin, size) = (cell.min, cell.size());
-        let scale: [f64; 3] = std::array::from_fn(|a| {
-            let size = if a < S::Vector::AXES { size.get(a) } else { 0.0 };
-            // What has no size is seen as nothing.
-            if size > 0.0 { side / f64::from(size) } else { 0.0 }
-        });
+        let (scene, window) = (self.scene, Window::new(cell, side));
         to.clear();
         to.extend(prims.iter().map(|&prim| {
-            let mut corners = [[0.0; 3]; 3];
-            for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
-                for (a, to) in to.iter_mut().enumerate().take(S::Vector::AXES) {
-                    *to = (f64::from(from.get(a)) - f64::from(origin.get(a))) * scale[a];
-                }
-            }
             let light = fixed_light(scene, prim);
             let is_one_sided = self.surfaces.one_sided && !scene.is_two_sided(prim);
             Lit {
-                corners,
+                corners: window.corners(scene, prim),
                 color: scene.color_of(prim).map(|c| c * light),
                 through: self.surfaces.show_through(scene, prim),
                 front: is_one_sided.then(|| scene.normal(prim)),

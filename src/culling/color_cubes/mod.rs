@@ -31,9 +31,12 @@ mod hiding_tests;
 mod index;
 mod picture;
 mod saved;
+mod sketch;
+mod so_far;
 mod space;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod walk;
 
 use std::sync::Arc;
@@ -295,6 +298,9 @@ impl<S: Projected> Method<S> for ColorCubes {
 impl<S: Projected> Shown<S> for ColorCubes {
     fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
         picture::explain(moment, to);
+    }
+    fn drawn(moment: &Moment<'_, S, Self>) -> Option<DrawList<S>> {
+        Some(so_far::drawn(moment))
     }
     const PICTURES: &'static [&'static str] = picture::PICTURES;
     fn picture(moment: &Moment<'_, S, Self>, which: usize, _: DepthScale) -> Drawing {

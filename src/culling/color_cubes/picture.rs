@@ -1,22 +1,27 @@
-//! What is seen of the method: cubes in their colors in the world; and the image so far, how a face was made,
-//! and the sizes of cells against the threshold.
+//! What is seen of the method: cubes in their colors in the world; and how a face was made, and the sizes of
+//! cells against the threshold. The image so far: [`super::so_far`]; errors by direction: [`super::turning`].
 
-use glam::{Vec2, vec2};
+use glam::vec2;
 
 use super::evidence::{Evidence, FACE_NAMES};
 use super::faces::{Baking, held, over};
+use super::sketch::{At, bytes, cell_of, patch, say};
+use super::so_far::{beside, so_far};
 use super::space::Projected;
-use super::{ColorCubes, Params};
+use super::turning::by_direction;
+use super::{Order, Params};
 use crate::culling::depth::picture::{WIDTH_PT, finished};
-use crate::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
+use crate::drawing::{Anchor, Drawing, Layer, Mark, Role, Subject};
 use crate::geometry::{Aabb, NodeId, Vector};
-use crate::method::Moment;
-use crate::raster::{Canvas, Light, Options, StandIn, paint, render, srgb_bytes};
 
 /// The pictures that are not of the world.
-pub(super) const PICTURES: &[&str] = &["Image so far", "How a face is made", "Sizes of cells"];
-
-type At<'a, 'b, S> = &'a Moment<'b, S, ColorCubes>;
+pub(super) const PICTURES: &[&str] = &[
+    "Image so far",
+    "How a face is made",
+    "Sizes of cells",
+    "Beside the exact picture",
+    "Error by direction",
+];
 
 /// How many cubes are shown in the world, the nearest: more are too many to be drawn at every step.
 const MOST_SHOWN: usize = 3000;
@@ -25,13 +30,20 @@ const MOST_SHOWN: usize = 3000;
 pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {
     let eye = moment.frame.view.eye.position;
     let cubes = moment.notes.iter().filter_map(|n| if let Evidence::Cube(c) = n { Some(c) } else { None });
-    // Those that come later are behind.
-    let cubes: Vec<_> = cubes.take(MOST_SHOWN).collect();
-    for cube in cubes.into_iter().rev() {
+    let mut cubes: Vec<_> = cubes.collect();
+    // The farthest first; in the paper's order they came so.
+    if moment.frame.params.order == Order::Exact {
+        cubes.reverse();
+    }
+    for cube in cubes.split_off(cubes.len().saturating_sub(MOST_SHOWN)) {
         for face in cube.facing(eye) {
+            let (points, subject) = (corners(&cube.cell, face), Subject::Node(cube.node));
+            if S::Vector::AXES == 2 {
+                // The pattern of the cell's state would show through, and no color could be told.
+                to.push(Layer::Areas, Role::Paper, subject, Mark::Area(points.clone()));
+            }
             let rgba = bytes(cube.faces.get(face));
-            let mark = Mark::Swatch { points: corners(&cube.cell, face), rgba };
-            to.push(Layer::Areas, Role::Approximated, Subject::Node(cube.node), mark);
+            to.push(Layer::Areas, Role::Approximated, subject, Mark::Swatch { points, rgba });
         }
     }
     if let Some(note) = moment.note {
@@ -39,17 +51,11 @@ pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::V
     }
 }
 
-/// A premultiplied linear color as it is painted: sRGB, not premultiplied.
-fn bytes([r, g, b, alpha]: [f32; 4]) -> [u8; 4] {
-    let [r, g, b, _] = srgb_bytes([r, g, b].map(|c| c / alpha.max(1e-6)));
-    [r, g, b, (alpha * 255.0 + 0.5) as u8]
-}
-
-/// The corners of a face of a box in order; of an edge of flatland a band a tenth of the box wide, inside it.
+/// The corners of a face of a box in order; of an edge of flatland a band a fifth of the box wide, inside it.
 fn corners<V: Vector>(cell: &Aabb<V>, face: usize) -> Vec<V> {
     let (axis, is_upper) = (face / 2, face % 2 == 1);
     let (low, high) = (cell.min.get(axis), cell.max.get(axis));
-    let depth = if V::AXES == 2 { 0.1 * (high - low) } else { 0.0 };
+    let depth = if V::AXES == 2 { 0.2 * (high - low) } else { 0.0 };
     let (outer, inner) = if is_upper { (high, high - depth) } else { (low, low + depth) };
     let along: Vec<usize> = (0..V::AXES).filter(|a| *a != axis).collect();
     let place = |at: [f32; 2]| {
@@ -67,65 +73,10 @@ pub(super) fn picture<S: Projected>(moment: At<'_, '_, S>, which: usize) -> Draw
     match which {
         0 => so_far(moment),
         1 => making(moment),
-        _ => sizes(moment),
+        2 => sizes(moment),
+        3 => beside(moment),
+        _ => by_direction(moment),
     }
-}
-
-/// Height of a line of pixels.
-const LINE_PT: f32 = 24.0;
-/// Size of text.
-const TEXT_PT: f32 = 8.5;
-
-/// Puts a line of text into a picture.
-fn say(to: &mut Drawing, at: Vec2, text: impl Into<String>) {
-    to.text(Layer::Labels, Role::Ink, at, TEXT_PT, Anchor::Start, text);
-}
-
-/// What has been drawn up to the step: geometry, and cubes over it.
-fn so_far<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
-    let (scene, view) = (moment.frame.scene, moment.frame.view);
-    let (mut prims, mut boxes) = (Vec::new(), Vec::<StandIn<S::Vector>>::new());
-    for note in moment.notes {
-        prims.extend_from_slice(note.drawn(moment.frame.index, moment.frame.params.surfaces.one_sided));
-        if let Evidence::Cube(c) = note {
-            boxes.push(StandIn { node: c.node, bounds: c.cell, faces: c.faces, after: prims.len() as u32 });
-        }
-    }
-    let (mut to, mut canvas, white) = (Drawing::default(), Canvas::default(), [1.0; 3]);
-    // What leaves below one cell share is told twice.
-    prims.sort_unstable();
-    prims.dedup();
-    let image = render(scene, view, &prims);
-    canvas.clear(view);
-    canvas.composite(&boxes, &image, view, &Options::default());
-    let both = paint(&image, &canvas, scene, view, (Light::Fixed, white));
-    let nothing = render(scene, view, &[]);
-    let cubes = paint(&nothing, &canvas, scene, view, (Light::Fixed, white));
-    let half = WIDTH_PT * 0.5 - 4.0;
-    let width = if view.height == 1 { WIDTH_PT } else { half };
-    let height = if view.height == 1 { LINE_PT } else { width * view.height as f32 / view.width as f32 };
-    let mut y = 12.0;
-    for (text, rgba) in [("All that is drawn", both), ("The cubes alone", cubes)] {
-        say(&mut to, vec2(0.0, y - 3.0), text);
-        let pixels = Pixels { width: view.width, height: view.height, rgba: rgba.into() };
-        let corners = [vec2(0.0, y), vec2(width, y + height)];
-        to.push(Layer::Ground, Role::Paper, Subject::None, Mark::Image { corners, pixels });
-        y += height + 16.0;
-    }
-    let described = format!("{} primitives and {} cubes are drawn", prims.len(), boxes.len());
-    say(&mut to, vec2(0.0, y - 6.0), described.clone());
-    finished(to, y, &described)
-}
-
-/// The cell that the step is about, or the last one that was.
-fn cell_of<S: Projected>(moment: At<'_, '_, S>) -> Option<NodeId> {
-    let of = |note: &Evidence<S>| match note {
-        Evidence::Sized(n) => Some(n.node),
-        Evidence::Cube(n) => Some(n.node),
-        Evidence::Geometry { node, .. } => Some(*node),
-        _ => None,
-    };
-    moment.note.and_then(of).or_else(|| moment.notes.iter().rev().find_map(of))
 }
 
 /// How each face of the cell at hand was made: of a leaf its samples, of an inner cell the faces of its
@@ -173,13 +124,6 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
 const SIDE_PT: f32 = 24.0;
 /// Where the mean of a face stands.
 const MEAN_PT: f32 = 210.0;
-
-/// A patch of color, with its coverage as its opacity.
-fn patch(to: &mut Drawing, at: Vec2, side: f32, color: [f32; 4]) {
-    let points =
-        [vec2(0.0, 0.0), vec2(side, 0.0), vec2(side, side), vec2(0.0, side)].map(|p| at + p).to_vec();
-    to.push(Layer::Areas, Role::Approximated, Subject::None, Mark::Swatch { points, rgba: bytes(color) });
-}
 
 /// A coverage in words.
 fn words(color: [f32; 4]) -> String {

@@ -3,12 +3,44 @@
 use std::ops::Range;
 
 use crate::culling::depth::Faces;
-use crate::geometry::{Flat, Solid};
+use crate::geometry::{Aabb, Flat, PrimId, Solid, Space, Vector};
 use crate::index::tessellation::Cellular;
+use crate::scene::Scene;
 
 /// Corners of a primitive from the lower end of a cell, in samples of its faces: 0 to as many as a side has.
 /// In flatland the third corner and the third axis are not used.
 pub type Corners = [[f64; 3]; 3];
+
+/// A cell in samples of its faces.
+pub struct Window {
+    origin: [f64; 3],
+    scale: [f64; 3],
+}
+
+impl Window {
+    /// Of a cell whose faces have so many samples along a side.
+    pub fn new<V: Vector>(cell: &Aabb<V>, side: u32) -> Self {
+        let size = cell.size();
+        let of = |a: usize, value: &dyn Fn(usize) -> f64| if a < V::AXES { value(a) } else { 0.0 };
+        // What has no size is seen as nothing.
+        let scale = |a: usize| if size.get(a) > 0.0 { f64::from(side) / f64::from(size.get(a)) } else { 0.0 };
+        Self {
+            origin: std::array::from_fn(|a| of(a, &|a| cell.min.get(a).into())),
+            scale: std::array::from_fn(|a| of(a, &scale)),
+        }
+    }
+    /// A primitive in it.
+    #[inline]
+    pub fn corners<S: Space>(&self, scene: &Scene<S>, prim: PrimId) -> Corners {
+        let mut corners = [[0.0; 3]; 3];
+        for (to, from) in corners.iter_mut().zip(scene.prim_points(prim)) {
+            for (a, to) in to.iter_mut().enumerate().take(S::Vector::AXES) {
+                *to = (f64::from(from.get(a)) - self.origin[a]) * self.scale[a];
+            }
+        }
+        corners
+    }
+}
 
 /// A space in which cells are seen along its axes.
 pub trait Projected: Cellular + Faces {

@@ -3,13 +3,18 @@
 
 mod notes;
 mod plate_5;
+mod plates;
+mod tearing;
+
+use glam::vec2;
 
 use self::notes::{cubes, leaves, step_of_inner_cell};
 use crate::drawing::{Drawing, Role};
 use crate::figure::page::legend;
-use crate::figure::tools::{Maker, WIDTH_PT, entry, eye, flat_panel};
-use crate::figure::{Look, Paper, Swatch, panels};
+use crate::figure::tools::{Maker, TWO_COLUMNS_PT, WIDTH_PT, entry, eye, flat_panel};
+use crate::figure::{Look, Paper, Swatch, listing, panels};
 use crate::geometry::View;
+use crate::method::CodeLine;
 use crate::papers::keys::COLOR_CUBES;
 use crate::papers::paper::Figure;
 use crate::raster::DepthScale;
@@ -20,8 +25,14 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "chamberlain-figure-1",
         former: None,
-        summary: "A forest from above: leaves drawn as geometry, cells drawn as color cubes, cells culled",
+        summary: "A molecule from above: leaves drawn as geometry, cells drawn as color cubes, cells culled",
         make: traversal,
+    },
+    Figure {
+        name: "chamberlain-figure-2",
+        former: None,
+        summary: "Render, the traversal, in pseudocode with its departures",
+        make: pseudocode,
     },
     Figure {
         name: "chamberlain-figure-3",
@@ -29,6 +40,12 @@ pub const FIGURES: &[Figure] = &[
         summary: "Faces of a cell composed of those of its children",
         make: composition,
     },
+    tearing::FIGURE,
+    plates::TREE,
+    plates::MOLECULE,
+    plates::ISLAND,
+    plates::BUST,
+    plates::ORDER,
     Figure {
         name: "chamberlain-plate-5",
         former: None,
@@ -41,18 +58,22 @@ pub const FIGURES: &[Figure] = &[
 const MAKING: usize = 1;
 
 pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    let scene = example("forest")?;
-    let view = View { width: 96, ..eye(&scene, 0) };
+    let scene = example("molecule")?;
+    let mut view = View { width: 96, ..eye(&scene, 0) };
+    // At its rim, looking in.
+    (view.eye.position, view.eye.target) = (vec2(-13.0, -7.0), vec2(0.0, 1.0));
+    (view.eye.near, view.eye.far) = (0.5, 40.0);
     let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "12")]);
     let (cubes, leaves) = (cubes(&*film), leaves(&*film));
     let label = format!("{cubes} cells drawn as color cubes, {leaves} as geometry");
     let content = panels(WIDTH_PT, 1, &[flat_panel(&*film, film.events().len(), &Look::default(), label)]);
     let caption = format!(
-        "A forest from above, seen in a line of {} pixels. The threshold is 12 pixels, so that cubes are \
-         large enough to be looked at. Near the eye cells are larger and are divided down to leaves, which \
-         are drawn as geometry; farther off cells of ever greater size are drawn as their color cubes, in \
-         the colors of the edges that face the eye; what is outside the view is culled, a whole cell at a \
-         time. As in the paper's Figure 1 each level takes up a band about the eye.",
+        "A molecule in flatland from above, seen in a line of {} pixels. The threshold is 12 pixels, so that \
+         cubes are large enough to be looked at. Near the eye cells are larger and are divided down to \
+         leaves, which are drawn as geometry; farther off cells are drawn as their color cubes: along the \
+         edges that face the eye stand the colors of its faces, on paper, which shows through as far as they \
+         are not covered. What is outside the view is culled, a whole cell at a time. As in the paper's \
+         Figure 1 each level takes up a band about the eye.",
         view.width
     );
     Ok(maker.page(
@@ -64,8 +85,21 @@ pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     ))
 }
 
-pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+/// The figure itself is lost in the paper; by its place it is this.
+pub fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = example("forest")?;
+    let film = maker.film(&scene, &eye(&scene, 0), COLOR_CUBES, &[]);
+    let lines = film.card().code.iter().zip(0..).filter(|(_, line)| film.has_line(*line));
+    let code: Vec<CodeLine> = lines.map(|(line, _)| *line).collect();
+    let caption = "Render, called with the root of the octree and the planes of the view frustum, as the \
+                   explorer steps through it. The paper's own figure was not at hand: this is what its text says, \
+                   in lines. In gray below a line: what the paper has in its place.";
+    let title = "Chamberlain et al. 1996, Figure 2: Render";
+    Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &listing(&code, TWO_COLUMNS_PT)))
+}
+
+pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
+    let scene = example("molecule")?;
     let view = View { width: 96, ..eye(&scene, 0) };
     let film = maker.film(&scene, &view, COLOR_CUBES, &[("pixel-threshold", "30")]);
     let content = film.picture(step_of_inner_cell(&*film), MAKING, DepthScale::Linear);

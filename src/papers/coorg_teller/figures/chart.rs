@@ -5,10 +5,10 @@
 use glam::{DVec3, Vec2, Vec3, vec2};
 
 use crate::culling::anatomy::Blockers;
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::axis::{Axis, axes};
 use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
-use crate::figure::{Paper, Sheet, Swatch, clip};
+use crate::figure::{Paper, Sheet, Swatch, clip, listing};
 use crate::geometry::{Aabb, Solid};
 use crate::method::CodeLine;
 use crate::papers::keys::LARGE_OCCLUDERS;
@@ -24,40 +24,7 @@ fn code(maker: &Maker<'_>) -> Result<Vec<CodeLine>, SceneError> {
 
 /// Figure 9: the algorithm. Below a line that differs from the paper's stands the paper's.
 pub(super) fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    const GUTTER_PT: f32 = 15.0;
-    let paper_line = |line: &CodeLine| {
-        let indent = line.text.len() - line.text.trim_start().len();
-        format!("{}paper: {}", " ".repeat(indent), line.paper)
-    };
-    let width = |text: &str| metrics::width_pt(text, Font::Mono, 1.0);
-    let code = code(maker)?;
-    let widest = code.iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
-    let size_pt = ((COLUMN_PT - GUTTER_PT) / widest).min(LABEL_PT);
-    let (line_pt, mut y) = (size_pt * 1.4, 2.0);
-    let mut paper = Drawing::default();
-    for line in &code {
-        let number = line.label.rsplit(':').next().unwrap_or_default();
-        // A rule above each procedure.
-        if number == "1" {
-            let rule = y + line_pt * 0.35;
-            paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, rule), vec2(COLUMN_PT, rule)]);
-            y += line_pt * 0.6;
-        }
-        let mut text = |x: f32, y: f32, role: Role, anchor: Anchor, text: &str| {
-            let mark = Mark::Text { at: vec2(x, y), text: text.into(), size_pt, anchor, font: Font::Mono };
-            paper.push(Layer::Labels, role, Subject::None, mark);
-        };
-        y += line_pt;
-        text(GUTTER_PT - 5.0, y, Role::Faint, Anchor::End, number);
-        text(GUTTER_PT, y, Role::Ink, Anchor::Start, line.text);
-        if !line.paper.is_empty() {
-            y += line_pt;
-            text(GUTTER_PT, y, Role::Faint, Anchor::Start, &paper_line(line));
-        }
-    }
-    y += line_pt * 0.6;
-    paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, y), vec2(COLUMN_PT, y)]);
-    paper.size_pt = vec2(COLUMN_PT, y + 1.0);
+    let paper = listing(&code(maker)?, COLUMN_PT);
     let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps \
                    through it: the selection of occluders, the recursion with view-frustum culling in front, \
                    TestOcclusion opened up, and the detail objects in Gather. In gray below a line: what the \
@@ -231,6 +198,7 @@ pub(super) fn area_angle(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawing::metrics;
 
     #[test]
     fn the_true_solid_angle_is_true() {

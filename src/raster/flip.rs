@@ -52,21 +52,62 @@ pub fn flip_mean(reference: &[u8], test: &[u8], width: usize, height: usize) -> 
 
 /// The same, and how many pixels differ so that it is seen.
 pub fn flip(reference: &[u8], test: &[u8], width: usize, height: usize) -> Flip {
+    let Some((out, map)) = differing(reference, test, width, height) else { return Flip::default() };
+    let pixels = (width * height) as f64;
+    let seen = map.iter().filter(|d| **d > SEEN).count();
+    let rows = map.chunks(out.x1 - out.x0);
+    let sum: f64 = rows.map(|row| row.iter().sum::<f64>()).sum();
+    Flip { mean: sum / pixels, seen_ratio: seen as f64 / pixels }
+}
+
+/// The map of FLIP: how different each pixel looks, 0 to 1, row by row. Of images as in [`flip_mean`].
+pub fn flip_map(reference: &[u8], test: &[u8], width: usize, height: usize) -> Vec<f32> {
+    let mut whole = vec![0.0; width * height];
+    if let Some((out, map)) = differing(reference, test, width, height) {
+        for (row, y) in map.chunks(out.x1 - out.x0).zip(out.y0..) {
+            let to = &mut whole[y * width + out.x0..][..row.len()];
+            to.iter_mut().zip(row).for_each(|(to, from)| *to = *from as f32);
+        }
+    }
+    whole
+}
+
+/// The part of the map in which it is not 0 for sure, row by row; `None` where the images are equal.
+fn differing(reference: &[u8], test: &[u8], width: usize, height: usize) -> Option<(Region, Vec<f64>)> {
     let color_filters =
         [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
     let features = Features::new();
     // Every filter is as wide as the widest.
     let reach = color_filters.iter().map(|f| f.reach()).chain([features.reach]).max().unwrap_or(0);
-    let Some(changed) = changed(reference, test, width, height) else { return Flip::default() };
+    let changed = changed(reference, test, width, height)?;
     let out = changed.grown(reach, width, height);
     let input = out.grown(reach, width, height);
     let [reference, test] = [reference, test].map(|rgba| crop(rgba, width, &input));
-    let map = flip_map(&reference, &test, &color_filters, &features);
+    let map = map_of(&reference, &test, &color_filters, &features);
     let row = |y: usize| &map[(y - input.y0) * reference.width..][out.x0 - input.x0..out.x1 - input.x0];
-    let sum: f64 = (out.y0..out.y1).map(|y| row(y).iter().sum::<f64>()).sum();
-    let seen = (out.y0..out.y1).flat_map(row).filter(|d| **d > SEEN).count();
-    let pixels = (width * height) as f64;
-    Flip { mean: sum / pixels, seen_ratio: seen as f64 / pixels }
+    let part = (out.y0..out.y1).flat_map(row).copied().collect();
+    Some((out, part))
+}
+
+/// Colors of differences, sRGB, at equal steps from 0 to 1: black, violet, red, yellow, white, each lighter
+/// than the one before, so that the order shows without hue as well.
+const SHADES: [[u8; 3]; 6] =
+    [[0, 0, 0], [60, 16, 110], [140, 41, 129], [222, 73, 104], [254, 159, 109], [252, 253, 191]];
+
+/// The color of a difference, 0 to 1: sRGB.
+pub fn difference_color(difference: f32) -> [u8; 3] {
+    let at = difference.clamp(0.0, 1.0) * (SHADES.len() - 1) as f32;
+    let from = (at as usize).min(SHADES.len() - 2);
+    let share = at - from as f32;
+    std::array::from_fn(|c| {
+        let [a, b] = [from, from + 1].map(|k| f32::from(SHADES[k][c]));
+        (a + (b - a) * share + 0.5) as u8
+    })
+}
+
+/// A map of differences as an image: RGBA.
+pub fn shade_differences(map: &[f32]) -> Vec<u8> {
+    map.iter().map(|d| difference_color(*d)).flat_map(|[r, g, b]| [r, g, b, 255]).collect()
 }
 
 /// Half-open rectangle of pixels.
@@ -113,7 +154,7 @@ fn crop(rgba: &[u8], width: usize, region: &Region) -> Image {
     Image { width: region.x1 - region.x0, height: region.y1 - region.y0, pixels }
 }
 
-fn flip_map(reference: &Image, test: &Image, color: &[Spread; 3], features: &Features) -> Vec<f64> {
+fn map_of(reference: &Image, test: &Image, color: &[Spread; 3], features: &Features) -> Vec<f64> {
     let [reference, test] = [reference, test].map(|image| (perceived(image, color), features.of(image)));
     let most = hyab(&hunt(&[0.0, 1.0, 0.0]), &hunt(&[0.0, 0.0, 1.0])).powf(QC);
     let pixel = |i: usize| {
@@ -410,8 +451,23 @@ mod tests {
         let [ra, rb] = [&a, &b].map(|rgba| crop(rgba, 120, &Region { x0: 0, x1: 120, y0: 0, y1: 90 }));
         let filters =
             [filter(&[(1.0, 0.0047)]), filter(&[(1.0, 0.0053)]), filter(&[(34.1, 0.04), (13.5, 0.025)])];
-        let whole = flip_map(&ra, &rb, &filters, &Features::new()).iter().sum::<f64>() / (120.0 * 90.0);
+        let whole = map_of(&ra, &rb, &filters, &Features::new()).iter().sum::<f64>() / (120.0 * 90.0);
         let near = flip_mean(&a, &b, 120, 90);
         assert!(near > 0.0 && (whole - near).abs() < 1e-12, "{whole} and {near}");
+    }
+
+    #[test]
+    fn the_map_is_what_the_mean_is_of_and_colors_go_up_from_black() {
+        let [a, b] = images(64, 48, gradient);
+        let map = flip_map(&a, &b, 64, 48);
+        let mean = map.iter().map(|d| f64::from(*d)).sum::<f64>() / map.len() as f64;
+        assert!((mean - flip_mean(&a, &b, 64, 48)).abs() < 1e-6, "{mean}");
+        // Far from the square that differs nothing does; in its middle it is seen.
+        assert!(map[47 * 64 + 63] == 0.0 && f64::from(map[18 * 64 + 24]) > SEEN);
+        assert_eq!(flip_map(&a, &a, 64, 48), vec![0.0; 64 * 48]);
+        assert_eq!([0.0, 0.2, 1.0, 7.0].map(difference_color), [SHADES[0], SHADES[1], SHADES[5], SHADES[5]]);
+        let light = |k: i32| difference_color(k as f32 / 50.0).iter().map(|c| u32::from(*c)).sum::<u32>();
+        assert!((0..50).all(|k| light(k) < light(k + 1)), "lighter step by step");
+        assert_eq!(shade_differences(&[0.0, 0.2]), [0, 0, 0, 255, 60, 16, 110, 255]);
     }
 }
