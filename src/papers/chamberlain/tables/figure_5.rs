@@ -217,7 +217,7 @@ const RATE: f64 = 39_000.0;
 fn paper_times() -> [[f64; 3]; 2] {
     // Geometry takes as long for a polygon wherever it is.
     [(CROSSOVER, SPEEDUP / RATE), (MOST, 1.0 / RATE)]
-        .map(|(trees, ms)| [trees, trees * TREE * ms, trees * TREE * SPEEDUP / RATE])
+        .map(|(trees, ms)| [trees, trees * TREE * ms, trees * TREE * (SPEEDUP / RATE)])
 }
 
 fn paper() -> Vec<Vec<Cell>> {
