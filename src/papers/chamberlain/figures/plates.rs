@@ -152,8 +152,8 @@ fn tree(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let caption = format!(
         "A generated tree of {} triangles, 30° about the vertical, from d = 1.75, 3.5, 7 and 14 radii; 124 × \
          124 pixels of 2 × 2 samples. Above as geometry, below with color cubes of at most a pixel, and the \
-         middle of these enlarged. Where too little would be drawn as cubes to pay for the visit, all is drawn \
-         as geometry. The paper's tree has as many triangles.",
+         middle of these enlarged. Where too little would be drawn as cubes to pay for the visit, all is \
+         drawn as geometry. The paper's tree has as many triangles.",
         number(shown.scene.live().len())
     );
     let title = "Chamberlain et al. 1996, Plate 1: a tree at four distances";
@@ -164,8 +164,8 @@ fn tree(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 fn molecule(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let shown = Distances::new(maker, "generate:molecule?atoms=60")?;
     let caption = format!(
-        "A generated molecule of 60 atoms, balls of 800 triangles each, {} in all, 25° from an axis; distances \
-         and rows as in Plate 1. The paper's molecule has 6,534 atoms.",
+        "A generated molecule of 60 atoms, balls of 800 triangles each, {} in all, 25° from an axis; \
+         distances and rows as in Plate 1. The paper's molecule has 6,534 atoms.",
         number(shown.scene.live().len())
     );
     let title = "Chamberlain et al. 1996, Plate 2: a molecule at four distances";
@@ -257,10 +257,10 @@ fn bust(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let below = enlarged.into_iter().zip(images.iter().map(|pixels| middle(pixels, 0.35)));
     let parts: Vec<Panel> = above.chain(below).map(|(label, pixels)| panel(label, pixels)).collect();
     let caption = format!(
-        "A generated bust from 45° between two axes, {} × {} pixels of 2 × 2 samples. In the middle with color \
-         cubes of at most 8 pixels, so that they are seen: the background shows through the surface, on {:.1} % \
-         of what it covers. Right with an error-bound of {BOUND} pixels: a cell whose cube is too wrong from \
-         between the axes is drawn as geometry; {:.1} % shows.",
+        "A generated bust from 45° between two axes, {} × {} pixels of 2 × 2 samples. In the middle with \
+         color cubes of at most 8 pixels, so that they are seen: the background shows through the surface, \
+         {:.1} % of what it hides of it. Right with an error-bound of {BOUND} pixels: a cell whose cube is \
+         too wrong from between the axes is drawn as geometry; {:.1} % shows.",
         view.width,
         view.height,
         100.0 * shown / whole as f32,
