@@ -223,6 +223,8 @@ pub fn style(state: &State, stage: &Stage<Solid>, is_eye: bool, pixels_per_point
     if !state.shown.nodes {
         style.nodes = NodeBoxes::None;
     }
+    // Their patterns would hide the colors of what stands for them.
+    style.stand_ins = state.shown.evidence && stage.drawn(0).is_some();
     let current = state.current_subject();
     style.highlights = vec![(current, Role::Current), (state.selection, Role::Selected)];
     style.highlights.retain(|(s, _)| *s != Subject::None);

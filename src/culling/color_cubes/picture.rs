@@ -24,7 +24,7 @@ pub(super) const PICTURES: &[&str] = &[
 ];
 
 /// How many cubes are shown in the world, the nearest: more are too many to be drawn at every step.
-const MOST_SHOWN: usize = 3000;
+const MOST_SHOWN: usize = 10_000;
 
 /// Draws the cubes that were drawn so far in the world, the farthest first, and the note's own evidence.
 pub(super) fn explain<S: Projected>(moment: At<'_, '_, S>, to: &mut Drawing<S::Vector>) {

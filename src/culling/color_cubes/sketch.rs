@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::space::Projected;
 use crate::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::geometry::{NodeId, Space, View};
-use crate::method::Moment;
+use crate::method::{Moment, Note};
 use crate::raster::srgb_bytes;
 
 /// A step as a picture sees it.
@@ -55,11 +55,8 @@ pub fn image<S: Space>(
 
 /// The cell that the step is about, or the last one that was.
 pub fn cell_of<S: Projected>(moment: At<'_, '_, S>) -> Option<NodeId> {
-    let of = |note: &Evidence<S>| match note {
-        Evidence::Sized(n) => Some(n.node),
-        Evidence::Erring(n) => Some(n.node),
-        Evidence::Cube(n) => Some(n.node),
-        Evidence::Geometry { node, .. } => Some(*node),
+    let of = |note: &Evidence<S>| match note.subject() {
+        Subject::Node(node) => Some(node),
         _ => None,
     };
     moment.note.and_then(of).or_else(|| moment.notes.iter().rev().find_map(of))

@@ -2,9 +2,9 @@
 //!
 //! A cube knows six directions. Between them it shows its faces, each as large as it is seen, with weights
 //! `|n · v|` that sum to 1. What it stands for may cover more or less. "True" is here what cells of the same
-//! contents, side by side in a wall that is one cell thick, hide of what is behind them: a surface or a row of
-//! slats goes on in the neighboring cell. Slats as deep as they are apart hide `min(1, tan φ)` at an angle φ
-//! to them; their cube, clear along them and opaque across, covers `sin φ / (sin φ + cos φ)`.
+//! contents, side by side in a wall that is one cell thick, hide of what is behind them: a surface or a row
+//! of slats goes on in the neighboring cell. Slats as deep as they are apart hide `min(1, tan φ)` at an angle
+//! φ to them; their cube, clear along them and opaque across, covers `sin φ / (sin φ + cos φ)`.
 //!
 //! A wall of such cubes is a third thing: a ray that goes through the front face of one leaves it through a
 //! side, and enters the next, in a share `tan` of the angle to the front of all cases.

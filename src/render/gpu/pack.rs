@@ -245,7 +245,7 @@ pub(super) fn marks(drawing: &Drawing<Vec3>) -> MarkWords {
                 }
             }
             Mark::Swatch { points, rgba } => {
-                polyline(points, true);
+                // Without an outline: there are thousands, a few pixels large, and it would hide them.
                 // In the place of a role: the color, seven bits of opacity, and a mark that says so.
                 let [r, g, b, alpha] = rgba.map(u32::from);
                 let color = SWATCH | (alpha >> 1) << 24 | r << 16 | g << 8 | b;

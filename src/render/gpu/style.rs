@@ -129,6 +129,9 @@ pub struct SpaceStyle {
     pub section: Option<(Vec3, f32)>,
     /// Node boxes.
     pub nodes: NodeBoxes,
+    /// Whether what stands for triangles is among the marks: then neither these are drawn nor boxes of nodes
+    /// that they are in.
+    pub stand_ins: bool,
     /// Layers of the marks that are left out.
     pub without: Vec<Layer>,
     /// Triangles, nodes and objects outlined in a role, such as selected and current ones.
@@ -158,6 +161,7 @@ impl SpaceStyle {
             only_fronts: false,
             section: None,
             nodes: NodeBoxes::Frontier,
+            stand_ins: false,
             without: Vec::new(),
             highlights: Vec::new(),
             ghost: 0.25,
@@ -180,6 +184,7 @@ impl SpaceStyle {
     /// Whether and how triangles of a role are drawn.
     pub(super) fn shown(&self, role: Role) -> Shown {
         match role {
+            Role::Approximated if self.stand_ins => Shown::Not,
             Role::Visible => self.kept,
             Role::Scene | Role::Undecided => self.undecided,
             // What was culled wrongly is never only a ghost.

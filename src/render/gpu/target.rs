@@ -190,7 +190,8 @@ fn frame_words(camera: &SpaceCamera, style: &SpaceStyle, tile: Tile) -> Vec<u32>
     words.extend([
         mask(style, Shown::Solid),
         mask(style, Shown::Ghost),
-        u32::MAX,
+        // Boxes: of all roles, but for those of nodes that have a color of their own.
+        if style.stand_ins { !(1 << Role::Approximated as u32) } else { u32::MAX },
         (style.nodes == NodeBoxes::Frontier).into(),
     ]);
     let ppp = style.pixels_per_point;

@@ -92,8 +92,8 @@ pub fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let lines = film.card().code.iter().zip(0..).filter(|(_, line)| film.has_line(*line));
     let code: Vec<CodeLine> = lines.map(|(line, _)| *line).collect();
     let caption = "Render, called with the root of the octree and the planes of the view frustum, as the \
-                   explorer steps through it. The paper's own figure was not at hand: this is what its text says, \
-                   in lines. In gray below a line: what the paper has in its place.";
+                   explorer steps through it. The paper's own figure was not at hand: this is what its text \
+                   says, in lines. In gray below a line: what the paper has in its place.";
     let title = "Chamberlain et al. 1996, Figure 2: Render";
     Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &listing(&code, TWO_COLUMNS_PT)))
 }

@@ -130,20 +130,27 @@ fn faces(plan: &mut Plan, cubes: &[StandIn<Vec2>], axis: usize, is_named: bool) 
     }
 }
 
-/// The rays of pixels through which the background shows although the contour is there.
+/// The bands of rays on which the background shows although the contour is there, with how much of it.
 fn torn(plan: &mut Plan, shot: &Shot, pixels: &[Pixel]) {
     let view = shot.film.view();
     let forward = view.eye.forward();
     let across = vec2(forward.y, -forward.x);
     let half = (view.eye.fov * 0.5).tan() * AWAY;
-    let width = 2.0 * half / PIXELS as f32;
-    for (at, pixel) in pixels.iter().enumerate() {
-        let middle = view.eye.target + across * ((at as f32 + 0.5) * width - half);
-        if !pixel.is_covered || pixel.left <= TORN {
-            continue;
+    let edge = |at: usize| view.eye.target + across * (2.0 * half * at as f32 / PIXELS as f32 - half);
+    let is_torn = |pixel: &Pixel| pixel.is_covered && pixel.left > TORN;
+    let mut from = 0;
+    for band in pixels.chunk_by(|a, b| is_torn(a) == is_torn(b)) {
+        let past = from + band.len();
+        if is_torn(&band[0]) {
+            let ends = [edge(from), edge(past)];
+            let corners = [(0, -0.8), (1, -0.8), (1, 0.8), (0, 0.8)];
+            let corners = corners.map(|(k, share): (usize, f32)| ends[k] + forward * (share * LEAVES));
+            plan.world.push(Layer::Areas, Role::Eye, Subject::None, Mark::Area(corners.to_vec()));
+            let left = band.iter().map(|p| p.left).sum::<f32>() / band.len() as f32;
+            let at = (ends[0] + ends[1]) * 0.5 + forward * (0.33 * LEAVES);
+            plan.plate(at, 7.0, Font::Bold, &format!("{:.0} %", left * 100.0));
         }
-        let [from, to] = [-0.72, 0.72].map(|share| middle + forward * (share * LEAVES));
-        plan.world.push(Layer::Areas, Role::Eye, Subject::None, Mark::Arrow(from, to));
+        from = past;
     }
 }
 
@@ -177,8 +184,8 @@ fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
          how much of it is covered from the left and from below (b, c): half of a face or more (solid), or \
          less (dashed). From 45° a ray may enter and leave a row of cubes through faces that are nearly \
          transparent (d): in an image of {PIXELS} pixels the contour covers {}; on {through} of these more \
-         than a tenth of the background shows, {:.0} % at most, {:.0} % on the mean of all. Arrows are the \
-         rays of those pixels.",
+         than a tenth of the background shows, {:.0} % at most, {:.0} % on the mean of all. Bands: \
+         the rays of those pixels, with the mean of each band.",
         covered.len(),
         most * 100.0,
         mean * 100.0
@@ -187,7 +194,7 @@ fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         entry(Role::Ink, Swatch::Line, "contour"),
         entry(Role::Visible, Swatch::Line, "a face, nearly opaque"),
         entry(Role::Hidden, Swatch::Line, "a face, nearly transparent"),
-        entry(Role::Eye, Swatch::Line, "a ray on which the background shows"),
+        entry(Role::Eye, Swatch::Area, "rays on which the background shows"),
     ];
     let title = "Chamberlain et al. 1996, Figure 4: why surfaces are torn";
     Ok(maker.page(Paper::TwoColumns, title, legend, caption, &content))
