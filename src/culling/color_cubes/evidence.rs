@@ -335,31 +335,40 @@ impl<S: Faces> Note<S> for Evidence<S> {
                 "Node {node} is drawn as geometry: {references} {name}s, but for those that other nodes had \
                  drawn before."
             ),
-            Self::Settled(Settled::Drawn { prim, node }) => {
-                format!("The {name} {prim} is drawn, with node {node}; other nodes do not draw it again.")
-            }
-            Self::Settled(Settled::InCubes { prim, node }) => format!(
-                "The {name} {prim} lies in several nodes below node {node}, of which none was drawn as \
-                 geometry: it is in color cubes alone."
-            ),
-            Self::Settled(Settled::OutOfView { prim, node }) => format!(
-                "The {name} {prim} lies in several nodes below node {node}, and all of these are outside the \
-                 view."
-            ),
-            Self::Settled(Settled::Behind { prim, node }) => format!(
-                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the view \
-                 or behind what is drawn."
-            ),
-            Self::Settled(Settled::BehindCubes { prim, node }) => format!(
-                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the \
-                 view, or behind what is drawn, color cubes among it."
-            ),
+            Self::Settled(n) => n.sentence(name),
             Self::Depth(DepthNote::Drawn(node, _)) => format!(
                 "The geometry of node {node} is drawn into the depths, by which cells are found that are \
                  behind it."
             ),
             Self::Depth(n) => n.sentence(context),
             Self::Saturated(n) => n.sentence(),
+        }
+    }
+}
+
+impl Settled {
+    /// `name`: what a primitive is called.
+    fn sentence(&self, name: &str) -> String {
+        match self {
+            Self::Drawn { prim, node } => {
+                format!("The {name} {prim} is drawn, with node {node}; other nodes do not draw it again.")
+            }
+            Self::InCubes { prim, node } => format!(
+                "The {name} {prim} lies in several nodes below node {node}, of which none was drawn as \
+                 geometry: it is in color cubes alone."
+            ),
+            Self::OutOfView { prim, node } => format!(
+                "The {name} {prim} lies in several nodes below node {node}, and all of these are outside the \
+                 view."
+            ),
+            Self::Behind { prim, node } => format!(
+                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the view \
+                 or behind what is drawn."
+            ),
+            Self::BehindCubes { prim, node } => format!(
+                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the \
+                 view, or behind what is drawn, color cubes among it."
+            ),
         }
     }
 }

@@ -14,7 +14,8 @@
 //! [`crate::raster::Canvas`].
 //!
 //! Cells that do not show can be left out ([`hiding`]). Else it leaves nothing out, but stands cubes for what
-//! they are [`crate::method::Verdict::Approximated`] by; with a threshold of 0 it is the z-buffer. Where this differs from the paper, and why: [`DEPARTURES`].
+//! they are [`crate::method::Verdict::Approximated`] by; with a threshold of 0 it is the z-buffer. Where this
+//! differs from the paper, and why: [`DEPARTURES`].
 //! Cost: O(cells visited + primitives of near leaves); the paper argues for O(log n) (Section 3.1).
 
 mod analytic;
@@ -168,6 +169,41 @@ impl Params {
     }
 }
 
+/// Declares how faces are made.
+fn face_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
+    let primitives = Knob::new(
+        "primitives",
+        "",
+        "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such as a \
+         sphere of a molecule, which takes far fewer references",
+        "Chamberlain et al. 1996, Sections 4 and 5",
+    );
+    knobs.words(primitives, &mut params.primitives);
+    let faces = Knob::new(
+        "faces",
+        "",
+        "how a face is made from primitives: sampled, the mean of samples; analytic, by the areas that \
+         show, but by 64×64 samples (in flatland 64) where light comes through one or very many are seen",
+        "Chamberlain et al. 1996, Section 4",
+    );
+    knobs.words(faces, &mut params.faces);
+    let samples = Knob::new(
+        "face-samples",
+        "samples",
+        "samples along a side of a face, of which its color is the mean: 4 gives 4×4, in flatland 4",
+        "Chamberlain et al. 1996, Section 4",
+    );
+    knobs.integer(samples, 1..=64, &mut params.face_samples);
+    let interior = Knob::new(
+        "interior",
+        "",
+        "faces of inner cells: composed, those of the front children over those of the back ones, \
+         averaged; direct, made from the primitives as those of leaves, in more time",
+        "Chamberlain et al. 1996, Section 4",
+    );
+    knobs.words(interior, &mut params.interior);
+}
+
 impl<S: Projected> Method<S> for ColorCubes {
     type Params = Params;
     type Index = CubeTree<S>;
@@ -206,37 +242,7 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Section 4",
         );
         knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
-        let primitives = Knob::new(
-            "primitives",
-            "",
-            "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such \
-             as a sphere of a molecule, which takes far fewer references",
-            "Chamberlain et al. 1996, Sections 4 and 5",
-        );
-        knobs.words(primitives, &mut params.primitives);
-        let faces = Knob::new(
-            "faces",
-            "",
-            "how a face is made from primitives: sampled, the mean of samples; analytic, by the areas that \
-             show, but by 64×64 samples (in flatland 64) where light comes through one or very many are seen",
-            "Chamberlain et al. 1996, Section 4",
-        );
-        knobs.words(faces, &mut params.faces);
-        let samples = Knob::new(
-            "face-samples",
-            "samples",
-            "samples along a side of a face, of which its color is the mean: 4 gives 4×4, in flatland 4",
-            "Chamberlain et al. 1996, Section 4",
-        );
-        knobs.integer(samples, 1..=64, &mut params.face_samples);
-        let interior = Knob::new(
-            "interior",
-            "",
-            "faces of inner cells: composed, those of the front children over those of the back ones, \
-             averaged; direct, made from the primitives as those of leaves, in more time",
-            "Chamberlain et al. 1996, Section 4",
-        );
-        knobs.words(interior, &mut params.interior);
+        face_knobs(params, knobs);
         let bound = Knob::new(
             "error-bound",
             "pixels",

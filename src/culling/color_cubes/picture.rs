@@ -90,7 +90,12 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let tree = moment.frame.index.tree();
     let node = &tree.nodes()[id.at()];
     let is_composed = !node.is_leaf() && moment.frame.params.composes();
-    let way = if is_composed { "composed of its children" } else { "its primitives, sampled" };
+    let is_analytic = moment.frame.params.is_analytic();
+    let way = match () {
+        _ if is_composed => "composed of its children",
+        _ if is_analytic => "its primitives by area; samples show where they are",
+        _ => "its primitives, sampled",
+    };
     let title = format!("Node {id}, level {}: {way}", node.level);
     say(&mut to, vec2(0.0, 10.0), title.clone());
     let mut y = 20.0;
