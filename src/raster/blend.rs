@@ -193,13 +193,14 @@ impl Rays {
         if nearest <= self.near {
             return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
         }
+        let (inverse, most_inverse) = (1.0 / depth, 1.0 / nearest);
         let mut spans = [[self.half[0]; 2], [self.half[1]; 2]];
         for (axis, row) in self.rows[..V::AXES - 1].iter().enumerate() {
             // A point `middle + d` lies at `(row · middle + row · d) / (depth + forward · d)`, which differs
             // from the middle's place `at` by `(row − at · forward) · d / (depth + forward · d)`.
-            let at = dot(row) / depth;
+            let at = dot(row) * inverse;
             let slope = std::array::from_fn(|a| row[a] - at * forward[a]);
-            let most = spread(&slope) / nearest;
+            let most = spread(&slope) * most_inverse;
             let sign = if axis == 0 { 1.0 } else { -1.0 };
             let (center, reach) = (self.half[axis] * (1.0 + sign * at), self.half[axis] * most);
             spans[axis] = [center - reach, center + reach];
@@ -217,21 +218,26 @@ impl Rays {
         max: &[f64; 3],
     ) -> Option<(f64, usize)> {
         let (mut enters, mut leaves, mut face) = (f64::NEG_INFINITY, f64::INFINITY, 0);
+        let mut along = [1.0; 3];
         for a in 0..V::AXES {
-            let along = self.origin[a] + column * self.right[a] + row * self.down[a];
-            if along == 0.0 {
+            along[a] = self.origin[a] + column * self.right[a] + row * self.down[a];
+        }
+        // All at once, as one division of several numbers.
+        let inverse = along.map(|along| 1.0 / along);
+        for a in 0..V::AXES {
+            if along[a] == 0.0 {
                 // The ray stays between two planes for ever, or never is: the upper one is the next box's.
                 if min[a] > 0.0 || max[a] <= 0.0 {
                     return None;
                 }
                 continue;
             }
-            let inverse = 1.0 / along;
-            let (low, high) = (min[a] * inverse, max[a] * inverse);
-            let (first, last, side) = if along > 0.0 { (low, high, 0) } else { (high, low, 1) };
-            if first > enters {
-                (enters, face) = (first, 2 * a + side);
-            }
+            let (low, high) = (min[a] * inverse[a], max[a] * inverse[a]);
+            let is_up = along[a] > 0.0;
+            let (first, last) = if is_up { (low, high) } else { (high, low) };
+            let is_later = first > enters;
+            enters = if is_later { first } else { enters };
+            face = if is_later { 2 * a + usize::from(!is_up) } else { face };
             leaves = if last < leaves { last } else { leaves };
         }
         // Where it leaves is the next box's. A box about the eye has no face toward it.

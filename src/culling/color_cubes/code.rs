@@ -27,7 +27,7 @@ pub(super) const CODE: &[CodeLine] = &[
     CodeLine::new("Render:11", "    draw the faces of C's color cube that face the eye"),
     CodeLine::departing(
         "Render:12",
-        "  else if C is a leaf, or P' is empty and hardly a cell below C can be so small",
+        "  else if C is a leaf, or P' is empty and to look below C costs more than to draw it",
         "else if C is a leaf",
     ),
     CodeLine::new("Render:13", "    DrawGeometry(C)"),
@@ -125,10 +125,10 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "3",
-        what: "where no cell below one in full view can be small enough, or less than 15 % of the whole \
-               scene lie in such cells alone, its geometry is drawn at once",
-        why: "a view that needs geometry costs no more than geometry, where the paper's took up to 2.5 times \
-              as long (Table 2)",
+        what: "a cell in full view is drawn as geometry at once where visits, cubes, and the primitives that \
+               are drawn all the same would cost more",
+        why: "a view that needs geometry costs hardly more than geometry, where the paper's took up to 2.5 \
+              times as long (Table 2)",
         when: When::Always,
     },
     Departure {
