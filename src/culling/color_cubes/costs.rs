@@ -12,7 +12,7 @@ use crate::scene::Scene;
 
 /// What a visit, a cube and a reference that is read cost, in small primitives drawn.
 const VISIT: f32 = 1.0;
-const CUBE: f32 = 2.0;
+const CUBE: f32 = 4.0;
 const REFERENCE: f32 = 0.1;
 
 /// Levels at most.
