@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{Vec3, vec3};
+use glam::vec3;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 

@@ -6,7 +6,7 @@ use glam::{Vec2, vec2};
 
 use crate::drawing::{Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::tools::{Maker, Plan, TWO_COLUMNS_PT, entry};
-use crate::figure::{Panel, Paper, Swatch, panels};
+use crate::figure::{Paper, Swatch, panels};
 use crate::geometry::{Aabb, Eye, Flat, View};
 use crate::method::{DrawList, Film};
 use crate::papers::keys::COLOR_CUBES;
@@ -157,7 +157,6 @@ fn torn(plan: &mut Plan, shot: &Shot, pixels: &[Pixel]) {
 fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let shot = Shot::new(maker)?;
     let pixels = shot.pixels();
-    let panel = |plan: Plan, label: &str| -> Panel { plan.panel(label) };
     let mut from_left = shot.plan(false);
     faces(&mut from_left, shot.cubes(), 0, true);
     let mut from_below = shot.plan(false);
@@ -169,10 +168,10 @@ fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         TWO_COLUMNS_PT,
         2,
         &[
-            panel(shot.plan(true), "(a) the contour and the leaves that it crosses"),
-            panel(from_left, "(b) faces seen from the left, with their opacities"),
-            panel(from_below, "(c) faces seen from below"),
-            panel(aslant, "(d) seen from 45°: where the background shows through"),
+            shot.plan(true).panel("(a) the contour and the leaves that it crosses"),
+            from_left.panel("(b) faces seen from the left, with their opacities"),
+            from_below.panel("(c) faces seen from below"),
+            aslant.panel("(d) seen from 45°: where the background shows through"),
         ],
     );
     let covered: Vec<&Pixel> = pixels.iter().filter(|p| p.is_covered).collect();
