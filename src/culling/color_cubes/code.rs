@@ -158,7 +158,7 @@ pub(super) const DEPARTURES: &[Departure] = &[
     },
     Departure {
         section: "4",
-        what: "with faces=analytic the color of a face follows from the areas that show, and not from samples",
+        what: "with faces=analytic the color of a face follows from the areas that show, not from samples",
         why: "the paper names it as well; two halves of a face then are a half each, where of 4×4 samples \
               one has 6 and the other 10",
         when: When::With("faces", "analytic"),

@@ -362,8 +362,8 @@ impl Settled {
                  view."
             ),
             Self::Behind { prim, node } => format!(
-                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the view \
-                 or behind what is drawn."
+                "The {name} {prim} lies in several nodes below node {node}; each of these is outside the \
+                 view or behind what is drawn."
             ),
             Self::BehindCubes { prim, node } => format!(
                 "The {name} {prim} lies in several nodes below node {node}; each of these is outside the \
@@ -392,8 +392,8 @@ impl Saturated {
         let node = self.node;
         match self.open {
             _ if self.is_behind => format!(
-                "Node {node} is left out: wherever it could show it is behind geometry, or behind color cubes \
-                 that together let less than 1/1024 of it through."
+                "Node {node} is left out: wherever it could show it is behind geometry, or behind color \
+                 cubes that together let less than 1/1024 of it through."
             ),
             Some(tile) => format!(
                 "Node {node} may be seen: in {} neither geometry nor the color cubes before it hide it \

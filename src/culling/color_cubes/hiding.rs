@@ -9,9 +9,9 @@
 //! 2. color cubes, as samples that are full ([`Saturation`]). A cell is left out if at each pixel that it can
 //!    cover it lies behind geometry, or behind cubes that together let less than 1/1024 of the light through.
 //!    The picture then differs by less than that in a linear channel. Proof, for one sample: what is left out
-//!    begins behind the depth at which the last of those cubes is entered. If all of them show in the picture,
-//!    what is behind them has less than 1/1024 of it, with the cell and without. If one of them does not, then
-//!    because of geometry before it, which hides what is behind all of them as well.
+//!    begins behind the depth at which the last of those cubes is entered. If all of them show in the
+//!    picture, what is behind them has less than 1/1024 of it, with the cell and without. If one of them does
+//!    not, then because of geometry before it, which hides what is behind all of them as well.
 //!
 //! Of a primitive that several cells share each cell answers for the part in it, and for how near the whole
 //! of it comes (see `raster::tiles`), so it is hidden if all of them are.

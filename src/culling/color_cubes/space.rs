@@ -72,8 +72,8 @@ fn samples_in(low: f64, high: f64, side: u32) -> Range<u32> {
 /// What a primitive covers of a face.
 #[derive(Clone, Debug)]
 pub struct Outline {
-    /// Corners of a convex polygon, counterclockwise, 0 to 1 along both axes of the face. In flatland the face
-    /// is drawn out to a square.
+    /// Corners of a convex polygon, counterclockwise, 0 to 1 along both axes of the face. In flatland the
+    /// face is drawn out to a square.
     pub corners: Vec<[f64; 2]>,
     /// How far above the lower face it is there, in sizes of the cell: `a·x + b·y + c`.
     pub height: [f64; 3],

@@ -319,7 +319,7 @@ fn faces_show_by_their_projected_areas() {
     assert!((aside[0] - 0.634).abs() < 0.01 && (aside[2] - 0.366).abs() < 0.01, "{aside:?}");
 }
 
-/// A venetian blind (Section 3.2): slats as deep as they are apart cover min(1, tan φ) of what is behind them,
+/// A venetian blind (Section 3.2): slats as deep as they are apart cover min(1, tan φ) of what is behind,
 /// seen at φ from their plane. Of a cell about one of them, as wide, two faces are covered and two are clear:
 /// its cube covers sin φ / (sin φ + cos φ) of its own outline.
 #[test]

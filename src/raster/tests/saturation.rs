@@ -33,8 +33,8 @@ fn an_opaque_box_hides_what_begins_behind_its_face() {
     assert_eq!(full.open(tile(1, 3), all, 0.2), u32::MAX);
 }
 
-/// Each box keeps half of the light (128 of 255, so a little more): after nine more than 1/1024 comes through,
-/// and less after ten. They hide what begins behind the last one that took some, not the first.
+/// Each box keeps half of the light (128 of 255, so a little more): after nine more than 1/1024 comes
+/// through, and less after ten. They hide what begins behind the last one that took some, not the first.
 #[test]
 fn ten_halves_are_full() {
     let (position, target) = (vec2(0.0, -1.0), vec2(0.0, 0.0));
