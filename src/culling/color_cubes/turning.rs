@@ -242,13 +242,21 @@ fn chart<S: Projected>(
         let text = format!("{}° {}", 90 * quarter, FACE_NAMES[face]);
         to.text(Layer::Labels, Role::Ink, at, 7.5, Anchor::Middle, text);
     }
+    let truth = step.map(|_| contents.stopped(&at_hand, rays));
+    let text = numbers(&at_hand, faces, truth);
+    say(to, vec2(0.0, bottom + 24.0), text);
+    bottom + 28.0
+}
+
+/// The values from the Eye, in words.
+fn numbers(at_hand: &Turn, faces: &CubeFaces, truth: Option<f64>) -> String {
     let [(a, weight_a), (b, weight_b)] = at_hand.faces();
     let [alpha_a, alpha_b] = [a, b].map(|face| faces.get(face)[3]);
-    let truth = match step {
-        Some(_) => format!("truly {:.0} %", 100.0 * contents.stopped(&at_hand, rays)),
+    let truth = match truth {
+        Some(share) => format!("truly {:.0} %", 100.0 * share),
         None => "the truth is not looked for".into(),
     };
-    let text = format!(
+    format!(
         "From the Eye ({:.0}°): {truth}; its cube {:.0} % = {weight_a:.2} × {} {:.0} % + {weight_b:.2} × {} \
          {:.0} %; a wall of such cubes {:.0} %",
         at_hand.degrees,
@@ -258,9 +266,7 @@ fn chart<S: Projected>(
         FACE_NAMES[b],
         100.0 * alpha_b,
         100.0 * at_hand.wall(faces)
-    );
-    say(to, vec2(0.0, bottom + 24.0), text);
-    bottom + 28.0
+    )
 }
 
 /// What the lines mean.

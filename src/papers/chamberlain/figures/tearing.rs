@@ -154,6 +154,25 @@ fn torn(plan: &mut Plan, shot: &Shot, pixels: &[Pixel]) {
     }
 }
 
+/// What is seen, in numbers.
+fn caption(pixels: &[Pixel]) -> String {
+    let covered: Vec<&Pixel> = pixels.iter().filter(|p| p.is_covered).collect();
+    let through = covered.iter().filter(|p| p.left > TORN).count();
+    let mean = covered.iter().map(|p| p.left).sum::<f32>() / covered.len().max(1) as f32;
+    let most = covered.iter().map(|p| p.left).fold(0.0, f32::max);
+    format!(
+        "Flatland. The contour hides all that is behind it, from wherever it is seen. Each leaf's cube knows \
+         how much of it is covered from the left and from below (b, c): half of a face or more (solid), or \
+         less (dashed). From 45° a ray may enter and leave a row of cubes through faces that are nearly \
+         transparent (d): in an image of {PIXELS} pixels the contour covers {}; on {through} of these more \
+         than a tenth of the background shows, {:.0} % at most, {:.0} % on the mean of all. Bands: \
+         the rays of those pixels, with the mean of each band.",
+        covered.len(),
+        most * 100.0,
+        mean * 100.0
+    )
+}
+
 fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let shot = Shot::new(maker)?;
     let pixels = shot.pixels();
@@ -174,21 +193,6 @@ fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
             aslant.panel("(d) seen from 45°: where the background shows through"),
         ],
     );
-    let covered: Vec<&Pixel> = pixels.iter().filter(|p| p.is_covered).collect();
-    let through = covered.iter().filter(|p| p.left > TORN).count();
-    let mean = covered.iter().map(|p| p.left).sum::<f32>() / covered.len().max(1) as f32;
-    let most = covered.iter().map(|p| p.left).fold(0.0, f32::max);
-    let caption = format!(
-        "Flatland. The contour hides all that is behind it, from wherever it is seen. Each leaf's cube knows \
-         how much of it is covered from the left and from below (b, c): half of a face or more (solid), or \
-         less (dashed). From 45° a ray may enter and leave a row of cubes through faces that are nearly \
-         transparent (d): in an image of {PIXELS} pixels the contour covers {}; on {through} of these more \
-         than a tenth of the background shows, {:.0} % at most, {:.0} % on the mean of all. Bands: \
-         the rays of those pixels, with the mean of each band.",
-        covered.len(),
-        most * 100.0,
-        mean * 100.0
-    );
     let legend = vec![
         entry(Role::Ink, Swatch::Line, "contour"),
         entry(Role::Visible, Swatch::Line, "a face, nearly opaque"),
@@ -196,7 +200,7 @@ fn tearing(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         entry(Role::Eye, Swatch::Area, "rays on which the background shows"),
     ];
     let title = "Chamberlain et al. 1996, Figure 4: why surfaces are torn";
-    Ok(maker.page(Paper::TwoColumns, title, legend, caption, &content))
+    Ok(maker.page(Paper::TwoColumns, title, legend, caption(&pixels), &content))
 }
 
 #[cfg(test)]
