@@ -74,7 +74,7 @@ const FIT_FROM: f64 = 256.0;
 /// Triangles that are drawn at most as geometry in one image, for each frame that is asked for.
 const MOST_TRIANGLES: u64 = 4_000_000;
 /// Up to so many are drawn more than once.
-const QUICK_TRIANGLES: u64 = 20_000_000;
+const QUICK_TRIANGLES: u64 = 4_000_000;
 /// Images of the paper's size, with two samples a side of a pixel, and large ones with one.
 const SIZES: [(u32, &str); 2] = [(248, "2"), (1024, "1")];
 const THRESHOLD: &str = "pixel-threshold";
@@ -97,7 +97,7 @@ impl One {
         let [mut image, mut whole] = [Target::default(), Target::default()];
         let mut hierarchy = || forest.draw(&forest.cull(view), (&mut image, &mut canvas), view, &options);
         let mut geometry = || _ = forest.draw_geometry(&mut whole, view, &options);
-        let rounds = frames.clamp(1, 9);
+        let rounds = frames.clamp(1, 5);
         let (hierarchy_ms, geometry) =
             if forest.prims() <= QUICK_TRIANGLES.min(MOST_TRIANGLES * frames as u64) {
                 let both = paired(rounds, &mut hierarchy, &mut geometry);

@@ -25,7 +25,7 @@ pub const TABLE: Experiment = Experiment {
         "A level's cells are drawn from the depth at which they are as large as the threshold to twice that: \
          its shell. A shell is whole if it lies in the scene, as wide as the view is, and if no leaf is larger \
          than its cells; only whole ones are to hold alike many, so only those are compared with their mean. \
-         The threshold is 16 pixels, since with cells of one pixel a scene would need 10,000 times as many \
+         The threshold is 16 pixels, since with cells of one pixel a scene would need 4,096 times as many \
          triangles for as many whole shells.",
         "The paper argues that each shell holds a constant number of cells, so that the number of cells grows \
          as the number of levels, a logarithm.",
