@@ -28,6 +28,9 @@ pub(super) const FULL: f32 = 1.0 / 1024.0;
 /// What a sample holds where there is no box.
 const CLEAR: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
+/// Boxes of a space that is moved, with where the eye is in it.
+type Moved<'a, V> = (V, &'a [StandIn<V>]);
+
 /// What lies over an image, a sample a pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Canvas {
@@ -83,7 +86,7 @@ impl Canvas {
     /// of the view is in its space. So boxes that are far from everything but the eye are as exact as others.
     pub fn composite_copies<S: Space>(
         &mut self,
-        copies: &[(S::Vector, &[StandIn<S::Vector>])],
+        copies: &[Moved<'_, S::Vector>],
         image: &Target,
         view: &View<S>,
         options: &Options,

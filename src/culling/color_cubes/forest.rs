@@ -129,8 +129,8 @@ pub(crate) struct Forest<'a, S: Space> {
 /// What a frame of a forest draws.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Sighting<S: Space> {
-    /// The primitives and cubes of all copies, one copy after the other, the nearest first. A cube over several
-    /// copies has the node of the root.
+    /// The primitives and cubes of all copies, one copy after the other, the nearest first. A cube over
+    /// several copies has the node of the root.
     pub list: DrawList<S>,
     /// Which of them are whose.
     pub copies: Vec<Copied<S::Vector>>,
@@ -155,8 +155,8 @@ pub(crate) struct Counted {
     /// Cubes and primitives that were drawn.
     pub cubes: u64,
     pub prims: u64,
-    /// What all of that takes up in memory, if each copy had cells and primitives of its own (Section 3.1, the
-    /// working set).
+    /// What all of that takes up in memory, if each copy had cells and primitives of its own (Section 3.1,
+    /// the working set).
     pub bytes: u64,
 }
 
@@ -201,9 +201,9 @@ struct Descent<'a, S: Space> {
 }
 
 impl<S: Projected> Descent<'_, S> {
-    /// Calls `visit` with what may be in view of a node and below it, the nearest first; of what it says no to
-    /// nothing below is looked at. A copy is not tested: its own root is. `corner`: the lowest copy, counted
-    /// along the ground.
+    /// Calls `visit` with what may be in view of a node and below it, the nearest first; of what it says no
+    /// to nothing below is looked at. A copy is not tested: its own root is. `corner`: the lowest copy,
+    /// counted along the ground.
     fn go(
         &mut self,
         (height, corner): (u32, [u32; 2]),

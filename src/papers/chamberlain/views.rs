@@ -37,7 +37,7 @@ impl Place {
         let (position, target) = match self {
             // Halfway between two rows, and aside of the way between two columns.
             Self::Within => (at(0.0, 0.16 * pitch, pitch), at(2.0 * pitch, 0.2 * pitch, -7.0 * pitch)),
-            Self::Above => (at(0.0, 0.7 * side, 1.3 * side), at(0.0, 0.3 * pitch, 0.0)),
+            Self::Above => (at(0.45 * side, 0.7 * side, 1.2 * side), at(0.0, 0.5 * pitch, 0.0)),
         };
         let up = S::Vector::from_fn(|a| if a == 1 { 1.0 } else { 0.0 });
         let fov = 60f32.to_radians();

@@ -138,15 +138,15 @@ fn span(tree: &Mesh) -> (DVec3, DVec3) {
     tree.points.iter().fold(all, |(low, high), p| (low.min(*p), high.max(*p)))
 }
 
-/// How far apart trees stand: the side of the cube around one, a multiple of the grid, so that cells of copies
-/// lie side by side (the cubes of an octree over them are those of its own).
+/// How far apart trees stand: the side of the cube around one, a multiple of the grid, so that cells of
+/// copies lie side by side (the cubes of an octree over them are those of its own).
 fn pitch(tree: &Mesh) -> f64 {
     let (low, high) = span(tree);
     ((high - low).max_element() * PITCH_GRID).ceil() / PITCH_GRID
 }
 
-/// Moves the ends of a tree's longest side out, by less than a millimeter, until the cube around it is one that
-/// copies can stand in without a gap.
+/// Moves the ends of a tree's longest side out, by less than a millimeter, until the cube around it is one
+/// that copies can stand in without a gap.
 fn fill_cube(tree: &mut Mesh) {
     let ((low, high), pitch) = (span(tree), pitch(tree));
     let axis = (high - low).max_position();

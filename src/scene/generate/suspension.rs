@@ -1,8 +1,8 @@
 //! `generate:suspension`: small triangles anywhere in a cube, turned anyhow.
 //!
 //! For Chamberlain et al. (1996): "suspension-like" distributions of primitives that are uncorrelated and
-//! small (Section 5.1), for which as many cells of each level are drawn (Section 3.1). Points lie on a grid of
-//! 2⁻¹⁴ m. Cost: O(polygons).
+//! small (Section 5.1), for which as many cells of each level are drawn (Section 3.1). Points lie on a grid
+//! of 2⁻¹⁴ m. Cost: O(polygons).
 
 use glam::DVec3;
 use rand_pcg::Pcg32;

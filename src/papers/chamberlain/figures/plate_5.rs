@@ -29,6 +29,15 @@ fn halved(rgba: &[u8], width: u32) -> Pixels {
     Pixels { width: width / 2, height: width / 2, rgba: rgba.into() }
 }
 
+/// A panel of so many trees, of an image with two samples a side of a pixel and what is drawn in it.
+fn panel(rgba: &[u8], levels: u32, cubes: usize, triangles: usize) -> Panel {
+    let trees = grouped(4f64.powi(levels as i32), 0);
+    let [cubes, triangles] = [cubes, triangles].map(|count| grouped(count as f64, 0));
+    let noun = if levels == 0 { "tree" } else { "trees" };
+    let label = format!("{trees} {noun}: {cubes} cubes, {triangles} triangles");
+    Panel { label, picture: Picture::Pixels(halved(rgba, 2 * SIDE_PX)) }
+}
+
 pub fn forests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let AnyScene::Solid(tree) = load("generate:tree", &LoadOptions::default(), &Quiet)? else {
         unreachable!("a generated scene is in space")
@@ -39,15 +48,6 @@ pub fn forests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let stock = stock.expect("figures use settings that exist").expect("nobody cancels a figure");
     let paper = (maker.tint)(Role::Paper);
     let view = |levels: u32| Place::Above.view(&stock, 1 << levels, [2 * SIDE_PX; 2]);
-    let panel = |rgba: &[u8], levels: u32, cubes: usize, triangles: usize| {
-        let trees = grouped(4f64.powi(levels as i32), 0);
-        let [cubes, triangles] = [cubes, triangles].map(|count| grouped(count as f64, 0));
-        let label = format!(
-            "{trees} {}: {cubes} cubes, {triangles} triangles",
-            if levels == 0 { "tree" } else { "trees" }
-        );
-        Panel { label, picture: Picture::Pixels(halved(rgba, 2 * SIDE_PX)) }
-    };
     // One tree is what the method draws; a forest is what it draws of copies.
     let alone = maker.ready(&tree, COLOR_CUBES, &settings).cull(&view(0));
     let rgba = alone.paint(&tree, &view(0), &Options::default(), paper);
@@ -59,18 +59,22 @@ pub fn forests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
         all.push(panel(&rgba, levels, seen.list.stand_ins.len(), seen.list.prims.len()));
     }
     let content = panels(WIDTH_PT, 2, &all);
-    let most = stock.forest(LEVELS[3]).prims();
-    let caption = format!(
-        "A tree of {} triangles, and squares of 16, 64 and 4,096 of it, the largest of {} triangles, in images \
-         of 124 × 124 pixels with 2 × 2 samples each. No tree is copied: one is stored, with its hierarchy, and \
-         seen from shifted eyes; above it stands a hierarchy of squares of four, whose color cubes are composed \
-         of their parts'. Below each image is how much is drawn for it. As all of a square is in view, trees \
-         shrink as they become more, until cubes of several trees stand for them.",
-        grouped(tree.live().len() as f64, 0),
-        grouped(most as f64, 0),
-    );
+    let caption = caption(tree.live().len() as f64, stock.forest(LEVELS[3]).prims() as f64);
     let title = "Chamberlain et al. 1996, Plate 5: forests that grow fourfold";
     Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &content))
+}
+
+/// What is shown, of these triangles in a tree and in the largest forest.
+fn caption(tree: f64, forest: f64) -> String {
+    format!(
+        "A tree of {} triangles, and squares of 16, 64 and 4,096 of it, the largest of {} triangles, in \
+         images of 124 × 124 pixels with 2 × 2 samples each. No tree is copied: one is stored, with its \
+         hierarchy, and seen from shifted eyes; above it stands a hierarchy of squares of four, whose color \
+         cubes are composed of their parts'. Below each image is how much is drawn for it. As all of a \
+         square is in view, trees shrink as they become more, until cubes of several trees stand for them.",
+        grouped(tree, 0),
+        grouped(forest, 0),
+    )
 }
 
 #[cfg(test)]

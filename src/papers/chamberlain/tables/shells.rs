@@ -20,15 +20,15 @@ pub const TABLE: Experiment = Experiment {
     title: "Chamberlain et al. 1996, Section 3.1: cells drawn of each level",
     summary: "A suspension of small triangles seen from its sides: as many cells of each level are drawn",
     notes: &[
-        "Means over --frames views, 48 at most, each from a place near the middle of a side straight into the \
-         scene, in images of 64 × 64 pixels.",
+        "Means over --frames views, 48 at most, each from a place near the middle of a side straight into \
+         the scene, in images of 64 × 64 pixels.",
         "A level's cells are drawn from the depth at which they are as large as the threshold to twice that: \
-         its shell. A shell is whole if it lies in the scene, as wide as the view is, and if no leaf is larger \
-         than its cells; only whole ones are to hold alike many, so only those are compared with their mean. \
-         The threshold is 16 pixels, since with cells of one pixel a scene would need 10,000 times as many \
-         triangles for as many whole shells.",
-        "The paper argues that each shell holds a constant number of cells, so that the number of cells grows \
-         as the number of levels, a logarithm.",
+         its shell. A shell is whole if it lies in the scene, as wide as the view is, and if no leaf is \
+         larger than its cells; only whole ones are to hold alike many, so only those are compared with \
+         their mean. The threshold is 16 pixels, since with cells of one pixel a scene would need 4,096 \
+         times as many triangles for as many whole shells.",
+        "The paper argues that each shell holds a constant number of cells, so that the number of cells \
+         grows as the number of levels, a logarithm.",
     ],
     settings: &[("pixel-threshold", "16")],
     sweep: &SWEEP,
