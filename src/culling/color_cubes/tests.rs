@@ -10,7 +10,7 @@ use super::index::is_small;
 use super::walk::pixels_at_depth_1;
 use super::*;
 use crate::geometry::dice::Dice;
-use crate::geometry::{Aabb, Eye, Flat, NodeId, PrimId, Solid, Vector, View};
+use crate::geometry::{Aabb, Eye, Flat, Frustum, FrustumTest, NodeId, PrimId, Solid, Vector, View};
 use crate::index::{Hierarchy, Items};
 use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, Target, fixed_light, paint, render};
@@ -139,6 +139,9 @@ fn surfaces_are_more_wrong_than_clouds() {
     // A ray at 45° through a sample of a face meets the middle line of the cell where it comes in within
     // half a side of it: half of both faces, so as much as the cube covers; but not where the cube has it.
     assert!(wall < 0.02, "as much is covered as is: {wall}");
+    // What a ray meets after it has left the cell by another side is not in it.
+    let long = error(vec![vec2(0.5, -5.0), vec2(0.5, 6.0)]);
+    assert!(long < 0.02, "{long}");
     // From corner to corner all is covered from one diagonal and nothing from the other; the cube covers all.
     let slant = error(vec![vec2(0.0, 0.0), vec2(1.0, 1.0)]);
     assert!(slant > 0.9, "{slant}");
@@ -359,8 +362,9 @@ fn a_blind_is_not_what_its_cube_shows() {
     }
 }
 
-/// With the eye on the upper side of all axes: cell 7 first, then 6, 5 and 3 and then 4, 2 and 1, either in
-/// any order, and 0 last.
+/// With the eye on the upper side of all axes each cell comes after those that fewer planes part from the
+/// eye, the same ones among them: 7 first, 0 last. The order 7; 6, 5, 3; 4, 2, 1; 0, whichever way inside a
+/// group, gives the same picture.
 #[test]
 fn octants_come_by_the_planes_before_them() {
     let mut dice = Dice::new(2);
@@ -380,12 +384,12 @@ fn octants_come_by_the_planes_before_them() {
     };
     let order: Vec<usize> = list.stand_ins.iter().map(octant).collect();
     assert_eq!((order.len(), order[0], order[7]), (8, 7, 0), "{order:?}");
-    let sorted = |part: &[usize]| {
-        let mut part = part.to_vec();
-        part.sort_unstable();
-        part
-    };
-    assert_eq!((sorted(&order[1..4]), sorted(&order[4..7])), (vec![3, 5, 6], vec![1, 2, 4]));
+    let is_before =
+        |a: usize, b: usize| order.iter().position(|o| *o == a) < order.iter().position(|o| *o == b);
+    for (near, far) in (0..8).flat_map(|a| (0..8).map(move |b| (a, b))) {
+        // All that the far one has on the eye's side the near one has as well.
+        assert!(near == far || near & far != far || is_before(near, far), "{near} {far}: {order:?}");
+    }
     let picture = |cubes: &[crate::raster::StandIn<glam::Vec3>]| {
         let mut canvas = Canvas::default();
         canvas.clear(&view);
@@ -393,8 +397,10 @@ fn octants_come_by_the_planes_before_them() {
         canvas
     };
     let mut other = list.stand_ins.clone();
-    (other[1..4].reverse(), other[4..7].rotate_left(1));
-    assert_eq!(picture(&other), picture(&list.stand_ins));
+    for groups in [[7, 6, 5, 3, 4, 2, 1, 0], [7, 3, 6, 5, 1, 4, 2, 0]] {
+        other.sort_by_key(|cube| groups.iter().position(|o| *o == octant(cube)));
+        assert_eq!(picture(&other), picture(&list.stand_ins));
+    }
     other.swap(0, 7);
     assert_ne!(picture(&other), picture(&list.stand_ins), "the order does matter");
 }
@@ -448,6 +454,14 @@ fn what_cells_share_is_drawn_once() {
         let mut plain = DrawList::default();
         ColorCubes::cull(&frame, &mut (), &mut Drawn::default(), &mut plain, &mut Unobserved);
         assert_eq!(plain, list);
+        // Each is decided about once, and drawn once.
+        let mut decided = std::collections::BTreeSet::new();
+        let prims = film.events.iter().filter_map(|e| match *e {
+            Event::DecidedPrim(prim, _) => Some(prim),
+            _ => None,
+        });
+        prims.for_each(|prim| assert!(decided.insert(prim), "{prim:?} twice"));
+        assert!(list.prims.windows(2).all(|pair| pair[0] < pair[1]));
         let verdict = |prim: PrimId| {
             film.events.iter().find_map(|e| match *e {
                 Event::DecidedPrim(p, v) if p == prim => Some(v),
@@ -470,6 +484,137 @@ fn what_cells_share_is_drawn_once() {
         }
     }
     assert!(drawn > 5 && in_cubes > 5, "{drawn} drawn, {in_cubes} in cubes alone");
+}
+
+/// The cells in view that are small enough on the screen and in none that is, found by looking at each.
+fn small_cells<S: Projected>(index: &CubeTree<S>, view: &View<S>, threshold: f32) -> Vec<NodeId> {
+    let (tree, mut open, mut small) = (index.tree(), vec![NodeId(0)], Vec::new());
+    while let Some(node) = open.pop() {
+        let cell = tree.cell(node);
+        if matches!(view.frustum().test(&cell, Frustum::<S::Vector>::ALL), FrustumTest::Outside(_)) {
+            continue;
+        }
+        let depth = view.eye.forward().dot(cell.center() - view.eye.position);
+        if depth > view.eye.near && cell.size().get(0) * pixels_at_depth_1(view) / depth <= threshold {
+            small.push(node);
+        } else {
+            open.extend(Hierarchy::<S>::children(tree, node).map(NodeId));
+        }
+    }
+    small.sort_unstable();
+    small
+}
+
+/// Drawn as cubes are the cells in view that are small enough and lie in none that is, whatever is found out
+/// about those below a cell at once; and no primitive of a cell that is out of view is drawn.
+fn small_cells_in_view_are_cubes<S: Projected>() {
+    let (mut cubes, mut away) = (0, 0);
+    for seed in 0..3 {
+        let scene = samples::soup::<S>(seed, 4000);
+        let threshold = 60.0;
+        let params = Params { pixel_threshold: threshold, ..Params::default() };
+        let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
+        let mut run = ready(&scene, &[("pixel-threshold", "60")]);
+        for view in random_views(&scene, 6, seed) {
+            let list = run.cull(&view);
+            let mut drawn: Vec<_> = list.stand_ins.iter().map(|cube| cube.node).collect();
+            drawn.sort_unstable();
+            if list.prims.len() < scene.live().len() {
+                assert_eq!(drawn, small_cells(&index, &view, threshold), "seed {seed}");
+            }
+            cubes += drawn.len();
+            away += scene.live().len() - list.prims.len();
+        }
+    }
+    assert!(cubes > 200 && away > 4000, "{cubes} {away}");
+}
+
+#[test]
+fn small_cells_in_view_are_cubes_in_both_spaces() {
+    small_cells_in_view_are_cubes::<Flat>();
+    small_cells_in_view_are_cubes::<Solid>();
+}
+
+/// What part of the primitives lies in no leaf above a level, by looking at each leaf.
+#[test]
+fn the_share_below_a_level_is_counted() {
+    let scene = samples::soup::<Solid>(3, 3000);
+    let index =
+        CubeTree::build(&scene, &Params::default(), None, &Quiet).expect("no bytes").expect("not cancelled");
+    let tree = index.tree();
+    let mut seen = std::collections::BTreeSet::new();
+    for level in 0..8 {
+        let share = scene.live().iter().filter(|prim| {
+            let is_above =
+                |at: &usize| tree.nodes()[*at].is_leaf() && usize::from(tree.nodes()[*at].level) < level;
+            let holds = |at: usize| tree.references(NodeId(at as u32)).contains(prim);
+            !(0..tree.nodes().len()).filter(is_above).any(holds)
+        });
+        let share = share.count() as f32 / 3000.0;
+        assert!((index.share_below(level) - share).abs() < 1e-6, "level {level}: {share}");
+        seen.insert((share * 3000.0) as u32);
+    }
+    assert!(seen.len() > 2, "{seen:?}");
+}
+
+/// A primitive that ends on a dividing plane is on the side on which the rest of it is.
+#[test]
+fn what_ends_on_a_plane_is_on_one_side_of_it() {
+    let points = [[-1.0, -1.0], [0.0, -0.5], [1.0, 1.0], [0.2, 0.3], [0.5, -0.5], [0.6, -0.4]];
+    let prims = vec![[0, 1], [2, 3], [4, 5]];
+    let parts = Parts::simple("ends", points.map(|[x, y]| vec2(x, y)).to_vec(), prims);
+    let scene = Scene::<Flat>::new(parts).expect("segments");
+    let tree = CellTree::build(&scene, 2, &|_, _| false, &|| false).expect("not cancelled");
+    assert_eq!(tree.root().center(), vec2(0.0, 0.0));
+    let held = |octant: usize| tree.nodes()[0].child(octant).map(|leaf| tree.references(leaf).to_vec());
+    let wants = [Some(vec![PrimId(0)]), Some(vec![PrimId(2)]), None, Some(vec![PrimId(1)])];
+    assert_eq!([0, 1, 2, 3].map(held), wants);
+    // A slanted one passes by a corner of its box: at x = 0 it is at y = 0.8 already.
+    let points = [[-1.0, -0.2], [0.2, 1.0], [-1.0, -1.0], [-0.9, -0.9], [1.0, 0.9], [0.9, 1.0]];
+    let parts =
+        Parts::simple("slanted", points.map(|[x, y]| vec2(x, y)).to_vec(), vec![[0, 1], [2, 3], [4, 5]]);
+    let scene = Scene::<Flat>::new(parts).expect("segments");
+    let tree = CellTree::build(&scene, 2, &|_, _| false, &|| false).expect("not cancelled");
+    assert_eq!(tree.root().center(), vec2(0.0, 0.0));
+    let holds = |octant: usize| {
+        tree.nodes()[0].child(octant).is_some_and(|leaf| tree.references(leaf).contains(&PrimId(0)))
+    };
+    assert_eq!([0, 1, 2, 3].map(holds), [true, false, true, true]);
+    // Of a sample on an end that two segments share the one above it is seen.
+    let cell = Aabb { min: vec2(0.0, 0.0), max: vec2(1.0, 1.0) };
+    let alphas = [[0.0, 0.5], [0.5, 1.0]].map(|[from, to]| {
+        let points = vec![vec2(from, 0.5), vec2(to, 0.5)];
+        let scene = Scene::<Flat>::new(Parts::simple("half", points, vec![[0, 1]])).expect("a segment");
+        baked(&scene, &cell, 1)[2][3]
+    });
+    assert_eq!(alphas, [0.0, 1.0]);
+}
+
+/// Light comes through each layer once: of what several leaves below a cell share as well.
+#[test]
+fn light_comes_through_each_layer_once() {
+    use crate::raster::VEIL;
+    let panes = |heights: &[f32]| {
+        let points: Vec<_> = heights.iter().flat_map(|y| [vec2(0.0, *y), vec2(1.0, *y)]).collect();
+        let prims = (0..heights.len() as u32).map(|k| [2 * k, 2 * k + 1]).collect();
+        let mut parts = Parts::<Flat>::simple("panes", points, prims);
+        parts.materials[0].see_through = true;
+        Scene::new(parts).expect("segments")
+    };
+    let cell = Aabb { min: vec2(0.0, 0.0), max: vec2(1.0, 1.0) };
+    for count in 1..4 {
+        let scene = panes(&[0.3, 0.5, 0.9][..count]);
+        let want = 1.0 - (1.0 - VEIL).powi(count as i32);
+        let got = baked(&scene, &cell, 4)[2][3];
+        assert!((got - want).abs() < 1e-6, "{count} panes: {got} {want}");
+    }
+    let scene = panes(&[0.3]);
+    let tree = CellTree::build(&scene, 2, &|_, _| false, &|| false).expect("not cancelled");
+    assert!(tree.nodes().len() > 2, "two leaves share it");
+    let surfaces = Surfaces::default();
+    let baking = Baking { scene: &scene, surfaces, side: 16, is_analytic: false, composes: false };
+    let root = baking.bake(&tree, false, &Quiet).expect("not cancelled").faces[0];
+    assert!(root.get(2)[3] > 0.5 * VEIL && root.get(2)[3] < VEIL + 0.01, "{root:?}");
 }
 
 /// With a bound on the error cells are drawn as cubes that keep it, and no others.
