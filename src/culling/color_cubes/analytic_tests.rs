@@ -100,14 +100,14 @@ fn the_nearest_shows_of_what_overlaps() {
     let want = |red: f32, green: f32| sum(share(&scene, 0, red), share(&scene, 1, green));
     // All ends lie between the 64 samples.
     for is_analytic in [true, false] {
-        let faces = baking(&scene, is_analytic, 64).projected(&unit(), scene.live());
+        let faces = baking(&scene, is_analytic, 64).projected(&unit(), scene.live(), &mut Room::default());
         assert!(is_near(faces[2], want(0.25, 0.5)) && is_near(faces[3], want(0.5, 0.25)), "{faces:?}");
     }
     let same = [prims[0].clone(), vec![vec2(0.25, 0.5), vec2(0.75, 0.5)]];
     let scene = scene_of::<Flat>(&same, &[RED, GREEN]);
     let want = sum(share(&scene, 0, 0.5), share(&scene, 1, 0.25));
     for is_analytic in [true, false] {
-        let faces = baking(&scene, is_analytic, 64).projected(&unit(), scene.live());
+        let faces = baking(&scene, is_analytic, 64).projected(&unit(), scene.live(), &mut Room::default());
         assert!(is_near(faces[2], want) && is_near(faces[3], want), "{faces:?}");
     }
 }
