@@ -278,3 +278,19 @@ pub fn shade_depth(depths: &[f32], all: &[f32], empty: f32, scale: DepthScale) -
     };
     depths.iter().map(|&d| gray(d)).flat_map(|g| [g, g, g, 255]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::averaged;
+
+    /// Black and white halves are half the light, 188 of 255 encoded; three of four quarters are 225.
+    #[test]
+    fn pixels_are_averaged_in_linear_light() {
+        let row = |bytes: [u8; 6]| bytes.map(|b| [b, b, b, 255]).concat();
+        let image = [row([0, 255, 0, 255, 7, 7]), row([255, 0, 255, 255, 7, 7])].concat();
+        let small: Vec<_> = averaged(&image, 6, [2, 2]).chunks(4).map(|p| (p[0], p[2], p[3])).collect();
+        assert_eq!(small, [(188, 188, 255), (225, 225, 255), (7, 7, 255)]);
+        // Flatland's rows are one.
+        assert_eq!(averaged(&image[..24], 6, [3, 1]).iter().step_by(4).collect::<Vec<_>>(), [&156, &156]);
+    }
+}

@@ -9,14 +9,14 @@ use crate::method::{Recorder, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, fixed_light, render};
 use crate::scene::{Parts, Quiet, framing_view, random_views};
 
-/// Many small primitives, and some large ones that hide what is behind them.
-fn cluttered<S: Space>(seed: u64, small: u32, large: u32) -> Arc<Scene<S>> {
+/// Many primitives of a size, and some large ones that hide what is behind them.
+fn cluttered<S: Space>(seed: u64, (small, length): (u32, f32), large: u32) -> Arc<Scene<S>> {
     let mut dice = Dice::new(seed);
     let n = S::CORNERS as u32;
     let mut points: Vec<S::Vector> = Vec::new();
     for k in 0..small + large {
         let center: S::Vector = dice.vector(10.0);
-        let size = if k < large { 9.0 } else { 0.6 };
+        let size = if k < large { 9.0 } else { length };
         points.extend((0..n).map(|_| center + dice.vector(size)));
     }
     let prims = (0..small + large).map(|i| S::corners_from(std::array::from_fn(|k| i * n + k as u32)));
@@ -62,7 +62,7 @@ fn views<S: Space>(scene: &Scene<S>, seed: u64, px: u32) -> Vec<View<S>> {
 fn hiding_by_depth_changes_no_byte<S: Projected>(px: u32) {
     let (mut hidden, mut fewer) = (0, 0);
     for seed in 0..6 {
-        let scene = cluttered::<S>(seed, 2000, 12);
+        let scene = cluttered::<S>(seed, (2000, 0.6), 12);
         for view in views(&scene, seed, px) {
             for threshold in [0.0, 1.0, 6.0, 40.0] {
                 let (plain, none) = frame(&scene, &view, &params(threshold, Occlusion::None));
@@ -109,7 +109,7 @@ fn linear<S: Projected>(list: &DrawList<S>, scene: &Scene<S>, view: &View<S>) ->
     canvas.samples().zip(&image.item).map(mixed).collect()
 }
 
-fn hiding_behind_cubes_changes_next_to_nothing<S: Projected>(px: u32, small: u32) {
+fn hiding_behind_cubes_changes_next_to_nothing<S: Projected>(px: u32, small: (u32, f32)) {
     let (mut presumed, mut worst) = (0, 0.0_f32);
     for seed in 0..2 {
         let scene = cluttered::<S>(seed, small, 6);
@@ -133,11 +133,11 @@ fn hiding_behind_cubes_changes_next_to_nothing<S: Projected>(px: u32, small: u32
 /// Behind cubes that are full less than a quarter of a step of 256 shows.
 #[test]
 fn hiding_behind_cubes_changes_next_to_nothing_in_flatland() {
-    hiding_behind_cubes_changes_next_to_nothing::<Flat>(512, 6000);
+    hiding_behind_cubes_changes_next_to_nothing::<Flat>(512, (6000, 0.6));
 }
 #[test]
 fn hiding_behind_cubes_changes_next_to_nothing_in_space() {
-    hiding_behind_cubes_changes_next_to_nothing::<Solid>(128, 10_000);
+    hiding_behind_cubes_changes_next_to_nothing::<Solid>(128, (10_000, 1.5));
 }
 
 /// A wall that fills the view hides all cells behind it but those that are too small to be asked for; with

@@ -529,7 +529,7 @@ fn small_cells_in_view_are_cubes<S: Projected>() {
             away += scene.live().len() - list.prims.len();
         }
     }
-    assert!(cubes > 200 && away > 4000, "{cubes} {away}");
+    assert!(cubes > 50 && away > 4000, "{cubes} {away}");
 }
 
 #[test]
@@ -589,7 +589,11 @@ fn light_comes_through_each_layer_once() {
         let got = baked(&scene, &cell, 4)[2][3];
         assert!((got - want).abs() < 1e-6, "{count} panes: {got} {want}");
     }
-    let scene = panes(&[0.3]);
+    // A pane in both halves of the root; what stands upright in the left one is the reason to divide it.
+    let points = [[0.0, 0.3], [1.0, 0.3], [0.1, 0.3], [0.1, 0.4]].map(|[x, y]| vec2(x, y)).to_vec();
+    let mut parts = Parts::<Flat>::simple("pane", points, vec![[0, 1], [2, 3]]);
+    parts.materials[0].see_through = true;
+    let scene = Scene::new(parts).expect("segments");
     let tree = CellTree::build(&scene, Items::default(), 2, &|_, _| false, &|| false).expect("not cancelled");
     assert!(tree.nodes().len() > 2, "two leaves share it");
     let surfaces = Surfaces::default();

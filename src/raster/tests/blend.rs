@@ -59,7 +59,7 @@ fn cells_along_a_ray_are_composited_front_to_back() {
 #[test]
 fn a_wall_of_cells_has_no_crack_and_no_seam() {
     let (count, mut dice) = (64, Dice::new(7));
-    let view = straight_view(64, 0.1, 100.0);
+    let view = straight_view(64, 0.001, 100.0);
     // At distance 4 an image 64 pixels wide is 8 units wide.
     let side = 0.7 * 8.0 / 64.0;
     let half = side * count as f32 / 2.0;

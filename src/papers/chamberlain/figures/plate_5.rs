@@ -9,7 +9,7 @@ use crate::geometry::Solid;
 use crate::method::Settings;
 use crate::papers::chamberlain::views::Place;
 use crate::papers::keys::COLOR_CUBES;
-use crate::raster::{Options, linear, srgb_bytes};
+use crate::raster::{Options, averaged};
 use crate::scene::{AnyScene, LoadOptions, Quiet, SceneError, load};
 
 /// Pixels of an image, as the paper's.
@@ -17,25 +17,14 @@ const SIDE_PX: u32 = 124;
 /// Four to the power of these are the trees of the plate.
 const LEVELS: [u32; 4] = [0, 2, 3, 6];
 
-/// An image of half the width and height: each pixel the mean of four, in linear light.
-fn halved(rgba: &[u8], width: u32) -> Pixels {
-    let (side, wide) = (width as usize / 2, width as usize);
-    let mean = |at: usize| {
-        let (x, y) = (at % side, at / side);
-        let four = [0, 1, wide, wide + 1].map(|k| 4 * (2 * y * wide + 2 * x + k));
-        std::array::from_fn(|c| four.iter().map(|p| linear(rgba[p + c])).sum::<f32>() / 4.0)
-    };
-    let rgba: Vec<u8> = (0..side * side).flat_map(|at| srgb_bytes(mean(at))).collect();
-    Pixels { width: width / 2, height: width / 2, rgba: rgba.into() }
-}
-
 /// A panel of so many trees, of an image with two samples a side of a pixel and what is drawn in it.
 fn panel(rgba: &[u8], levels: u32, cubes: usize, triangles: usize) -> Panel {
     let trees = grouped(4f64.powi(levels as i32), 0);
     let [cubes, triangles] = [cubes, triangles].map(|count| grouped(count as f64, 0));
     let noun = if levels == 0 { "tree" } else { "trees" };
     let label = format!("{trees} {noun}: {cubes} cubes, {triangles} triangles");
-    Panel { label, picture: Picture::Pixels(halved(rgba, 2 * SIDE_PX)) }
+    let rgba = averaged(rgba, 2 * SIDE_PX as usize, [2, 2]).into();
+    Panel { label, picture: Picture::Pixels(Pixels { width: SIDE_PX, height: SIDE_PX, rgba }) }
 }
 
 pub fn forests(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
@@ -75,19 +64,4 @@ fn caption(tree: f64, forest: f64) -> String {
         grouped(tree, 0),
         grouped(forest, 0),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Black and white halves are half the light, 188 of 255 encoded.
-    #[test]
-    fn pixels_are_averaged_in_linear_light() {
-        let row = |a: u8, b: u8| [[a; 3], [b; 3], [a; 3], [b; 3]].map(|[r, g, b]| [r, g, b, 255]).concat();
-        let image = [row(0, 255), row(255, 0), row(255, 255), row(0, 0)].concat();
-        let small = halved(&image, 4);
-        assert_eq!((small.width, small.height), (2, 2));
-        assert_eq!(small.rgba.chunks(4).map(|p| (p[0], p[3])).collect::<Vec<_>>(), [(188, 255); 4]);
-    }
 }

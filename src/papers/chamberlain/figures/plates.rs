@@ -14,9 +14,7 @@ use crate::geometry::{MaterialId, Solid, View};
 use crate::method::{DrawList, Run};
 use crate::papers::keys::COLOR_CUBES;
 use crate::papers::paper::Figure;
-use crate::raster::{
-    Canvas, Light, Options, SEEN, Target, flip_map, linear, render, shade_differences, srgb_bytes,
-};
+use crate::raster::{Canvas, Light, Options, SEEN, Target, averaged, flip_map, render, shade_differences};
 use crate::scene::{AnyScene, LoadOptions, Material, Parts, Quiet, Scene, SceneError, load};
 
 /// Plate 1.
@@ -71,13 +69,7 @@ fn geometry(scene: &Scene<Solid>) -> DrawList<Solid> {
 fn image(maker: &Maker<'_>, scene: &Scene<Solid>, view: &View<Solid>, list: &DrawList<Solid>) -> Pixels {
     let fine = View { width: 2 * view.width, height: 2 * view.height, ..*view };
     let samples = list.paint(scene, &fine, &Options::default(), (maker.tint)(Role::Paper));
-    let (width, height) = (view.width as usize, view.height as usize);
-    let at = |x: usize, y: usize, c: usize| linear(samples[4 * (y * 2 * width + x) + c]);
-    let mut rgba = Vec::with_capacity(4 * width * height);
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (2 * y, 2 * x))) {
-        let mean = |c| (at(x, y, c) + at(x + 1, y, c) + at(x, y + 1, c) + at(x + 1, y + 1, c)) * 0.25;
-        rgba.extend_from_slice(&srgb_bytes([mean(0), mean(1), mean(2)]));
-    }
+    let rgba = averaged(&samples, fine.width as usize, [2, 2]);
     Pixels { width: view.width, height: view.height, rgba: rgba.into() }
 }
 
