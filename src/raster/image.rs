@@ -93,6 +93,9 @@ pub(super) fn redraw(
     draw_onto(target, scene, view, prims, options, Onto::Nothing(1.0 / view.eye.far));
 }
 
+/// Points a primitive up to which all points of a scene are projected.
+const BULK: usize = 8;
+
 /// Draws onto what the target holds, or onto nothing.
 fn draw_onto(
     target: &mut Target,
@@ -105,9 +108,9 @@ fn draw_onto(
     let threads = options.thread_count();
     let mut scratch = std::mem::take(&mut target.scratch);
     let camera = Camera::new(view);
-    // 1. Projecting every point costs at most two projections a primitive here, and its own corners three.
-    // The code is the same either way, and so are the vertices.
-    let points = if prims.len() * 2 >= scene.points().len() { scene.points() } else { &[] };
+    // 1. Projecting every point, many at a time, costs no more than the corners of each primitive one by one,
+    // which take some twenty times as long. The code is the same either way, and so are the vertices.
+    let points = if prims.len() * BULK >= scene.points().len() { scene.points() } else { &[] };
     scratch.vertices.resize(points.len(), Vertex::default());
     // Four parts a thread, so that one slow part does not keep the others waiting; none so small that handing
     // it over costs more than projecting it.
