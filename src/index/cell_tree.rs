@@ -6,8 +6,8 @@
 //!
 //! 1. the root is a cube about the scene, and refers to every primitive, with a share of 1 each; or to every
 //!    object ([`Items`]), with a share of as many as it has primitives;
-//! 2. a primitive goes to each child that it meets, by exact contact, and an object to each that its box meets;
-//!    what lies on a dividing plane goes to the lower side. These share what the parent had of it equally;
+//! 2. a primitive goes to each child that it meets, by exact contact, and an object to each that boxes of its
+//!    primitives meet; what lies on a dividing plane goes to the lower side. These share what the parent had of it equally;
 //! 3. a cell is not divided if the caller says so, by the sum of its shares and the number of children that
 //!    would hold something; nor where division would not part anything;
 //! 4. children that would hold nothing are not made.
@@ -373,7 +373,19 @@ impl<S: Cellular> Making<'_, S> {
     /// Which children of a cell an item of it meets, a bit each.
     fn octants_of(&self, item: PrimId, cell: &Aabb<S::Vector>) -> u8 {
         if !self.items.are_single() {
-            return octants_touched(&self.boxes[self.items.number(item)], cell);
+            let met = octants_touched(&self.boxes[self.items.number(item)], cell);
+            // About the corners of its box there may be nothing of it.
+            let mut filled = 0;
+            for prim in self.items.prims(item) {
+                let bounds = self.scene.prim_bounds(PrimId(prim));
+                if bounds.touches(cell) {
+                    filled |= octants_touched(&bounds, cell);
+                }
+                if filled & met == met {
+                    break;
+                }
+            }
+            return filled & met;
         }
         let mut corners = [S::Vector::default(); 3];
         for (to, from) in corners.iter_mut().zip(self.scene.prim_points(item)) {

@@ -10,10 +10,12 @@ use crate::geometry::{NodeId, PrimId, Space, Vector};
 use crate::index::CellTree;
 use crate::scene::Scene;
 
-/// What a visit, a cube and a reference that is read cost, in small primitives drawn.
+/// What a visit, a cube and a reference that is read cost, and a primitive drawn by itself, in primitives drawn
+/// with all others: times of `generate:tree` and of `generate:molecule`.
 const VISIT: f32 = 1.0;
 const CUBE: f32 = 4.0;
 const REFERENCE: f32 = 0.1;
+const ALONE: f32 = 1.5;
 
 /// Levels at most.
 const LEVELS: usize = CellTree::<glam::Vec3>::MOST_LEVELS as usize + 1;
@@ -69,7 +71,7 @@ impl<V: Vector> Weighing<'_, V> {
             (0..LEVELS).for_each(|l| costs.drawn[l] += child.drawn[l]);
             (level + 1..LEVELS).for_each(|l| costs.extra[l] += child.extra[l]);
         }
-        let is_no_loss = |l: &usize| costs.extra[*l] + costs.drawn[*l] <= costs.drawn[LEVELS - 1];
+        let is_no_loss = |l: &usize| costs.extra[*l] + ALONE * costs.drawn[*l] <= costs.drawn[LEVELS - 1];
         let levels = level + 1..=usize::from(node.lowest);
         self.pays[at] = levels.rev().find(is_no_loss).unwrap_or(level) as u8;
         costs
@@ -125,7 +127,7 @@ mod tests {
             let lowest = tree.nodes()[0].lowest;
             let cost = |cubes: u8| {
                 let mut drawn = BTreeSet::new();
-                walked(&tree, 0, cubes, &mut drawn) + drawn.len() as f32
+                walked(&tree, 0, cubes, &mut drawn) + ALONE * drawn.len() as f32
             };
             let live = scene.live().len() as f32;
             // Sums of shares are rounded.
