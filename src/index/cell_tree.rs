@@ -7,7 +7,8 @@
 //! 1. the root is a cube about the scene, and refers to every primitive, with a share of 1 each; or to every
 //!    object ([`Items`]), with a share of as many as it has primitives;
 //! 2. a primitive goes to each child that it meets, by exact contact, and an object to each that boxes of its
-//!    primitives meet; what lies on a dividing plane goes to the lower side. These share what the parent had of it equally;
+//!    primitives meet; what lies on a dividing plane goes to the lower side. These share what the parent had
+//!    of it equally;
 //! 3. a cell is not divided if the caller says so, by the sum of its shares and the number of children that
 //!    would hold something; nor where division would not part anything;
 //! 4. children that would hold nothing are not made.
@@ -108,8 +109,8 @@ impl<V: Vector> CellTree<V> {
     /// Levels at most.
     pub const MOST_LEVELS: u32 = 20;
 
-    /// The tree of items of a scene with so many levels at most. `stop`: whether a cell is not divided, by its
-    /// sum of shares and the children that would hold something; it says so of fewer shares, and of more
+    /// The tree of items of a scene with so many levels at most. `stop`: whether a cell is not divided, by
+    /// its sum of shares and the children that would hold something; it says so of fewer shares, and of more
     /// children, too. `None` when cancelled.
     pub fn build<S: Cellular<Vector = V>>(
         scene: &Scene<S>,
@@ -205,7 +206,8 @@ impl<V: Vector> CellTree<V> {
         };
         [self.nodes.iter().flat_map(words).collect(), self.references.iter().map(|p| p.0).collect()]
     }
-    /// The tree of [`CellTree::tables`] over items of a scene; `None` if they are not those of a tree over it.
+    /// The tree of [`CellTree::tables`] over items of a scene; `None` if they are not those of a tree over
+    /// it.
     pub fn of_tables<S: Space<Vector = V>>(
         scene: &Scene<S>,
         items: Items,

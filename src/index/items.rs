@@ -5,8 +5,8 @@ use std::ops::Range;
 use crate::geometry::{Aabb, PrimId, Space};
 use crate::scene::Scene;
 
-/// What references are to: each primitive by itself, or runs of primitives of one object that follow each other,
-/// such as the triangles of a sphere. An item is named by its first primitive.
+/// What references are to: each primitive by itself, or runs of primitives of one object that follow each
+/// other, such as the triangles of a sphere. An item is named by its first primitive.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Items {
     /// First primitive of each run and the one past its last, ascending; none if each is by itself.

@@ -79,8 +79,8 @@ pub fn paint<S: Drawable>(
     pixels
 }
 
-/// The image whose pixels are the means, in linear light, of `across` × `down` pixels each of an image so wide;
-/// both RGBA, sRGB-encoded, row by row.
+/// The image whose pixels are the means, in linear light, of `across` × `down` pixels each of an image so
+/// wide; both RGBA, sRGB-encoded, row by row.
 pub fn averaged(rgba: &[u8], width: usize, [across, down]: [usize; 2]) -> Vec<u8> {
     let share = 1.0 / (across * down) as f32;
     let lights: Vec<f32> = (0..=255).map(|byte| linear(byte) * share).collect();

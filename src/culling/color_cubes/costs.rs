@@ -2,16 +2,17 @@
 //!
 //! Drawing a cell as geometry costs its primitives. Looking below it costs visits, a cube for each cell that
 //! is small enough, and all the same each primitive of which some leaf is too large. So for each cell the
-//! deepest level is found at which its cells must be small enough for the visit to be the cheaper way; a frame
-//! asks whether they are, which is one comparison. (The paper refines until cells are small, and so takes up to
+//! deepest level is found at which its cells must be small enough for the visit to be the cheaper way; a
+//! frame asks whether they are, which is one comparison. (The paper refines until cells are small, and so
+//! takes up to
 //! 2.5 times as long as for geometry alone: Table 2.) Cost: O(references · levels), once.
 
 use crate::geometry::{NodeId, PrimId, Space, Vector};
 use crate::index::CellTree;
 use crate::scene::Scene;
 
-/// What a visit, a cube and a reference that is read cost, and a primitive drawn by itself, in primitives drawn
-/// with all others: times of `generate:tree` and of `generate:molecule`.
+/// What a visit, a cube and a reference that is read cost, and a primitive drawn by itself, in primitives
+/// drawn with all others: times of `generate:tree` and of `generate:molecule`.
 const VISIT: f32 = 1.0;
 const CUBE: f32 = 4.0;
 const REFERENCE: f32 = 0.1;
@@ -29,8 +30,8 @@ struct Costs {
     drawn: [f32; LEVELS],
 }
 
-/// Of each node the deepest level from which on its cells must be drawn as cubes, for it to be no loss to look
-/// below it; its own level if it always is one.
+/// Of each node the deepest level from which on its cells must be drawn as cubes, for it to be no loss to
+/// look below it; its own level if it always is one.
 pub fn pays<S: Space>(tree: &CellTree<S::Vector>, scene: &Scene<S>) -> Vec<u8> {
     let pays = tree.nodes().iter().map(|node| node.level).collect();
     let mut weighing = Weighing { tree, leaves: leaves(tree, scene.prim_count()), pays };

@@ -174,8 +174,8 @@ fn face_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let primitives = Knob::new(
         "primitives",
         "",
-        "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such as a \
-         sphere of a molecule, which takes far fewer references",
+        "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such \
+         as a sphere of a molecule, which takes far fewer references",
         "Chamberlain et al. 1996, Sections 4 and 5",
     );
     knobs.words(primitives, &mut params.primitives);
@@ -264,8 +264,8 @@ impl<S: Projected> Method<S> for ColorCubes {
             "occlusion",
             "",
             "cells that are left out because they do not show, with order=exact and primitives=single: none; \
-             depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color cubes as well that \
-             let less than 1/1024 of the light through",
+             depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color \
+             cubes as well that let less than 1/1024 of the light through",
             "Chamberlain et al. 1996, Section 6",
         );
         knobs.words(occlusion, &mut params.occlusion);

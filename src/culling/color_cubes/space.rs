@@ -48,8 +48,8 @@ pub trait Projected: Cellular + Faces {
     const CUBE_COST: u32;
     /// Samples of a face that has so many along a side.
     fn sample_count(side: u32) -> usize;
-    /// What a primitive covers of a face of a cell, clipped to it, seen along an axis, with one sample a side;
-    /// `None` if that has no area.
+    /// What a primitive covers of a face of a cell, clipped to it, seen along an axis, with one sample a
+    /// side; `None` if that has no area.
     fn outline(corners: &Corners, axis: usize) -> Option<Outline>;
     /// Calls `visit` with each sample of a face of a cell that a primitive covers, seen along an axis, and
     /// how far it is above the lower face there: 0 to `side`.

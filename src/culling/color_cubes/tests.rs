@@ -505,8 +505,8 @@ fn small_cells<S: Projected>(index: &CubeTree<S>, view: &View<S>, threshold: f32
     small
 }
 
-/// Drawn as cubes are cells in view that are small enough and lie in none that is; of the others all primitives
-/// are drawn, since to look for them was a loss.
+/// Drawn as cubes are cells in view that are small enough and lie in none that is; of the others all
+/// primitives are drawn, since to look for them was a loss.
 fn small_cells_in_view_are_cubes<S: Projected>() {
     let (mut cubes, mut away) = (0, 0);
     for seed in 0..3 {

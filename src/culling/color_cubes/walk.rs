@@ -276,8 +276,8 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.leave(id, Verdict::Approximated);
     }
 
-    /// Whether it is a loss to look below a cell: the cells that would have to be drawn as cubes, for it to pay,
-    /// are larger than the threshold, wherever they are.
+    /// Whether it is a loss to look below a cell: the cells that would have to be drawn as cubes, for it to
+    /// pay, are larger than the threshold, wherever they are.
     fn needs_geometry(&self, id: NodeId, depth: f32) -> bool {
         let level = self.tree.nodes()[id.at()].level;
         let from = self.index.pays_from(id);

@@ -5,12 +5,11 @@ use std::sync::Arc;
 use super::samples::{Images, SAMPLES, sampled};
 use crate::drawing::Plot;
 use crate::measure::columns::{SCENE, SOURCE, column, measured, quoted};
-use crate::measure::experiment::{Rows, Sweep, World, method};
+use crate::measure::experiment::{Rows, Sweep, World};
 use crate::measure::harness::path::{about, whole_path};
-use crate::measure::harness::{checkpoint, part, ready, settings};
+use crate::measure::harness::{checkpoint, part, ready, restore_or_build, settings};
 use crate::measure::timing::{median, timed};
-use crate::measure::{Cell, ExperimentError, Setup, Table};
-use crate::method::RestoreError;
+use crate::measure::{Cell, Setup, Table};
 use crate::papers::keys::COLOR_CUBES;
 use crate::raster::Options;
 use crate::scene::{Progress, Scene};
@@ -64,15 +63,10 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             numbers = [f64::from(levels.unwrap_or(0)), nodes as f64, hierarchy.bytes() as f64];
             let saved = hierarchy.save().unwrap_or_default();
             drop(run);
+            let some = part(progress, at(0.7), at(0.9));
             let given = settings::<S>(COLOR_CUBES, setup, &on_top)?;
-            let entry = method::<S>(COLOR_CUBES)?;
-            let (run, load_ms) =
-                timed(|| entry.restore(scene, &given, &saved, &part(progress, at(0.7), at(0.9))));
-            let mut run = match run {
-                Ok(run) => run.ok_or(ExperimentError::Cancelled)?,
-                Err(RestoreError::Setting(error)) => return Err(error.into()),
-                Err(RestoreError::Saved(why)) => unreachable!("what was saved just now fits: {why}"),
-            };
+            let (run, load_ms) = timed(|| restore_or_build(scene, COLOR_CUBES, &given, Some(&saved), &some));
+            let mut run = run?;
             let mut images = Images::default();
             let view = sampled(&path.views[0], side, SAMPLES);
             let ((), draw_ms) = timed(|| _ = images.frame(&mut *run, scene, &view, &Options::default()));

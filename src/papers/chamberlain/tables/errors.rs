@@ -77,6 +77,18 @@ impl<S: World> Looking<'_, S> {
             reference: self.truth.reference(scene, &one, REFERENCE, Light::Fixed).rgba,
         }
     }
+    /// How far the pictures of each view are from the reference: cubes, geometry of one sample, and of more.
+    fn errors(&self, seen: &[Seen]) -> [Vec<f64>; 3] {
+        let of: [fn(&Seen) -> &[u8]; 3] = [|s| &s.cubes, |s| &s.geometry, |s| &s.sampled];
+        of.map(|of| seen.iter().map(|s| self.flip(&s.reference, of(s))).collect())
+    }
+    /// What changes from view to view beyond what changes in the reference, in the mean: of cubes, and of
+    /// geometry of one sample.
+    fn flicker(&self, seen: &[Seen]) -> [f64; 2] {
+        let change = |pair: &[Seen], of: fn(&Seen) -> &[u8]| self.flip(of(&pair[0]), of(&pair[1]));
+        let of: [fn(&Seen) -> &[u8]; 2] = [|s| &s.cubes, |s| &s.geometry];
+        of.map(|of| mean(seen.windows(2).map(|pair| change(pair, of) - change(pair, |s| &s.reference))))
+    }
     /// How far two images of the size are from each other.
     fn flip(&self, a: &[u8], b: &[u8]) -> f64 {
         flip(a, b, self.side as usize, a.len() / 4 / self.side as usize).mean
@@ -105,10 +117,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             seen.push(looking.look(view));
             done += 1;
         }
-        let errors = |of: fn(&Seen) -> &[u8]| -> Vec<f64> {
-            seen.iter().map(|s| looking.flip(&s.reference, of(s))).collect()
-        };
-        let errors = [errors(|s| &s.cubes), errors(|s| &s.geometry), errors(|s| &s.sampled)];
+        let errors = looking.errors(&seen);
         let row = |distance: Cell, views: usize, [cubes, geometry, sampled]: [f64; 3], flicker: [Cell; 3]| {
             let cells = [path.name.as_str().into(), distance, views.into()];
             let mut row = measured(scene.name(), cells, [cubes, geometry, sampled, cubes / geometry]);
@@ -122,12 +131,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
             }
             continue;
         }
-        // What changes from frame to frame, beyond what changes in the reference.
-        let changes = |of: fn(&Seen) -> &[u8]| {
-            let change = |pair: &[Seen], of: fn(&Seen) -> &[u8]| looking.flip(of(&pair[0]), of(&pair[1]));
-            mean(seen.windows(2).map(|pair| change(pair, of) - change(pair, |s| &s.reference)))
-        };
-        let [cubes, geometry] = [changes(|s| &s.cubes), changes(|s| &s.geometry)];
+        let [cubes, geometry] = looking.flicker(&seen);
         let flicker = [cubes, geometry, cubes / geometry].map(Cell::from);
         let errors = errors.map(|e| mean(e.into_iter()));
         rows.push(row(Cell::Missing, path.views.len(), errors, flicker));

@@ -87,8 +87,8 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     Ok((rows, about(scene, &path)))
 }
 
-/// Scene, image side, distance, seconds with geometry and with the hierarchy, and triangles drawn (Table 2). Of
-/// the island Section 5 prints ratios alone.
+/// Scene, image side, distance, seconds with geometry and with the hierarchy, and triangles drawn (Table 2).
+/// Of the island Section 5 prints ratios alone.
 type Printed = (&'static str, f64, f64, [f64; 3]);
 const TABLE_2: [Printed; 8] = [
     ("tree, 52,470", 124.0, 1.75, [0.212, 0.503, 42_568.0]),

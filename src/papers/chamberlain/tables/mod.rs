@@ -1,7 +1,7 @@
-//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, measured: what the hierarchy takes (Table 1), how much
-//! faster frames are (Table 2, Section 5), what images look like (Sections 5 and 5.1), how time grows with the
-//! number of trees (Section 5.2, Figure 5), and that each level of the hierarchy is drawn as often as any other
-//! (Section 3.1).
+//! Chamberlain, DeRose, Lischinski, Salesin and Snyder, measured: what the hierarchy takes (Table 1), how
+//! much faster frames are (Table 2, Section 5), what images look like (Sections 5 and 5.1), how time grows
+//! with the number of trees (Section 5.2, Figure 5), and that each level of the hierarchy is drawn as often
+//! as any other (Section 3.1).
 //!
 //! Cost: O(frames) images of the scene; of forests O(levels · (cells visited + triangles drawn)).
 
@@ -19,9 +19,9 @@ use crate::papers::keys::COLOR_CUBES;
 /// What the paper's models are likened to.
 const MODELS: &[&str] = &["generate:tree", "generate:molecule", "generate:terrain-island"];
 /// How images are drawn.
-const IMAGES: &str = "Images have 2 × 2 samples a pixel, as the paper's have; a threshold is of pixels. Times \
-                      are wall clock on one thread from the view to the finished samples, the two ways in \
-                      turn, medians; how much faster is the median of the ratios.";
+const IMAGES: &str = "Images have 2 × 2 samples a pixel, as the paper's have; a threshold is of pixels. \
+                      Times are wall clock on one thread from the view to the finished samples, the two \
+                      ways in turn, medians; how much faster is the median of the ratios.";
 const COUNTS: &str = "Counts are the same on every machine; times are not.";
 
 /// The tables.

@@ -1,4 +1,5 @@
-//! Section 5.1, Plate 4 and Figure 4: surfaces torn from between the axes, and the bound that keeps them whole.
+//! Section 5.1, Plate 4 and Figure 4: surfaces torn from between the axes, and the bound that keeps them
+//! whole.
 
 use std::sync::Arc;
 
