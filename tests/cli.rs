@@ -733,7 +733,7 @@ fn the_explorer_says_what_it_lacks_before_it_opens_a_window() {
 fn tables_of_the_paper_are_measured_and_written() {
     let here = folder("paper");
     let listed = done(&here, &["paper", "--list"]);
-    assert_eq!(listed.lines().count(), 28);
+    assert_eq!(listed.lines().count(), 32);
     let scene = [
         "--scene",
         "generate:building?polygons=3000",

@@ -96,6 +96,8 @@ pub(super) struct Walk<'a, S: Projected, O> {
     done: Marks,
     /// Items that are in some cube that was drawn; kept only where somebody listens.
     in_cubes: Marks,
+    /// Whether no cell below the one that is visited is to be drawn as a cube.
+    as_geometry: bool,
     /// What is drawn so far, where cells behind it are left out; and what is in cells that were, behind
     /// geometry, or cubes as well.
     hiding: Option<Hiding<'a, S>>,
@@ -138,6 +140,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             pixels_of_half: 0.5 / pixels,
             done: Marks::new(scene.prim_count()),
             in_cubes: Marks::new(if O::LISTENS { scene.prim_count() } else { 0 }),
+            as_geometry: false,
             hiding: None,
             behind: Default::default(),
             is_marked: false,
@@ -212,14 +215,28 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         {
             return self.leave_hidden(id, verdict);
         }
+        if self.as_geometry {
+            return self.draw_or_visit(id, &cell, cutting);
+        }
         self.line(line::SIZE);
         let threshold = self.params.pixel_threshold;
         self.watch.note(move || Evidence::Sized(Sized { node: id, depth, size, threshold }));
         if size <= threshold && self.is_good(id, size) {
             return self.draw_cube(id, cell);
         }
+        // The paper refines whatever it costs.
+        let is_exact = self.params.order == Order::Exact;
+        self.as_geometry = is_exact && cutting == 0 && self.needs_geometry(id, depth);
+        self.draw_or_visit(id, &cell, cutting);
+        self.as_geometry = false;
+    }
+
+    /// Draws a leaf, or what is to be drawn as geometry, unless cells of it can be hidden; visits the children
+    /// of any other cell.
+    fn draw_or_visit(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
         self.line(line::LEAF);
-        if node.is_leaf() || cutting == 0 && self.hiding.is_none() && self.needs_geometry(id, depth) {
+        let is_leaf = self.tree.nodes()[id.at()].is_leaf();
+        if is_leaf || self.as_geometry && self.hiding.is_none() {
             self.line(line::CALL_DRAW);
             self.line(line::DRAW);
             self.draw_geometry(id);
@@ -228,7 +245,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             self.watch.note(move || Evidence::Geometry { node: id, references: prims as u32 });
             return self.leave(id, Verdict::Visible);
         }
-        self.visit_children(id, &cell, cutting);
+        self.visit_children(id, cell, cutting);
         self.watch.event(Event::Left(id));
     }
 

@@ -168,7 +168,7 @@ fn molecule(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 fn island(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
     let scene = solid("generate:terrain-island?polygons=400000")?;
     // From over the shore.
-    let view = view(vec3(0.0, 70.0, 220.0), vec3(0.0, 5.0, 0.0), 50.0, [240, 180]);
+    let view = view(vec3(0.0, 70.0, 220.0), vec3(0.0, 5.0, 0.0), 50.0, [264, 198]);
     let mut run = maker.ready(&scene, COLOR_CUBES, &[]);
     let list = run.cull(&view);
     let parts = [
