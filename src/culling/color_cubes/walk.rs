@@ -224,15 +224,13 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         if size <= threshold && self.is_good(id, size) {
             return self.draw_cube(id, cell);
         }
-        // The paper refines whatever it costs.
-        let is_exact = self.params.order == Order::Exact;
-        self.as_geometry = is_exact && cutting == 0 && self.needs_geometry(id, depth);
+        self.as_geometry = cutting == 0 && self.needs_geometry(id, depth);
         self.draw_or_visit(id, &cell, cutting);
         self.as_geometry = false;
     }
 
-    /// Draws a leaf, or what is to be drawn as geometry, unless cells of it can be hidden; visits the children
-    /// of any other cell.
+    /// Draws a leaf, or what is to be drawn as geometry, unless cells of it can be hidden; visits the
+    /// children of any other cell.
     fn draw_or_visit(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
         self.line(line::LEAF);
         let is_leaf = self.tree.nodes()[id.at()].is_leaf();
