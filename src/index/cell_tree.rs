@@ -76,11 +76,6 @@ impl CellNode {
     pub fn children(&self) -> Range<u32> {
         self.first_child..self.first_child + self.octants.count_ones()
     }
-    /// How many references are at and below it: more than primitives where leaves share some.
-    #[inline]
-    pub fn reference_count(&self) -> usize {
-        self.count as usize
-    }
 }
 
 /// The tree.
@@ -489,7 +484,7 @@ impl<S: Space> Hierarchy<S> for CellTree<S::Vector> {
         &self.wholes().prims[first as usize..end as usize]
     }
     fn held(&self, node: NodeId) -> usize {
-        self.nodes[node.at()].reference_count()
+        self.items.count(self.references(node))
     }
     fn bytes(&self) -> usize {
         CellTree::bytes(self)

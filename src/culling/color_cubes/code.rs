@@ -129,7 +129,7 @@ pub(super) const DEPARTURES: &[Departure] = &[
                are drawn all the same would cost more",
         why: "a view that needs geometry costs hardly more than geometry, where the paper's took up to 2.5 \
               times as long (Table 2)",
-        when: When::Without("order", "paper"),
+        when: When::Always,
     },
     Departure {
         section: "3",

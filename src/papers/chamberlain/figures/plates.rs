@@ -265,7 +265,7 @@ fn bust(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
 /// Small triangles in a ball, and a board that reaches from its middle far out of it toward the eye: cells
 /// that hold nothing but board are large, and they are the nearest.
 fn cut_cloud() -> Result<Arc<Scene<Solid>>, SceneError> {
-    const SPECKS: u32 = 6_000;
+    const SPECKS: u32 = 40_000;
     let mut random = Pcg32::new(5, 1);
     // In a cube of side 2.
     let mut somewhere = || {
@@ -280,7 +280,7 @@ fn cut_cloud() -> Result<Arc<Scene<Solid>>, SceneError> {
         }
         let first = points.len() as u32;
         prims.push([first, first + 1, first + 2]);
-        points.extend([at, at + 0.05 * somewhere(), at + 0.05 * somewhere()]);
+        points.extend([at, at + 0.02 * somewhere(), at + 0.02 * somewhere()]);
     }
     let first = points.len() as u32;
     points.extend([[-0.7, -0.3], [0.7, -0.3], [0.7, 2.6], [-0.7, 2.6]].map(|[x, z]| vec3(x, 0.05 * z, z)));
@@ -377,12 +377,11 @@ mod tests {
         canvas.clear(&view);
         canvas.composite(&list.stand_ins, &render(&*scene, &view, &[]), &view, &Options::default());
         let both = exact.rgba.chunks_exact(4).zip(paper.rgba.chunks_exact(4));
-        let mut redder = 0;
+        let mut lost = 0;
         for ((exact, paper), [.., left]) in both.zip(canvas.samples()) {
             assert!(exact == paper || left < 1.0, "without a cube nothing differs");
-            redder += usize::from(u32::from(exact[0]) > u32::from(paper[0]) + 20);
+            lost += usize::from(exact != paper);
         }
-        // The board is red; paper is white, and the cloud green.
-        assert!(redder > 30, "{redder} pixels have lost the board");
+        assert!(lost > 30, "{lost} pixels have lost what is behind a cube");
     }
 }
