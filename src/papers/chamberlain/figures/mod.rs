@@ -72,8 +72,8 @@ pub fn traversal(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
          cubes are large enough to be looked at. Near the eye cells are larger and are divided down to \
          leaves, which are drawn as geometry; farther off cells are drawn as their color cubes: along the \
          edges that face the eye stand the colors of its faces, on paper, which shows through as far as they \
-         are not covered. What is outside the view is culled, a whole cell at a time. As in the paper's \
-         Figure 1 each level takes up a band about the eye.",
+         are not covered. What is outside the view is culled, a whole cell at a time. Where \
+         cubes would not pay for the visit, a cell is drawn as geometry however far off it is.",
         view.width
     );
     Ok(maker.page(
