@@ -221,10 +221,9 @@ impl Rays {
         max: &[f64; 3],
     ) -> Option<(f64, usize)> {
         let (mut enters, mut leaves, mut face) = (f64::NEG_INFINITY, f64::INFINITY, 0);
-        let mut along = [1.0; 3];
-        for a in 0..V::AXES {
-            along[a] = self.origin[a] + column * self.right[a] + row * self.down[a];
-        }
+        // Flatland's third is not asked.
+        let along: [f64; 3] =
+            std::array::from_fn(|a| self.origin[a] + column * self.right[a] + row * self.down[a]);
         // All at once, as one division of several numbers.
         let inverse = along.map(|along| 1.0 / along);
         for a in 0..V::AXES {
