@@ -9,7 +9,7 @@ use crate::index::{CellTree, Items};
 use crate::raster::CubeFaces;
 use crate::scene::Scene;
 
-const FORMAT: Format = Format { magic: b"cullscope-c1", method: "color-cubes", has_bytes: false };
+const FORMAT: Format = Format { magic: b"cullscope-c2", method: "color-cubes", has_bytes: false };
 
 /// What a tree was made for: levels at most, whether it refers to objects, samples of a face, whether inner
 /// faces are composed, whether errors are measured, how surfaces are taken, and whether faces are worked out.
