@@ -20,11 +20,14 @@ const LOOK_GESTURE: Gesture = Gesture::MAX;
 /// Height of the strip itself.
 const STRIP: f32 = 22.0;
 
+/// What the columns of an image were rendered for: the scene as it was posed, and the view.
+type Rendered = (PoseKey, View<Flat>);
+
 /// The columns of the image, and the scene and view that they were rendered for; and those of what is drawn
 /// of a method that stands something for segments.
 #[derive(Default)]
 pub struct Image {
-    rendered: Option<((PoseKey, View<Flat>), Vec<Column>)>,
+    rendered: Option<(Rendered, Vec<Column>)>,
     painted: Option<((u64, usize, Theme), Option<Painted>)>,
 }
 
