@@ -124,9 +124,10 @@ impl<S: Faces> Tiled<S> {
     }
     fn draw(&mut self, node: NodeId, one_sided: bool, tested: bool) {
         let [own, shared] = Self::groups(node);
-        for (group, skipped) in [(own, &[][..]), (shared, &self.drawn[..])] {
-            let how = How { one_sided, skipped, tested };
-            self.tiles.draw_group(&self.clusters, group, how, Isa::best(), &mut self.fates);
+        let groups = [(own, &[][..]), (shared, &self.drawn[..])];
+        let hows = groups.map(|(group, skipped)| (group, How { one_sided, skipped, tested }));
+        self.tiles.draw_groups(&self.clusters, &hows, Isa::best(), &mut self.fates);
+        for (group, skipped) in groups {
             // What covers nothing, or lets light through, hides nothing: whoever draws it asks for its box.
             let apart =
                 self.clusters.apart(group).iter().filter(|p| !skipped.get(p.at()).is_some_and(|d| *d));

@@ -148,7 +148,7 @@ fn by_groups<S: Drawable>(
     for (number, group) in groups.iter().enumerate() {
         // Some without the clusters that are hidden, which changes no pixel.
         let (how, first) = (How { one_sided: true, skipped: &[], tested: dice.below(2) == 0 }, fates.len());
-        tiles.draw_group(&clusters, number, how, Isa::best(), &mut fates);
+        tiles.draw_groups(&clusters, &[(number, how)], Isa::best(), &mut fates);
         for &(prim, fate) in &fates[first..] {
             // One that is seen edge-on faces neither way, and is told to face away.
             let is_told = fate == if how.tested { Fate::Hidden } else { Fate::Away };
@@ -328,14 +328,14 @@ fn what_is_drawn_already_is_left_out() {
         let clusters = Clusters::new(&scene, ONE_SIDED, [scene.live()]);
         let mut skipped = vec![true; scene.prim_count()];
         let (how, mut fates) = (How { one_sided: true, skipped: &skipped, tested: false }, Vec::new());
-        tiles.draw_group(&clusters, 0, how, Isa::best(), &mut fates);
+        tiles.draw_groups(&clusters, &[(0, how)], Isa::best(), &mut fates);
         assert!(fates.is_empty() && tiles == before, "round {round}");
         // One alone that is not: it may bring its other half along, of which nothing is said.
         let opaque = scene.live().iter().find(|&&p| !clusters.apart(0).contains(&p));
         let Some(&one) = opaque else { continue };
         skipped[one.at()] = false;
         let how = How { one_sided: true, skipped: &skipped, tested: false };
-        tiles.draw_group(&clusters, 0, how, Isa::best(), &mut fates);
+        tiles.draw_groups(&clusters, &[(0, how)], Isa::best(), &mut fates);
         assert_eq!(fates.iter().map(|f| f.0).collect::<Vec<_>>(), [one], "round {round}");
         assert_eq!(tiles.depths(Isa::best()), image(&scene, &view, ONE_SIDED).depth, "round {round}");
     }
@@ -357,7 +357,7 @@ fn what_is_as_deep_as_what_is_drawn_may_show() {
         let (mut tiles, mut fates) = (Tiles::default(), Vec::new());
         tiles.clear(&view, false);
         let how = How { one_sided: true, skipped: &[], tested: false };
-        (0..2).for_each(|group| tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates));
+        (0..2).for_each(|group| tiles.draw_groups(&clusters, &[(group, how)], Isa::best(), &mut fates));
         assert!(fates.iter().all(|f| f.1 == Fate::Shown), "{half}: {fates:?}");
         assert_eq!(visible(&render(&scene, &view, scene.live())), [PrimId(0), PrimId(1)], "{half}");
     }
@@ -368,6 +368,6 @@ fn what_is_as_deep_as_what_is_drawn_may_show() {
     let (mut tiles, mut fates) = (Tiles::default(), Vec::new());
     tiles.clear(&straight_line(33), false);
     let how = How { one_sided: true, skipped: &[], tested: false };
-    (0..2).for_each(|group| tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates));
+    (0..2).for_each(|group| tiles.draw_groups(&clusters, &[(group, how)], Isa::best(), &mut fates));
     assert_eq!(fates, [(PrimId(1), Fate::Shown), (PrimId(0), Fate::Shown)]);
 }

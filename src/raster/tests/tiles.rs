@@ -270,7 +270,7 @@ fn a_group_of_flatland_tells_what_became_of_each_segment() {
     let fates: Vec<(PrimId, Fate)> = (0..5)
         .flat_map(|group| {
             let (how, mut fates) = (How { one_sided: true, skipped: &[], tested: false }, Vec::new());
-            tiles.draw_group(&clusters, group, how, Isa::best(), &mut fates);
+            tiles.draw_groups(&clusters, &[(group, how)], Isa::best(), &mut fates);
             fates
         })
         .collect();

@@ -263,8 +263,14 @@ impl Clusters {
         let past = self.of_group(group).last().map_or(first, |c| c.prims.end);
         // Of each primitive the parts that faced the eye, and above them those that showed.
         let mut parts = vec![0u8; past - first];
-        told.faced.iter().for_each(|t| parts[(t >> 2) as usize - first] |= (t & 3) as u8);
-        told.shown.iter().for_each(|t| parts[(t >> 2) as usize - first] |= ((t & 3) << 2) as u8);
+        // Other groups were drawn with it.
+        let at = |t: i32| ((t >> 2) as usize).wrapping_sub(first);
+        for t in &told.faced {
+            parts.get_mut(at(*t)).into_iter().for_each(|part| *part |= (t & 3) as u8);
+        }
+        for t in &told.shown {
+            parts.get_mut(at(*t)).into_iter().for_each(|part| *part |= ((t & 3) << 2) as u8);
+        }
         let is_drawn = |id: PrimId| skipped.get(id.at()).is_some_and(|&is| is);
         for prim in self.of_group(group).iter().flat_map(|c| c.prims.clone()) {
             let (ids, parts) = (self.ids[prim], parts[prim - first]);

@@ -185,30 +185,33 @@ impl Tiles {
     pub fn draw(&mut self, clusters: &Clusters, one_sided: bool, isa: Isa) {
         query::draw(self, clusters, one_sided, isa);
     }
-    /// Draws a group of occluders and tells what became of each primitive, in the order of the group's
+    /// Draws groups of occluders and tells what became of each primitive, in the order of the groups'
     /// clusters: all that face the eye are drawn, but for those that are drawn already and, where clusters
-    /// are tested, those of hidden ones. These are told to be hidden, whichever way they face.
-    pub fn draw_group(
+    /// are tested, those of hidden ones. These are told to be hidden, whichever way they face. The groups are
+    /// drawn together: what fills no vector of the one is drawn with the next.
+    pub fn draw_groups(
         &mut self,
         clusters: &Clusters,
-        group: usize,
-        how: How<'_>,
+        groups: &[(usize, How<'_>)],
         isa: Isa,
         fates: &mut Vec<(PrimId, Fate)>,
     ) {
-        if clusters.of_group(group).is_empty() {
-            return;
-        }
         self.scratch.told.begin();
         self.scratch.told.is_asked = true;
-        if how.tested {
-            // What becomes of a cluster is not looked for primitive by primitive.
-            let prims = clusters.of_group(group).iter().flat_map(|c| c.prims.clone());
-            self.scratch.told.faced.extend(prims.map(|prim| (prim << 2 | 3) as i32));
+        let is_held = |(group, _): &&(usize, How<'_>)| !clusters.of_group(*group).is_empty();
+        let last = groups.iter().rposition(|one| is_held(&one));
+        for (k, &(group, how)) in groups.iter().enumerate().filter(|(_, one)| is_held(one)) {
+            if how.tested {
+                // What becomes of a cluster is not looked for primitive by primitive.
+                let prims = clusters.of_group(group).iter().flat_map(|c| c.prims.clone());
+                self.scratch.told.faced.extend(prims.map(|prim| (prim << 2 | 3) as i32));
+            }
+            query::draw_group(self, clusters, group, how, Some(k) != last, isa);
         }
-        query::draw_group(self, clusters, group, how, isa);
         self.scratch.told.is_asked = false;
-        clusters.fates(group, how.skipped, &self.scratch.told, fates);
+        for (group, how) in groups {
+            clusters.fates(*group, how.skipped, &self.scratch.told, fates);
+        }
     }
     /// Draws all of a group of occluders that faces the eye. What fills no vector waits for what comes next:
     /// nothing may be asked before [`Tiles::settle`].

@@ -42,9 +42,16 @@ pub(super) fn hides_all(tiles: &mut Tiles, boxes: &Boxes, exact: bool, isa: Isa,
     wide::run(isa, AskAll { tiles, boxes, exact, answers });
 }
 
-/// See [`Tiles::draw_group`].
-pub(super) fn draw_group(tiles: &mut Tiles, clusters: &Clusters, group: usize, how: How<'_>, isa: Isa) {
-    wide::run(isa, DrawGroup { tiles, clusters, group, how, waits: false });
+/// One group of [`Tiles::draw_groups`]; whether what fills no vector waits for the next.
+pub(super) fn draw_group(
+    tiles: &mut Tiles,
+    clusters: &Clusters,
+    group: usize,
+    how: How<'_>,
+    waits: bool,
+    isa: Isa,
+) {
+    wide::run(isa, DrawGroup { tiles, clusters, group, how, waits });
 }
 /// See [`Tiles::gather`].
 pub(super) fn gather(tiles: &mut Tiles, clusters: &Clusters, group: usize, one_sided: bool, isa: Isa) {
@@ -109,10 +116,12 @@ impl Work for DrawAll<'_> {
         tiles.forget();
         let how = How { one_sided, skipped: &[], tested: true };
         draw_unhidden(l, tiles, clusters, 0..clusters.clusters.len(), how);
+        Draw { l, tiles, clusters, one_sided, skipped: &[] }.flush();
     }
 }
 
-/// Draws those of some clusters that are not hidden when their turn comes, front to back.
+/// Draws those of some clusters that are not hidden when their turn comes, front to back. What fills no
+/// vector waits.
 #[inline(always)]
 fn draw_unhidden<L: Wide>(l: L, tiles: &mut Tiles, clusters: &Clusters, range: Range<usize>, how: How<'_>) {
     let look = tiles.look;
@@ -131,7 +140,6 @@ fn draw_unhidden<L: Wide>(l: L, tiles: &mut Tiles, clusters: &Clusters, range: R
             l.apart(DrawCluster { tiles, clusters, how, cluster });
         }
     }
-    Draw { l, tiles, clusters, one_sided: how.one_sided, skipped: how.skipped }.flush();
 }
 
 /// The clusters of a group.
@@ -151,10 +159,11 @@ impl Work for DrawGroup<'_> {
         let Self { tiles, clusters, group, how, waits } = self;
         tiles.forget();
         if how.tested {
-            return draw_unhidden(l, tiles, clusters, clusters.range_of(group), how);
-        }
-        for cluster in clusters.of_group(group) {
-            l.apart(DrawCluster { tiles, clusters, how, cluster });
+            draw_unhidden(l, tiles, clusters, clusters.range_of(group), how);
+        } else {
+            for cluster in clusters.of_group(group) {
+                l.apart(DrawCluster { tiles, clusters, how, cluster });
+            }
         }
         if !waits {
             // Whoever asks next is to see all of it.

@@ -27,6 +27,9 @@ pub const SWEEP: Sweep = Sweep {
         column("opacity_ms", "all levels of opacity", "ms", 3),
         column("pyramid_ms", "z-pyramid", "ms", 3),
         column("opacity_ratio", "of that", "times", 2),
+        column("maps_ms", "occluders chosen, drawn, all levels and depths", "ms", 3),
+        column("buffer_ms", "the same in a z-buffer, and its pyramid", "ms", 3),
+        column("maps_ratio", "of that", "times", 2),
         column("average_ms", "2 × 2 averages", "ms", 4),
         column("minimum_ms", "2 × 2 minima", "ms", 4),
         column("average_ratio", "of that", "times", 2),
@@ -94,7 +97,7 @@ fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn P
         let sized =
             |view: &View<S>| View { width: side, height: if S::CORNERS == 2 { 1 } else { side }, ..*view };
         let views: Vec<View<S>> = path.views.iter().map(sized).collect();
-        let mut times = [Vec::new(), Vec::new()];
+        let mut times = [const { Vec::new() }; 4];
         let some = part(progress, 0.2 + 0.2 * i as f32, 0.4 + 0.2 * i as f32);
         counted(scene, &mut mapper, &views, &some, |k, scene, mapper, _, _| {
             draw(&mut target, scene, &views[k], &mapper.occluders(), surfaces);
@@ -110,11 +113,26 @@ fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn P
             );
             times[0].push(pair.a_ms);
             times[1].push(pair.b_ms);
+            let occluders = mapper.occluders();
+            let pair = paired(
+                ROUNDS,
+                || mapper.make_maps(&views[k]),
+                || {
+                    draw(&mut target, scene, &views[k], &occluders, surfaces);
+                    pyramid.clear(target.width, target.height, 1.0 / views[k].eye.far);
+                    pyramid.touch(all);
+                    pyramid.refresh_all(&target.depth);
+                },
+            );
+            times[2].push(pair.a_ms);
+            times[3].push(pair.b_ms);
         })?;
-        let [opacity, whole] = times.map(median);
+        let [opacity, whole, maps, buffer] = times.map(median);
         let [columns, levels] = [mapper.opacity().size(0)[0].into(), f64::from(mapper.opacity().levels())];
         let plain = [average, minimum, average / minimum];
-        let numbers = [side.into(), columns, levels, opacity, whole, opacity / whole];
+        let ratios = [opacity / whole, maps / buffer];
+        let side = side.into();
+        let numbers = [side, columns, levels, opacity, whole, ratios[0], maps, buffer, ratios[1]];
         let mut row = measured(scene.name(), [], numbers);
         row.extend(plain.map(Cell::from));
         rows.push(row);

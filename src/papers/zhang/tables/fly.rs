@@ -36,6 +36,8 @@ pub struct Flown {
     pub frustum_ms: f64,
     /// The same with occlusion culling, by stage.
     pub stages: Times,
+    /// The time to draw what shows in that image, as if it were known, ms.
+    pub visible_ms: f64,
 }
 
 impl Flown {
@@ -131,22 +133,39 @@ pub fn fly<S: World + Faces>(
         ready(scene, FRUSTUM, setup, &[], &part(progress, 0.25, 0.27))?,
         ready(scene, OCCLUSION_MAPS, setup, on_top, &part(progress, 0.27, 0.35))?,
     ];
-    let mut targets = [(); 2].map(|()| Target::default());
+    let mut targets = [(); 3].map(|()| Target::default());
     let rest = part(progress, 0.35, 1.0);
     let times = in_turns(scene, &mut runs, &path.views, &rest, "flying", |run, turn| {
         let surfaces = surfaces_of(&run.knobs());
         let (list, stages) = stages_ms(run, turn.view);
         let target = &mut targets[turn.run];
         let ((), draw_ms) = timed(|| draw(target, turn.scene, turn.view, &list.prims, surfaces));
-        let mut times = STAGES.map(|stage| stages.get(stage).copied().unwrap_or_default());
+        // Behind the stages, the time of what shows alone.
+        let mut times = [0.0; STAGES.len() + 1];
+        for (time, stage) in times.iter_mut().zip(STAGES) {
+            *time = stages.get(stage).copied().unwrap_or_default();
+        }
         times[STAGES.len() - 1] = draw_ms;
+        if turn.run == 1 {
+            let (visible, alone) = (shown(target), &mut targets[2]);
+            times[STAGES.len()] = timed(|| draw(alone, turn.scene, turn.view, &visible, surfaces)).1;
+        }
         times
     })?;
     for (frame, times) in frames.iter_mut().zip(times) {
         frame.frustum_ms = times[0].iter().sum();
-        frame.stages = times[1];
+        let [stages @ .., visible_ms] = times[1];
+        (frame.stages, frame.visible_ms) = (stages, visible_ms);
     }
     Ok(Flight { frames, checked, database })
+}
+
+/// The primitives that own a pixel of an image, ascending.
+fn shown(image: &Target) -> Vec<PrimId> {
+    let mut items: Vec<u32> = image.item.iter().copied().filter(|item| *item != Target::NONE).collect();
+    items.sort_unstable();
+    items.dedup();
+    items.into_iter().map(PrimId).collect()
 }
 
 /// How much of a scene of so many primitives is not drawn, per cent.

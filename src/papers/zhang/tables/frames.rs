@@ -24,6 +24,8 @@ pub const SWEEP: Sweep = Sweep {
         column("frustum_ms", "frame without", "ms", 2),
         column("maps_ms", "with", "ms", 2),
         column("speedup_ratio", "faster", "times", 2),
+        column("visible_ms", "what shows, drawn alone", "ms", 2),
+        column("visible_ratio", "with, of that", "times", 2),
         MISSED,
         CHECKED,
     ],
@@ -57,7 +59,8 @@ fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn P
         ];
         let [frustum, maps] = [of(&|f| f.frustum_ms), of(&Flown::ms)];
         let mut row = measured(&about.name, [frame], counts);
-        row.extend([frustum, maps, frustum / maps].map(Cell::from));
+        let visible = of(&|f| f.visible_ms);
+        row.extend([frustum, maps, frustum / maps, visible, maps / visible].map(Cell::from));
         row
     };
     let mut mean = row("mean".into(), &|of| flight.mean(of));
