@@ -1,5 +1,7 @@
 //! The real program on small scenes: every subcommand, exit status, error lines, JSON keys, files.
 
+#[path = "cli/cubes.rs"]
+mod cubes;
 #[path = "cli/motion.rs"]
 mod motion;
 

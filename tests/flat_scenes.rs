@@ -98,6 +98,20 @@ fn every_scene_says_what_it_teaches_and_has_eyes_and_facts() {
     }
 }
 
+/// What an eye sees goes from its near plane to its far one: nothing of a scene is behind that.
+#[test]
+fn eyes_reach_to_the_end_of_their_scenes() {
+    for (file, scene) in scenes() {
+        let points: Vec<_> = scene.live().iter().flat_map(|&prim| scene.prim_points(prim)).collect();
+        for (name, k, view) in
+            scene.paths().iter().flat_map(|p| p.views.iter().enumerate().map(move |(k, v)| (&p.name, k, v)))
+        {
+            let farthest = points.iter().map(|p| p.distance(view.eye.position)).fold(0.0, f32::max);
+            assert!(view.eye.far > farthest, "{}: {name} {k}: {farthest}", file.display());
+        }
+    }
+}
+
 #[test]
 fn every_fact_is_true_and_none_is_missing() {
     for (path, scene) in scenes() {

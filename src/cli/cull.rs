@@ -14,10 +14,11 @@ use super::{CliError, World, output};
 use crate::drawing::{Pixels, Role};
 use crate::geometry::{PrimId, View, each};
 use crate::measure::timed;
-use crate::method::{DrawList, Words, surfaces_of};
+use crate::method::{DrawList, Verdict, Words, surfaces_of};
 use crate::raster::{Canvas, Light, Options, Target};
 use crate::render::{Theme, png_pixels};
 use crate::scene::{Progress, Scene};
+use crate::trace::Stamps;
 use crate::truth::{Flip, Judgement, Truth};
 
 #[derive(clap::Args)]
@@ -27,10 +28,11 @@ use crate::truth::{Flip, Judgement, Truth};
 pub(super) struct Args {
     #[command(flatten)]
     task: Task,
-    /// Compare with the exact answer at the view's resolution
+    /// Compare with the exact answer at the view's resolution; of what is missed, tell what is drawn as
+    /// stand-ins from what is lost
     #[arg(long)]
     truth: bool,
-    /// Print the ids of what was drawn, and with --truth of what was missed
+    /// Print the ids of what was drawn, and with --truth of what was missed and what was lost
     #[arg(long)]
     ids: bool,
     /// Write an image of what was drawn; several views give NAME-000.png, NAME-001.png, …
@@ -113,6 +115,9 @@ struct TruthReport {
     missed_triangles: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     missed_ids: Option<Vec<u32>>,
+    /// The same in two parts, where something stands in for primitives.
+    #[serde(flatten)]
+    parted: Option<Parted>,
     coverage_ratio: f64,
     wrong_pixels: usize,
     wrong_pixel_ratio: f64,
@@ -121,6 +126,20 @@ struct TruthReport {
     #[serde(flatten)]
     reference: Option<AgainstReference>,
     overdraw: Option<f64>,
+    /// What was missed, as long as it is yet to be parted.
+    #[serde(skip)]
+    missed: Vec<PrimId>,
+}
+
+/// Visible primitives that were not drawn, in two parts.
+#[derive(Serialize)]
+struct Parted {
+    /// Those that something is drawn in place of.
+    approximated_triangles: usize,
+    /// The others.
+    lost_triangles: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lost_ids: Option<Vec<u32>>,
 }
 
 #[derive(Serialize)]
@@ -198,6 +217,7 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
             ..Frame::of(args, i, &list, &stages_ms, [cull_ms, draw_ms])
         });
     }
+    part_missed(args, ready, &mut frames)?;
     ready.run.forget();
     for (i, frame) in frames.iter_mut().enumerate() {
         ready.pose(i)?;
@@ -206,6 +226,35 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         frame.counters = tally.named();
     }
     Ok(frames)
+}
+
+/// Events of a frame from which verdicts are read: some 160 MB and what their evidence takes.
+const MOST_EVENTS: usize = 10_000_000;
+
+/// Tells what is missed because something is drawn in its place from what is lost, by the verdicts of the
+/// same frames, recorded. Of a frame with more than [`MOST_EVENTS`] it is not said.
+fn part_missed<S: World>(args: &Args, ready: &mut Ready<S>, frames: &mut [Frame]) -> Result<(), CliError> {
+    if frames.iter().all(|frame| frame.truth.is_none() || frame.drawn_stand_ins.is_none()) {
+        return Ok(());
+    }
+    ready.run.forget();
+    for (i, frame) in frames.iter_mut().enumerate() {
+        ready.pose(i)?;
+        let film = ready.run.record(&ready.path.views[i], MOST_EVENTS).film;
+        let Some(truth) = frame.truth.as_mut().filter(|_| frame.drawn_stand_ins.is_some()) else { continue };
+        if film.lost() > 0 {
+            continue;
+        }
+        let stamps = Stamps::new(&*film);
+        let is_lost = |p: &PrimId| !matches!(stamps.prim_decision(*p), Some((_, Verdict::Approximated)));
+        let lost: Vec<PrimId> = truth.missed.iter().copied().filter(is_lost).collect();
+        truth.parted = Some(Parted {
+            approximated_triangles: truth.missed.len() - lost.len(),
+            lost_triangles: lost.len(),
+            lost_ids: args.ids.then(|| numbers(&lost)),
+        });
+    }
+    Ok(())
 }
 
 /// The light that was asked for.
@@ -237,11 +286,13 @@ fn truth_report(args: &Args, judged: Judgement, reference: Option<Flip>) -> Trut
         visible_triangles: judged.visible.len(),
         missed_triangles: judged.missed.len(),
         missed_ids: args.ids.then(|| numbers(&judged.missed)),
+        parted: None,
         coverage_ratio: judged.coverage_ratio(),
         wrong_pixels: judged.wrong_pixels,
         wrong_pixel_ratio: judged.wrong_pixel_ratio(),
         flip_mean: judged.flip_mean,
         overdraw: judged.overdraw(),
+        missed: judged.missed,
     }
 }
 

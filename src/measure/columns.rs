@@ -45,6 +45,19 @@ pub fn points(table: &Table, rows: &[usize], x: &str, y: &str) -> Vec<(f64, f64)
     rows.iter().filter_map(|&r| Some((table.number(r, x)?, table.number(r, y)?))).collect()
 }
 
+/// The same of those rows alone that have a number in the column `key`.
+pub fn points_where(
+    table: &Table,
+    rows: &[usize],
+    (key, number): (&str, f64),
+    x: &str,
+    y: &str,
+) -> Vec<(f64, f64)> {
+    let is_of = |r: &usize| table.number(*r, key) == Some(number);
+    let rows: Vec<usize> = rows.iter().copied().filter(is_of).collect();
+    points(table, &rows, x, y)
+}
+
 /// A measured row: the scene, more cells, then numbers.
 pub fn measured<const N: usize>(
     scene: &str,

@@ -153,9 +153,8 @@ impl Reader<'_> {
             report,
         };
         let extent = file.bounds.unwrap_or_else(|| extent(&parts.points));
-        let diagonal = (extent[2] - extent[0]).hypot(extent[3] - extent[1]);
         for (key, stands) in [("eyes", &file.eyes), ("walk", &file.walk)] {
-            if let Some(path) = self.path(key, stands, fov, diagonal)? {
+            if let Some(path) = self.path(key, stands, fov, extent)? {
                 parts.paths.push(path);
             }
         }
@@ -314,15 +313,22 @@ impl Reader<'_> {
         key: &str,
         stands: &[[f64; 4]],
         fov: f64,
-        diagonal: f64,
+        [left, low, right, high]: [f64; 4],
     ) -> Result<Option<ViewPath<Flat>>, SceneError> {
+        let diagonal = (right - left).hypot(high - low);
         let diagonal =
             if diagonal.is_finite() && diagonal > 0.0 { diagonal.min(MAX_COORDINATE) } else { 1.0 };
-        // Near enough to cut nothing that an eye in free space stands before, and far behind everything.
-        let (near, far) = ((diagonal * 1e-4).min(0.05) as f32, (diagonal * 4.0) as f32);
+        // Near enough to cut nothing that an eye in free space stands before, and far behind everything, also
+        // from far off.
+        let near = (diagonal * 1e-4).min(0.05) as f32;
+        let far = |x: f64, y: f64| {
+            let away = (x - (left + right) * 0.5).hypot(y - (low + high) * 0.5);
+            let reach = if away.is_finite() { away.min(MAX_COORDINATE) + diagonal } else { 0.0 };
+            reach.max(diagonal * 4.0) as f32
+        };
         let mut list = Vec::with_capacity(stands.len());
         for (i, stand) in stands.iter().enumerate() {
-            match views::flat_view(*stand, fov, near, far) {
+            match views::flat_view(*stand, fov, near, far(stand[0], stand[1])) {
                 Ok(view) => list.push(view),
                 Err(why) => return self.fail(&[Step::Key(key), Step::At(i)], format!("{key} {i}: {why}")),
             }

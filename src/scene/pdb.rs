@@ -245,4 +245,21 @@ mod tests {
             assert_eq!(symbol(name, false), want, "{}", name_of(name));
         }
     }
+
+    /// The atom that is one too many is told by its line.
+    #[test]
+    fn atoms_are_counted_to_the_limit() {
+        let atom = Atom {
+            element: Element(6),
+            place: DVec3::ZERO,
+            object: Object { name: String::new(), group: String::new(), motion: None },
+        };
+        let record = b"ATOM      1  CA  MET A   1       1.000   2.000   3.000";
+        let with =
+            |atoms: usize| Pass { source: "many.pdb", atoms: vec![atom.clone(); atoms], ..Pass::default() };
+        let mut pass = with(MOST_ATOMS - 1);
+        assert!(pass.record(8, record).is_ok() && pass.atoms.len() == MOST_ATOMS);
+        let fault = pass.record(9, record).expect_err("one too many").to_string();
+        assert!(fault.starts_with("many.pdb:9: there are more than 1048576 atoms"), "{fault}");
+    }
 }

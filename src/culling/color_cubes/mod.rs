@@ -32,6 +32,8 @@ mod hiding_tests;
 mod index;
 mod picture;
 mod saved;
+#[cfg(test)]
+mod shared_tests;
 mod sketch;
 mod so_far;
 mod space;

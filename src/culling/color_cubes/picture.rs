@@ -99,18 +99,14 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let title = format!("Node {id}, level {}: {way}", node.level);
     say(&mut to, vec2(0.0, 10.0), title.clone());
     let mut y = 20.0;
-    let samples = (!is_composed).then(|| {
-        let (scene, params) = (moment.frame.scene, moment.frame.params);
-        let prims = held(tree, id);
-        let baking = Baking {
-            scene,
-            surfaces: params.surfaces,
-            side: params.face_samples,
-            is_analytic: false,
-            composes: true,
-        };
-        baking.samples(&tree.cell(id), &prims)
-    });
+    if is_composed {
+        say(&mut to, vec2(0.0, 22.0), COLUMNS);
+        y = 32.0;
+    }
+    // Next to what it is the mean of.
+    let columns_pt = (1 << (S::Vector::AXES - 1)) as f32 * COLUMN_PT;
+    let mean_at = COLUMNS_PT + if is_composed { columns_pt } else { SAMPLES_PT } + 12.0;
+    let samples = (!is_composed).then(|| samples_of(moment, id));
     for (face, name) in FACE_NAMES.iter().enumerate().take(2 * S::Vector::AXES) {
         say(&mut to, vec2(0.0, y + 0.6 * SIDE_PT), *name);
         let height = match &samples {
@@ -118,17 +114,35 @@ fn making<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
             None => columns(moment, id, face, y, &mut to),
         };
         let mean = moment.frame.index.faces(id).get(face);
-        patch(&mut to, vec2(MEAN_PT, y), SIDE_PT, mean);
-        say(&mut to, vec2(MEAN_PT + SIDE_PT + 4.0, y + 0.6 * SIDE_PT), format!("mean: {}", words(mean)));
+        patch(&mut to, vec2(mean_at, y), SIDE_PT, mean);
+        say(&mut to, vec2(mean_at + SIDE_PT + 4.0, y + 0.6 * SIDE_PT), format!("mean: {}", words(mean)));
         y += height + 6.0;
     }
     finished(to, y, &title)
 }
 
+/// The samples of a cell's faces.
+fn samples_of<S: Projected>(moment: At<'_, '_, S>, id: NodeId) -> Vec<Vec<[f32; 4]>> {
+    let (tree, params) = (moment.frame.index.tree(), moment.frame.params);
+    let baking = Baking {
+        scene: moment.frame.scene,
+        surfaces: params.surfaces,
+        side: params.face_samples,
+        is_analytic: false,
+        composes: true,
+    };
+    baking.samples(&tree.cell(id), &held(tree, id))
+}
+
 /// Side of a patch of color.
 const SIDE_PT: f32 = 24.0;
-/// Where the mean of a face stands.
-const MEAN_PT: f32 = 210.0;
+/// What columns show.
+const COLUMNS: &str =
+    "Columns: the front child's face, below it the back one's; beside them one over the other.";
+/// Where columns and samples begin, how wide a column is with the gap after it, and how wide samples are.
+const COLUMNS_PT: f32 = 30.0;
+const COLUMN_PT: f32 = SIDE_PT + 12.0;
+const SAMPLES_PT: f32 = 60.0;
 
 /// A coverage in words.
 fn words(color: [f32; 4]) -> String {
@@ -138,11 +152,11 @@ fn words(color: [f32; 4]) -> String {
 /// The samples of a face; how high they are.
 fn sampled<S: Projected>(to: &mut Drawing, top: f32, samples: &[[f32; 4]], params: &Params) -> f32 {
     let side = params.face_samples as usize;
-    let cell = (60.0 / side as f32).min(SIDE_PT * 0.6);
+    let cell = (SAMPLES_PT / side as f32).min(SIDE_PT * 0.6);
     for (at, color) in samples.iter().enumerate() {
         // Rows go up, as axes do.
         let row = if samples.len() > side { side - 1 - at / side } else { 0 };
-        patch(to, vec2(30.0 + (at % side) as f32 * cell, top + row as f32 * cell), cell, *color);
+        patch(to, vec2(COLUMNS_PT + (at % side) as f32 * cell, top + row as f32 * cell), cell, *color);
     }
     (if samples.len() > side { side as f32 * cell } else { cell }).max(SIDE_PT)
 }
@@ -157,7 +171,7 @@ fn columns<S: Projected>(moment: At<'_, '_, S>, id: NodeId, face: usize, top: f3
     let fronts = (0..1usize << S::Vector::AXES).filter(|octant| octant >> axis & 1 == is_upper);
     for (column, octant) in fronts.enumerate() {
         let (front, back) = (of(octant), of(octant ^ 1 << axis));
-        let x = 30.0 + column as f32 * (SIDE_PT + 12.0);
+        let x = COLUMNS_PT + column as f32 * COLUMN_PT;
         patch(to, vec2(x, top), SIDE_PT * 0.5, front);
         patch(to, vec2(x, top + SIDE_PT * 0.55), SIDE_PT * 0.5, back);
         patch(to, vec2(x + SIDE_PT * 0.6, top + SIDE_PT * 0.25), SIDE_PT * 0.5, over(front, back));

@@ -44,12 +44,15 @@ pub fn so_far<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let described = format!("{} primitives and {} cubes are drawn", list.prims.len(), list.stand_ins.len());
     let mut alone = DrawList { prims: Vec::new(), ..list.clone() };
     alone.stand_ins.iter_mut().for_each(|cube| cube.after = 0);
-    let width = if view.height == 1 { WIDTH_PT } else { WIDTH_PT * 0.5 - 4.0 };
-    let (mut to, mut y) = (Drawing::default(), 12.0);
-    for (text, list) in [("All that is drawn", &list), ("The cubes alone", &alone)] {
-        image(&mut to, view, (vec2(0.0, y), width), painted(moment, view, list), text);
-        y += height_of(view, width) + 16.0;
-    }
+    // One below the other in flatland, side by side in space.
+    let is_line = view.height == 1;
+    let width = if is_line { WIDTH_PT } else { WIDTH_PT * 0.5 - 4.0 };
+    let down = height_of(view, width) + 16.0;
+    let (mut to, mut y) = (Drawing::default(), 12.0 + down);
+    image(&mut to, view, (vec2(0.0, 12.0), width), painted(moment, view, &list), "All that is drawn");
+    let place = if is_line { vec2(0.0, y) } else { vec2(width + 8.0, 12.0) };
+    image(&mut to, view, (place, width), painted(moment, view, &alone), "The cubes alone");
+    y += if is_line { down } else { 0.0 };
     say(&mut to, vec2(0.0, y - 6.0), described.clone());
     finished(to, y, &described)
 }

@@ -264,8 +264,8 @@ fn plots(table: &Table) -> Vec<Plot> {
         let mut series = vec![
             line(size, Place::Within, "hierarchy_ms", "color cubes", Role::Visible),
             line(size, Place::Above, "hierarchy_ms", "color cubes", Role::Evidence),
-            line(size, Place::Within, "geometry_ms", "geometry", Role::Occluder),
-            line(size, Place::Above, "geometry_ms", "geometry", Role::Hidden),
+            line(size, Place::Within, "geometry_ms", "geometry", Role::Scene),
+            line(size, Place::Above, "geometry_ms", "geometry", Role::Ink),
         ];
         if number == 0 {
             let quote = |k: usize| paper_times().map(|times| (times[0] * TREE, times[k])).to_vec();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::samples::{Images, SAMPLES, color_cubes, geometry, sampled};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::{Aabb, Space, Vector, View};
-use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points, quoted};
+use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points_where, quoted};
 use crate::measure::experiment::{Rows, Sweep, World};
 use crate::measure::harness::path::{about, whole_path};
 use crate::measure::harness::{checkpoint, part};
@@ -134,13 +134,8 @@ fn plots(table: &Table) -> Vec<Plot> {
         sides.dedup();
         let roles = [Role::Approximated, Role::Visible, Role::Occluder, Role::Ink];
         let series = sides.iter().zip(roles.into_iter().cycle()).map(|(side, role)| {
-            let is_of = |r: &usize| table.number(*r, "side_px") == Some(*side);
-            let rows: Vec<usize> = rows.iter().copied().filter(is_of).collect();
-            Series::new(
-                format!("{side} pixels"),
-                role,
-                points(table, &rows, "distance_radii", "speedup_ratio"),
-            )
+            let line = points_where(table, &rows, ("side_px", *side), "distance_radii", "speedup_ratio");
+            Series::new(format!("{side} pixels"), role, line)
         });
         Plot {
             title: format!("{name}: how many times as fast as geometry"),

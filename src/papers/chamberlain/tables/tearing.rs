@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::samples::{Images, SAMPLES, color_cubes, geometry, sampled};
 use crate::drawing::{Plot, Role, Series, Shape};
 use crate::geometry::View;
-use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points};
+use crate::measure::columns::{SCENE, SOURCE, by_scene, column, measured, points_where};
 use crate::measure::experiment::{Rows, Sweep, World};
 use crate::measure::harness::path::{about, whole_path};
 use crate::measure::harness::{checkpoint, part};
@@ -100,9 +100,12 @@ fn plots(table: &Table) -> Vec<Plot> {
     let plot = |(name, rows): (String, Vec<usize>)| {
         let roles = [Role::Approximated, Role::Partial, Role::Occluder, Role::Visible];
         let series = BOUNDS.iter().zip(roles).map(|(bound, role)| {
-            let is_of = |r: &usize| table.number(*r, "error_bound") == bound.parse().ok();
-            let rows: Vec<usize> = rows.iter().copied().filter(is_of).collect();
-            Series::new(format!("error bound {bound}"), role, points(table, &rows, "view", "torn_px"))
+            let of = ("error_bound", bound.parse().unwrap_or_default());
+            Series::new(
+                format!("error bound {bound}"),
+                role,
+                points_where(table, &rows, of, "view", "torn_px"),
+            )
         });
         Plot {
             title: format!("{name}: torn as the eye turns"),
