@@ -136,8 +136,14 @@ impl<V: Vector> CellTree<V> {
             references: Vec::new(),
         };
         // 1. A triangle or segment costs 1 to draw.
-        let share = |item: PrimId| items.prims(item).len() as f32;
-        let all = items.all(scene).into_iter().map(|item| Share { item, share: share(item) }).collect();
+        let mut all = Held::default();
+        for item in items.all(scene) {
+            let prims = items.prims(item);
+            all.shares.push(Share { item, share: prims.len() as f32, parts: prims.len() as u32 });
+            if !items.are_single() {
+                all.parts.extend(prims.map(PrimId));
+            }
+        }
         making.divide(0, &root, all)?;
         let Making { mut nodes, mut references, .. } = making;
         own_first(scene, &mut nodes, &mut references);
@@ -289,6 +295,17 @@ fn own_first<S: Space>(scene: &Scene<S>, nodes: &mut [CellNode], references: &mu
 struct Share {
     item: PrimId,
     share: f32,
+    /// Of an object: how many of its primitives the cell meets, by their boxes.
+    parts: u32,
+}
+
+/// What a cell in the making holds.
+#[derive(Default)]
+struct Held {
+    shares: Vec<Share>,
+    /// Those primitives of objects, one object after the other: objects are large, and of their primitives
+    /// most are in other cells.
+    parts: Vec<PrimId>,
 }
 
 /// A tree in the making.
@@ -312,23 +329,24 @@ impl CellNode {
 
 impl<S: Cellular> Making<'_, S> {
     /// Divides a node's cell, or makes it a leaf; `None` when cancelled.
-    fn divide(&mut self, at: usize, cell: &Aabb<S::Vector>, list: Vec<Share>) -> Option<()> {
+    fn divide(&mut self, at: usize, cell: &Aabb<S::Vector>, list: Held) -> Option<()> {
         if (self.cancelled)() {
             return None;
         }
         let first = self.references.len() as u32;
         match self.parted(at, cell, &list) {
-            None => self.references.extend(list.iter().map(|s| s.item)),
+            None => self.references.extend(list.shares.iter().map(|s| s.item)),
             Some(lists) => {
                 drop(list);
                 let (level, first_child) = (self.nodes[at].level + 1, self.nodes.len() as u32);
                 // 4. The children stand side by side, each before all that is below it.
-                for (octant, _) in lists.iter().enumerate().filter(|(_, list)| !list.is_empty()) {
+                let is_held = |(_, list): &(usize, &Held)| !list.shares.is_empty();
+                for (octant, _) in lists.iter().enumerate().filter(is_held) {
                     self.nodes.push(CellNode::leaf(at as u32, level, octant as u8));
                     self.nodes[at].octants |= 1 << octant;
                 }
                 self.nodes[at].first_child = first_child;
-                let held = lists.into_iter().enumerate().filter(|(_, list)| !list.is_empty());
+                let held = lists.into_iter().enumerate().filter(|(_, list)| !list.shares.is_empty());
                 for (child, (octant, list)) in held.enumerate() {
                     self.divide(first_child as usize + child, &octant_of(cell, octant), list)?;
                 }
@@ -340,9 +358,9 @@ impl<S: Cellular> Making<'_, S> {
     }
 
     /// What each child of a cell would get; `None` if the cell is not divided.
-    fn parted(&self, at: usize, cell: &Aabb<S::Vector>, list: &[Share]) -> Option<[Vec<Share>; 8]> {
+    fn parted(&self, at: usize, cell: &Aabb<S::Vector>, list: &Held) -> Option<[Held; 8]> {
         // 3. One child is the least.
-        let sum: f64 = list.iter().map(|s| f64::from(s.share)).sum();
+        let sum: f64 = list.shares.iter().map(|s| f64::from(s.share)).sum();
         if u32::from(self.nodes[at].level) + 1 >= self.levels || (self.stop)(sum, 1) {
             return None;
         }
@@ -353,37 +371,59 @@ impl<S: Cellular> Making<'_, S> {
             return None;
         }
         // 2. To each child that it meets.
-        let mut lists: [Vec<Share>; 8] = Default::default();
-        for one in list {
-            let octants = self.octants_of(one.item, cell);
+        let mut lists: [Held; 8] = Default::default();
+        let mut parts = &list.parts[..];
+        for one in &list.shares {
+            let mut counts = [0; 8];
+            let octants = if self.items.are_single() {
+                self.octants_of(one.item, cell)
+            } else {
+                let of_item;
+                (of_item, parts) = parts.split_at(one.parts as usize);
+                self.part_object(one.item, of_item, cell, (&mut lists, &mut counts))
+            };
             let share = one.share / octants.count_ones().max(1) as f32;
-            let met = lists.iter_mut().enumerate().filter(|(octant, _)| octants >> octant & 1 == 1);
-            met.for_each(|(_, to)| to.push(Share { share, ..*one }));
+            for (octant, to) in lists.iter_mut().enumerate().filter(|(octant, _)| octants >> octant & 1 == 1)
+            {
+                to.shares.push(Share { share, parts: counts[octant], ..*one });
+            }
         }
-        let held = lists.iter().filter(|l| !l.is_empty()).count();
-        let parts_nothing = held > 1 && lists.iter().all(|l| l.is_empty() || l.len() == list.len());
+        let held = lists.iter().filter(|l| !l.shares.is_empty()).count();
+        let is_same = |l: &Held| l.shares.is_empty() || l.shares.len() == list.shares.len();
+        let parts_nothing = held > 1 && lists.iter().all(is_same);
         // For one child the answer is known.
         let is_small = held > 1 && (self.stop)(sum, held as u32);
         (held > 0 && !parts_nothing && !is_small).then_some(lists)
     }
 
-    /// Which children of a cell an item of it meets, a bit each.
-    fn octants_of(&self, item: PrimId, cell: &Aabb<S::Vector>) -> u8 {
-        if !self.items.are_single() {
-            let met = octants_touched(&self.boxes[self.items.number(item)], cell);
-            // About the corners of its box there may be nothing of it.
-            let mut filled = 0;
-            for prim in self.items.prims(item) {
-                let bounds = self.scene.prim_bounds(PrimId(prim));
-                if bounds.touches(cell) {
-                    filled |= octants_touched(&bounds, cell);
-                }
-                if filled & met == met {
-                    break;
-                }
+    /// Gives each child of a cell the primitives of an object that it meets, and counts them; which children
+    /// meet the object, a bit each.
+    fn part_object(
+        &self,
+        item: PrimId,
+        parts: &[PrimId],
+        cell: &Aabb<S::Vector>,
+        (lists, counts): (&mut [Held; 8], &mut [u32; 8]),
+    ) -> u8 {
+        // About the corners of its box there may be nothing of it.
+        let met = octants_touched(&self.boxes[self.items.number(item)], cell);
+        let mut filled = 0;
+        for &prim in parts {
+            let octants = octants_touched(&Aabb::of(self.scene.prim_points(prim)), cell) & met;
+            filled |= octants;
+            let mut left = octants;
+            while left != 0 {
+                let octant = left.trailing_zeros() as usize;
+                left &= left - 1;
+                lists[octant].parts.push(prim);
+                counts[octant] += 1;
             }
-            return filled & met;
         }
+        filled
+    }
+
+    /// Which children of a cell a primitive of it meets, a bit each.
+    fn octants_of(&self, item: PrimId, cell: &Aabb<S::Vector>) -> u8 {
         let mut corners = [S::Vector::default(); 3];
         for (to, from) in corners.iter_mut().zip(self.scene.prim_points(item)) {
             *to = from;
@@ -396,7 +436,7 @@ impl<S: Cellular> Making<'_, S> {
 }
 
 /// Which children of a cell a box in it meets, a bit each.
-fn octants_touched<V: Vector>(bounds: &Aabb<V>, cell: &Aabb<V>) -> u8 {
+pub fn octants_touched<V: Vector>(bounds: &Aabb<V>, cell: &Aabb<V>) -> u8 {
     let center = cell.center();
     let (mut octants, mut met) = ([1u8, 0, 0], 0u8);
     for (a, sides) in octants.iter_mut().enumerate().take(V::AXES) {

@@ -11,7 +11,7 @@ pub mod tessellation;
 mod tests;
 mod whole;
 
-pub use cell_tree::{CellNode, CellTree};
+pub use cell_tree::{CellNode, CellTree, octants_touched};
 pub use delaunay::{Delaunay, Tetrahedron};
 pub use items::Items;
 pub use kd_tree::{KdNode, KdTree};

@@ -4,12 +4,14 @@
 //! associative (Porter and Duff 1984), so that is what the paper's quads drawn over each other from the back
 //! give, and a sample that lets no more light through can be left alone.
 //!
-//! A sample meets a box where its ray does, by the planes of the box. The depths at which a ray passes planes
-//! are found from the ray and the plane alone, the same for all boxes that share one, and they ascend along
-//! the ray. Each depth belongs to one box of a grid: a wall of boxes has no crack and no seam, however it is
-//! turned, and each sample meets one face of a box at most. Where a primitive is drawn its corners lie on the
-//! pixel grid, by 1/362 pixel at most from where a ray has them. (The paper draws faces as quads, by graphics
-//! hardware.)
+//! A sample meets a box where its ray does, by the planes of the box. The inverse of the depth at which a ray
+//! passes a plane is a number of the ray times a number of the plane, the same for all boxes that share the
+//! plane, and descends along the ray. So each depth belongs to one box of a grid: a wall of boxes has no crack
+//! and no seam, however it is turned, and each sample meets one face of a box at most. Where a primitive is
+//! drawn its corners lie on the pixel grid, by 1/362 pixel at most from where a ray has them. (The paper draws
+//! faces as quads, by graphics hardware.)
+//!
+//! Eight samples are asked at a time, on lanes; the same bits come out on every machine.
 //!
 //! Cost: O(boxes + samples in the rectangles about them).
 
@@ -17,8 +19,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::simd::Isa;
+use super::tiles::wide::{Wide, Work, each, run};
 use super::{CubeFaces, Drawable, Options, StandIn, Target};
-use crate::geometry::{Aabb, PrimId, Space, Vector, View};
+use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector, View};
 use crate::scene::{Scene, Surfaces};
 
 /// A sample is full, and no more is put under it, when less than so much of the light comes through: a
@@ -100,20 +104,10 @@ impl Canvas {
         let parts = self.samples.chunks_mut(pixels).zip(self.spans.chunks_mut(rows)).enumerate();
         let bands = parts.map(|(band, (samples, spans))| {
             let depths = &image.depth[band * pixels..][..samples.len()];
-            Band { first: band * rows, width, samples, depths, spans, clear: CLEAR }
+            let rows = Rows { first: band * rows, count: spans.len(), width };
+            Laid { rays, copies, rows, under: Under { width, samples, depths, spans, faces: [CLEAR; 3] } }
         });
-        let work = |mut band: Band<'_, [f32; 4], &[f32]>| {
-            let mut rays = rays;
-            for (eye, boxes) in copies {
-                rays.eye = widened(*eye);
-                for one in *boxes {
-                    // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows
-                    // nothing more.
-                    let under = |sample: &mut [f32; 4], face: usize| put_under(sample, one.faces.get(face));
-                    band.meet(&rays, &one.bounds, |sample| sample[3] < FULL, under);
-                }
-            }
-        };
+        let work = |band: Laid<'_, S::Vector>| run(Isa::best(), band);
         if threads <= 1 {
             bands.for_each(work);
         } else {
@@ -122,14 +116,23 @@ impl Canvas {
     }
 }
 
-/// A face under what a sample holds: what is seen of it is the share that shows (Porter and Duff 1984).
-#[inline(always)]
-fn put_under(sample: &mut [f32; 4], face: [f32; 4]) {
-    let left = sample[3];
-    for channel in 0..3 {
-        sample[channel] += left * face[channel];
+/// Lists of boxes laid under a band of rows.
+struct Laid<'a, V> {
+    rays: Rays,
+    copies: &'a [Moved<'a, V>],
+    rows: Rows,
+    under: Under<'a>,
+}
+
+impl<V: Vector> Work for Laid<'_, V> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Wide>(mut self, l: L) {
+        for (eye, boxes) in self.copies {
+            self.rays.eye = widened(*eye);
+            meet(l, &self.rays, &self.rows, boxes, &mut self.under);
+        }
     }
-    sample[3] = left * (1.0 - face[3]);
 }
 
 /// The rays of a view's samples. Flatland has no third axis and no rows: they are 0.
@@ -179,133 +182,243 @@ impl Rays {
         rays
     }
 
-    /// Columns and rows of a rectangle that no sample outside of which meets a box; it may stick out of the
-    /// image.
-    #[inline]
-    fn rectangle<V: Vector>(&self, min: &[f64; 3], max: &[f64; 3]) -> [[f64; 2]; 2] {
-        let (mut middle, mut reach) = ([0.0; 3], [0.0; 3]);
+    /// The directions of eight samples.
+    #[inline(always)]
+    fn along<L: Wide>(&self, l: L, columns: L::F, rows: L::F) -> [L::F; 3] {
+        let mut along = [l.splat(0.0); 3];
         for a in 0..3 {
-            (middle[a], reach[a]) = ((min[a] + max[a]) * 0.5, (max[a] - min[a]) * 0.5);
+            let across = l.add(l.splat(self.origin[a] as f32), l.mul(columns, l.splat(self.right[a] as f32)));
+            along[a] = l.add(across, l.mul(rows, l.splat(self.down[a] as f32)));
         }
-        let forward = self.rows[2];
-        let dot = |row: &[f64; 3]| row[0] * middle[0] + row[1] * middle[1] + row[2] * middle[2];
-        let spread =
-            |row: &[f64; 3]| row[0].abs() * reach[0] + row[1].abs() * reach[1] + row[2].abs() * reach[2];
-        let depth = dot(&forward);
-        let nearest = depth - spread(&forward);
-        if nearest <= self.near {
-            return [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        along
+    }
+}
+
+/// How far the rectangle about a box is widened, pixels: more than places in it are rounded by, some 2⁻²² of
+/// at most 16,384 pixels.
+const SLACK_PX: f32 = 1.0 / 64.0;
+
+/// Eight boxes, as rays meet them: along each axis the inverse depth of a ray is what is here times the ray's
+/// direction.
+#[derive(Clone, Copy, Default)]
+struct Eight {
+    /// Where one is entered, and what is added to that: if the eye is between the planes, more than any depth.
+    enters: [[f32; 8]; 3],
+    between: [[f32; 8]; 3],
+    /// Where it is left: by the farther plane, or by that of both which is ahead.
+    leaves: [[[f32; 8]; 2]; 3],
+    /// Those of which the upper face is toward the eye, a bit each.
+    upper: [u32; 3],
+    /// The first column and row of the samples that may meet it, and those past the last.
+    first: [[i32; 8]; 2],
+    past: [[i32; 8]; 2],
+}
+
+impl Eight {
+    /// Eight boxes at most, relative to the eye.
+    #[inline(always)]
+    fn new<L: Wide, V: Vector>(l: L, rays: &Rays, image: &Rows, boxes: &[StandIn<V>]) -> Self {
+        let mut ends = [[[0.0; 8]; 3]; 2];
+        for (k, one) in boxes.iter().enumerate().take(8) {
+            for a in 0..V::AXES {
+                ends[0][a][k] = one.bounds.min.get(a);
+                ends[1][a][k] = one.bounds.max.get(a);
+            }
         }
-        let (inverse, most_inverse) = (1.0 / depth, 1.0 / nearest);
-        let mut spans = [[self.half[0]; 2], [self.half[1]; 2]];
-        for (axis, row) in self.rows[..V::AXES - 1].iter().enumerate() {
-            // A point `middle + d` lies at `(row · middle + row · d) / (depth + forward · d)`, which differs
-            // from the middle's place `at` by `(row − at · forward) · d / (depth + forward · d)`.
-            let at = dot(row) * inverse;
-            let slope = std::array::from_fn(|a| row[a] - at * forward[a]);
-            let most = spread(&slope) * most_inverse;
-            let sign = if axis == 0 { 1.0 } else { -1.0 };
-            let (center, reach) = (self.half[axis] * (1.0 + sign * at), self.half[axis] * most);
-            spans[axis] = [center - reach, center + reach];
+        let zero = l.splat(0.0);
+        let (mut eight, mut min, mut max) = (Self::default(), [zero; 3], [zero; 3]);
+        for a in 0..V::AXES {
+            let eye = l.splat_d(rays.eye[a]);
+            min[a] = l.narrow(l.sub_d(l.to_d(l.load(&ends[0][a])), eye));
+            max[a] = l.narrow(l.sub_d(l.to_d(l.load(&ends[1][a])), eye));
+            eight.part(l, a, min[a], max[a]);
         }
-        spans
+        eight.find::<L, V>(l, rays, image, &min, &max);
+        eight
     }
 
-    /// View depth at which a sample's ray enters a box (relative to the eye), and the number of the face.
+    /// The planes that are square to an axis, by where they are. What is at the eye belongs to the lower
+    /// side, as a box does not have its upper planes.
     #[inline(always)]
-    fn enter<V: Vector>(
-        &self,
-        column: f64,
-        row: f64,
-        min: &[f64; 3],
-        max: &[f64; 3],
-    ) -> Option<(f64, usize)> {
-        let (mut enters, mut leaves, mut face) = (f64::NEG_INFINITY, f64::INFINITY, 0);
-        // Flatland's third is not asked.
-        let along: [f64; 3] =
-            std::array::from_fn(|a| self.origin[a] + column * self.right[a] + row * self.down[a]);
-        // All at once, as one division of several numbers.
-        let inverse = along.map(|along| 1.0 / along);
+    fn part<L: Wide>(&mut self, l: L, a: usize, min: L::F, max: L::F) {
+        let (zero, most) = (l.splat(0.0), l.splat(f32::MAX));
+        let (is_above, is_not_below) = (l.gt(min, zero), l.gt(max, zero));
+        let [low, high] = [
+            // Not infinite, since a ray along a plane multiplies it with 0.
+            (is_above, l.min(l.div(l.splat(1.0), l.abs(min)), most)),
+            (is_not_below, l.min(l.div(l.splat(1.0), l.abs(max)), most)),
+        ];
+        let low = l.pick(low.0, low.1, l.sub(zero, low.1));
+        let high = l.pick(high.0, high.1, l.sub(zero, high.1));
+        l.store(&mut self.enters[a], l.pick(is_above, low, l.pick(is_not_below, zero, high)));
+        l.store(&mut self.between[a], l.pick(is_above, zero, l.pick(is_not_below, most, zero)));
+        l.store(&mut self.leaves[a][0], l.pick(is_above, high, low));
+        l.store(&mut self.leaves[a][1], l.pick(is_not_below, high, low));
+        self.upper[a] = !l.bits(is_not_below);
+    }
+
+    /// The rectangles that no sample outside of which meets a box.
+    #[inline(always)]
+    fn find<L: Wide, V: Vector>(
+        &mut self,
+        l: L,
+        rays: &Rays,
+        image: &Rows,
+        min: &[L::F; 3],
+        max: &[L::F; 3],
+    ) {
+        let (half, zero) = (l.splat(0.5), l.splat(0.0));
+        let (mut middle, mut reach, mut forward) = ([zero; 3], [zero; 3], [zero; 3]);
+        let (mut depth, mut spread) = (zero, zero);
         for a in 0..V::AXES {
-            if along[a] == 0.0 {
-                // The ray stays between two planes for ever, or never is: the upper one is the next box's.
-                if min[a] > 0.0 || max[a] <= 0.0 {
-                    return None;
-                }
-                continue;
+            middle[a] = l.mul(l.add(min[a], max[a]), half);
+            reach[a] = l.mul(l.sub(max[a], min[a]), half);
+            forward[a] = l.splat(rays.rows[2][a] as f32);
+            depth = l.add(depth, l.mul(forward[a], middle[a]));
+            spread = l.add(spread, l.mul(l.abs(forward[a]), reach[a]));
+        }
+        let nearest = l.sub(depth, spread);
+        let is_ahead = l.gt(nearest, l.splat(rays.near as f32));
+        let (inverse, most) = (l.div(l.splat(1.0), depth), l.div(l.splat(1.0), nearest));
+        for axis in 0..2 {
+            let count = l.splat([image.width, image.count][axis] as f32);
+            let offset = l.splat([0.0, image.first as f32][axis]);
+            let half = rays.half[axis] as f32;
+            let (mut place, mut spread) = (zero, zero);
+            for a in 0..V::AXES {
+                place = l.add(place, l.mul(l.splat(rays.rows[axis][a] as f32), middle[a]));
             }
-            let (low, high) = (min[a] * inverse[a], max[a] * inverse[a]);
-            let is_up = along[a] > 0.0;
-            let (first, last) = if is_up { (low, high) } else { (high, low) };
-            let is_later = first > enters;
-            enters = if is_later { first } else { enters };
-            face = if is_later { 2 * a + usize::from(!is_up) } else { face };
-            leaves = if last < leaves { last } else { leaves };
+            // A point `middle + d` lies at `(row · middle + row · d) / (depth + forward · d)`, which differs
+            // from the middle's place by `(row − place · forward) · d / (depth + forward · d)`.
+            place = l.mul(place, inverse);
+            for a in 0..V::AXES {
+                let slope = l.sub(l.splat(rays.rows[axis][a] as f32), l.mul(place, forward[a]));
+                spread = l.add(spread, l.mul(l.abs(slope), reach[a]));
+            }
+            let sign = if axis == 0 { half } else { -half };
+            let center = l.sub(l.add(l.splat(half), l.mul(l.splat(sign), place)), offset);
+            let reach = l.add(l.mul(l.splat(half), l.mul(spread, most)), l.splat(SLACK_PX));
+            let low = l.sub(l.sub(center, reach), l.splat(0.5));
+            let high = l.add(l.add(center, reach), l.splat(0.5));
+            let low = l.pick(is_ahead, l.max(zero, l.min(count, low)), zero);
+            let high = l.pick(is_ahead, l.max(zero, l.min(count, high)), count);
+            l.store_i(&mut self.first[axis], l.ceil(low));
+            l.store_i(&mut self.past[axis], l.truncate(high));
+        }
+    }
+
+    /// Which of eight rays enter a box, the inverse depths, and the axes along which.
+    #[inline(always)]
+    fn of_rays<L: Wide, V: Vector>(
+        &self,
+        l: L,
+        k: usize,
+        along: &[L::F; 3],
+        most: L::F,
+    ) -> (L::M, L::F, L::I) {
+        let (mut enters, mut leaves, mut axis) = (l.splat(f32::MAX), l.splat(0.0), l.splat_i(0));
+        for a in 0..V::AXES {
+            let enter = l.add(l.mul(along[a], l.splat(self.enters[a][k])), l.splat(self.between[a][k]));
+            let is_later = l.gt(enters, enter);
+            enters = l.pick(is_later, enter, enters);
+            axis = l.pick_i(is_later, l.splat_i(a as i32), axis);
+            leaves = l.max(l.mul(along[a], l.splat(self.leaves[a][0][k])), leaves);
+            leaves = l.max(l.mul(along[a], l.splat(self.leaves[a][1][k])), leaves);
         }
         // Where it leaves is the next box's. A box about the eye has no face toward it.
-        (enters < leaves && enters >= self.near).then_some((enters, face))
+        (l.both(l.gt(enters, leaves), l.ge(most, enters)), enters, axis)
     }
 }
 
-/// Depths that boxes are tested against (`1/w`).
-trait Depths {
-    /// Whether a box that a sample's ray enters at this depth is before what is there.
-    fn is_before(&mut self, at: usize, depth: f32) -> bool;
-}
-
-/// Those of an image, which stay.
-impl Depths for &[f32] {
-    #[inline(always)]
-    fn is_before(&mut self, at: usize, depth: f32) -> bool {
-        depth >= self[at]
-    }
-}
-
-/// Those that boxes write.
-impl Depths for &mut [f32] {
-    fn is_before(&mut self, at: usize, depth: f32) -> bool {
-        let is_before = depth >= self[at];
-        if is_before {
-            self[at] = depth;
-        }
-        is_before
-    }
-}
-
-/// Rows of the image, with what is asked and changed there.
-struct Band<'a, T, D> {
-    /// Number of its first row.
+/// Rows of an image.
+struct Rows {
+    /// Number of the first, how many, and pixels in each.
     first: usize,
+    count: usize,
     width: usize,
-    samples: &'a mut [T],
-    depths: D,
-    /// The samples of each row that are known; none where all are.
-    spans: &'a mut [[u32; 2]],
-    /// What the others are to be.
-    clear: T,
 }
 
-/// How far the rectangle about a box is widened, pixels: more than its rounding.
-const SLACK_PX: f64 = 1e-6;
+/// What is done with samples whose rays meet boxes.
+trait Samples {
+    /// The next box has these faces, and turns these toward the eye, one an axis.
+    fn next(&mut self, faces: &CubeFaces, toward: [usize; 3]);
+    /// Some samples of a row may be met.
+    #[inline(always)]
+    fn near(&mut self, _row: usize, _columns: &Range<usize>) {}
+    /// A sample meets the box at a depth, `1/w`, by its face along an axis.
+    fn meet(&mut self, at: usize, depth: f32, axis: usize);
+}
 
-/// The numbers of the samples of a row or column of so many whose centers lie in a span.
+/// Samples are asked in blocks.
+const BLOCK: [usize; 2] = [4, 2];
+
+/// Finds the samples whose rays meet boxes, box by box.
 #[inline(always)]
-fn samples_in([low, high]: [f64; 2], count: usize) -> Range<usize> {
-    let first = (low - 0.5 - SLACK_PX).clamp(0.0, count as f64);
-    let past = (high + 0.5 + SLACK_PX).clamp(0.0, count as f64);
-    // Rounded up and down by the conversion: functions of the standard library are calls on machines that
-    // lack the instruction.
-    let up = first as usize + usize::from((first as usize as f64) < first);
-    up..past as usize
+fn meet<L: Wide, V: Vector>(l: L, rays: &Rays, image: &Rows, boxes: &[StandIn<V>], to: &mut impl Samples) {
+    let most = l.splat((1.0 / rays.near) as f32);
+    // Lanes go across a block and then down.
+    let right = l.load(&[0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]);
+    let below = l.load(&[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0]);
+    let (mut depths, mut axes) = ([0.0; 8], [0; 8]);
+    for some in boxes.chunks(8) {
+        let eight = Eight::new(l, rays, image, some);
+        for (k, one) in some.iter().enumerate() {
+            let columns = eight.first[0][k] as usize..eight.past[0][k] as usize;
+            let rows = eight.first[1][k] as usize..eight.past[1][k] as usize;
+            if columns.is_empty() || rows.is_empty() {
+                continue;
+            }
+            to.next(&one.faces, each!(3; a => 2 * a + (eight.upper[a] >> k & 1) as usize));
+            for row in rows.clone() {
+                to.near(row, &columns);
+            }
+            let past_column = l.splat(columns.end as f32);
+            let past_row = l.splat((rows.end + image.first) as f32);
+            for row in rows.step_by(BLOCK[1]) {
+                let y = l.add(l.splat((row + image.first) as f32), below);
+                for column in columns.clone().step_by(BLOCK[0]) {
+                    let x = l.add(l.splat(column as f32), right);
+                    let along = rays.along(l, x, y);
+                    let (is_met, enters, axis) = eight.of_rays::<L, V>(l, k, &along, most);
+                    let is_inside = l.both(l.gt(past_column, x), l.gt(past_row, y));
+                    let mut bits = l.bits(l.both(is_met, is_inside));
+                    l.store(&mut depths, enters);
+                    l.store_i(&mut axes, axis);
+                    while bits != 0 {
+                        let lane = bits.trailing_zeros() as usize & 7;
+                        bits &= bits - 1;
+                        let at = (row + lane / BLOCK[0]) * image.width + column + lane % BLOCK[0];
+                        to.meet(at, depths[lane], axes[lane] as usize);
+                    }
+                }
+            }
+        }
+    }
 }
 
-impl<T: Copy, D: Depths> Band<'_, T, D> {
+/// Samples under which boxes are put, unless the image hides them.
+struct Under<'a> {
+    width: usize,
+    samples: &'a mut [[f32; 4]],
+    depths: &'a [f32],
+    /// The samples of each row that are known; the others are to be cleared.
+    spans: &'a mut [[u32; 2]],
+    /// Color and coverage along each axis.
+    faces: [[f32; 4]; 3],
+}
+
+impl Samples for Under<'_> {
+    #[inline(always)]
+    fn next(&mut self, faces: &CubeFaces, toward: [usize; 3]) {
+        for (to, face) in self.faces.iter_mut().zip(toward) {
+            *to = faces.get(face);
+        }
+    }
     /// Makes the samples of a row known as far as they are not.
-    #[inline]
-    fn know(&mut self, row: usize, columns: &Range<usize>) {
-        let Some(span) = self.spans.get_mut(row) else { return };
-        let [first, past] = span.map(|c| c as usize);
-        if first <= columns.start && columns.end <= past || columns.is_empty() {
+    #[inline(always)]
+    fn near(&mut self, row: usize, columns: &Range<usize>) {
+        let [first, past] = self.spans[row].map(|c| c as usize);
+        if first <= columns.start && columns.end <= past {
             return;
         }
         let there = &mut self.samples[row * self.width..][..self.width];
@@ -315,55 +428,61 @@ impl<T: Copy, D: Depths> Band<'_, T, D> {
         };
         // In between as well, so that a span is enough to tell.
         let (known, past) = if first == past { (high, high) } else { (first, past) };
-        there[low..known].fill(self.clear);
-        there[past..high].fill(self.clear);
-        *span = [low as u32, high as u32];
+        there[low..known].fill(CLEAR);
+        there[past..high].fill(CLEAR);
+        self.spans[row] = [low as u32, high as u32];
     }
-
-    /// Finds the samples whose rays meet a box before the image, but for those that are skipped: each
-    /// with the number of the face by which it is entered.
-    #[inline]
-    fn meet<V: Vector>(
-        &mut self,
-        rays: &Rays,
-        bounds: &Aabb<V>,
-        skips: impl Fn(&T) -> bool,
-        mut hit: impl FnMut(&mut T, usize),
-    ) {
-        let (mut min, mut max) = (widened(bounds.min), widened(bounds.max));
-        for a in 0..V::AXES {
-            min[a] -= rays.eye[a];
-            max[a] -= rays.eye[a];
+    /// A face under what a sample holds: what is seen of it is the share that shows (Porter and Duff 1984).
+    #[inline(always)]
+    fn meet(&mut self, at: usize, depth: f32, axis: usize) {
+        let sample = &mut self.samples[at];
+        let left = sample[3];
+        // Tested against the z-buffer, which the paper's cubes write as well. A full sample shows nothing
+        // more.
+        if left < FULL || depth < self.depths[at] {
+            return;
         }
-        let [across, down] = rays.rectangle::<V>(&min, &max);
-        let first = self.first as f64;
-        let rows = self.samples.len() / self.width.max(1);
-        let columns = samples_in(across, self.width);
-        for row in samples_in([down[0] - first, down[1] - first], rows) {
-            self.know(row, &columns);
-            for column in columns.clone() {
-                let at = row * self.width + column;
-                if skips(&self.samples[at]) {
-                    continue;
-                }
-                let place = (column as f64, (row + self.first) as f64);
-                let Some((depth, face)) = rays.enter::<V>(place.0, place.1, &min, &max) else { continue };
-                let depth = (1.0 / depth) as f32;
-                if self.depths.is_before(at, depth) {
-                    hit(&mut self.samples[at], face);
-                }
-            }
+        let [r, g, b, alpha] = self.faces[axis];
+        *sample = [sample[0] + left * r, sample[1] + left * g, sample[2] + left * b, left * (1.0 - alpha)];
+    }
+}
+
+/// Samples of which boxes take light.
+struct Dimmed<'a> {
+    left: &'a mut [f32],
+    depth: &'a mut [f32],
+    through: [f32; 3],
+}
+
+impl Samples for Dimmed<'_> {
+    #[inline(always)]
+    fn next(&mut self, faces: &CubeFaces, toward: [usize; 3]) {
+        for (to, face) in self.through.iter_mut().zip(toward) {
+            *to = 1.0 - faces.get(face)[3];
+        }
+    }
+    #[inline(always)]
+    fn meet(&mut self, at: usize, depth: f32, axis: usize) {
+        if self.left[at] >= FULL {
+            self.left[at] *= self.through[axis];
+            self.depth[at] = depth;
         }
     }
 }
 
-/// Those at which samples meet the last box, whatever is there.
-struct Last<'a>(&'a mut [f32]);
+/// A box, and what it is put before, over or behind.
+struct One<'a, V, T> {
+    rays: &'a Rays,
+    rows: Rows,
+    one: StandIn<V>,
+    to: T,
+}
 
-impl Depths for Last<'_> {
-    fn is_before(&mut self, at: usize, depth: f32) -> bool {
-        self.0[at] = depth;
-        true
+impl<V: Vector, T: Samples> Work for One<'_, V, T> {
+    type Output = ();
+    #[inline(always)]
+    fn run<L: Wide>(mut self, l: L) {
+        meet(l, self.rays, &self.rows, std::slice::from_ref(&self.one), &mut self.to);
     }
 }
 
@@ -376,8 +495,35 @@ pub(super) fn dim<V: Vector>(
     faces: &CubeFaces,
     (left, depth): (&mut [f32], &mut [f32]),
 ) {
-    let mut band = Band { first: 0, width, samples: left, depths: Last(depth), spans: &mut [], clear: 1.0 };
-    band.meet(rays, bounds, |left| *left < FULL, |left, face| *left *= 1.0 - faces.get(face)[3]);
+    let rows = Rows { first: 0, count: left.len() / width.max(1), width };
+    let one = StandIn { node: NodeId(0), bounds: *bounds, faces: *faces, after: 0 };
+    run(Isa::best(), One { rays, rows, one, to: Dimmed { left, depth, through: [1.0; 3] } });
+}
+
+/// Samples over which boxes are put, which write their depths.
+struct Over<'a> {
+    colors: &'a mut [[f32; 3]],
+    depths: &'a mut [f32],
+    faces: [[f32; 4]; 3],
+}
+
+impl Samples for Over<'_> {
+    #[inline(always)]
+    fn next(&mut self, faces: &CubeFaces, toward: [usize; 3]) {
+        for (to, face) in self.faces.iter_mut().zip(toward) {
+            *to = faces.get(face);
+        }
+    }
+    #[inline(always)]
+    fn meet(&mut self, at: usize, depth: f32, axis: usize) {
+        if depth < self.depths[at] {
+            return;
+        }
+        self.depths[at] = depth;
+        let ([r, g, b, alpha], [red, green, blue]) = (self.faces[axis], self.colors[at]);
+        let through = 1.0 - alpha;
+        self.colors[at] = [r + through * red, g + through * green, b + through * blue];
+    }
 }
 
 /// The image of primitives and boxes drawn in the order of a list, the farthest first: each box goes over
@@ -408,19 +554,11 @@ pub fn draw_in_order<S: Drawable>(
             }
             next = end;
         }
-        let Some(one) = one else { break };
-        let (samples, depths) = (&mut colors[..], &mut image.depth[..]);
-        let (width, spans) = (view.width as usize, &mut [][..]);
-        let mut band = Band { first: 0, width, samples, depths, spans, clear: background };
-        band.meet(
-            &rays,
-            &one.bounds,
-            |_| false,
-            |there, face| {
-                let [r, g, b, alpha] = one.faces.get(face);
-                *there = std::array::from_fn(|c| [r, g, b][c] + (1.0 - alpha) * there[c]);
-            },
-        );
+        let Some(&one) = one else { break };
+        let (colors, depths, width) = (&mut colors[..], &mut image.depth[..], view.width as usize);
+        let rows = Rows { first: 0, count: view.height as usize, width };
+        let to = Over { colors, depths, faces: [CLEAR; 3] };
+        run(Isa::best(), One { rays: &rays, rows, one, to });
     }
     colors
 }

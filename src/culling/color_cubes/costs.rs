@@ -4,19 +4,21 @@
 //! is small enough, and all the same each primitive of which some leaf is too large. So for each cell the
 //! deepest level is found at which its cells must be small enough for the visit to be the cheaper way; a
 //! frame asks whether they are, which is one comparison. (The paper refines until cells are small, and so
-//! takes up to
-//! 2.5 times as long as for geometry alone: Table 2.) Cost: O(references · levels), once.
+//! takes up to 2.5 times as long as for geometry alone: Table 2.)
+//!
+//! A cell whose cube is too wrong for its size is drawn as its cube from farther away only, as a larger one
+//! would be. Cost: O(references · levels), once.
 
 use crate::geometry::{NodeId, PrimId, Space, Vector};
-use crate::index::CellTree;
+use crate::index::{CellNode, CellTree};
 use crate::scene::Scene;
 
 /// What a visit, a cube and a reference that is read cost, and a primitive drawn by itself, in primitives
 /// drawn with all others: times of `generate:tree` and of `generate:molecule`.
-const VISIT: f32 = 1.0;
-const CUBE: f32 = 4.0;
-const REFERENCE: f32 = 0.1;
-const ALONE: f32 = 1.5;
+const VISIT: f32 = 0.8;
+const CUBE: f32 = 2.0;
+const REFERENCE: f32 = 0.15;
+const ALONE: f32 = 1.1;
 
 /// Levels at most.
 const LEVELS: usize = CellTree::<glam::Vec3>::MOST_LEVELS as usize + 1;
@@ -30,13 +32,26 @@ struct Costs {
     drawn: [f32; LEVELS],
 }
 
-/// Of each node the deepest level from which on its cells must be drawn as cubes, for it to be no loss to
-/// look below it; its own level if it always is one.
-pub fn pays<S: Space>(tree: &CellTree<S::Vector>, scene: &Scene<S>) -> Vec<u8> {
-    let pays = tree.nodes().iter().map(|node| node.level).collect();
-    let mut weighing = Weighing { tree, leaves: leaves(tree, scene.prim_count()), pays };
+/// Of each node the deepest level whose cells must be no larger than the threshold, for it to be no loss to
+/// look below it; 0 if it always is one. `excess`: of each node the error of its cube in shares of what is
+/// allowed at the threshold; none if all are allowed.
+pub fn pays<S: Space>(tree: &CellTree<S::Vector>, scene: &Scene<S>, excess: &[f32]) -> Vec<u8> {
+    let nodes = tree.nodes();
+    let counts = |(at, node): (usize, &CellNode)| match excess.get(at) {
+        // It is as wrong as is allowed where its sides are so many times shorter.
+        Some(excess) => level_above(node.level, excess.sqrt()),
+        None => node.level,
+    };
+    let counts: Vec<u8> = nodes.iter().enumerate().map(counts).collect();
+    let leaves = leaves(tree, scene.prim_count(), &counts);
+    let mut weighing = Weighing { tree, leaves, counts, pays: vec![0; nodes.len()] };
     weighing.weigh(0);
     weighing.pays
+}
+
+/// The lowest level above one whose cells are so many times as large; 0 if there is none.
+fn level_above(level: u8, times: f32) -> u8 {
+    level.saturating_sub(times.max(1.0).log2().ceil() as u8)
 }
 
 /// Nodes whose costs are being added up.
@@ -44,6 +59,8 @@ struct Weighing<'a, V> {
     tree: &'a CellTree<V>,
     /// Of each item the level of the highest leaf that holds it, and how many do.
     leaves: Vec<(u8, u32)>,
+    /// Of each node: it is drawn as its cube where cells of this level would be.
+    counts: Vec<u8>,
     pays: Vec<u8>,
 }
 
@@ -52,7 +69,7 @@ impl<V: Vector> Weighing<'_, V> {
     fn weigh(&mut self, at: usize) -> Costs {
         let tree = self.tree;
         let node = &tree.nodes()[at];
-        let level = usize::from(node.level);
+        let level = usize::from(self.counts[at]);
         let mut costs = Costs { extra: [VISIT; LEVELS], drawn: [0.0; LEVELS] };
         costs.extra[..=level].fill(VISIT + CUBE);
         if node.is_leaf() {
@@ -74,18 +91,25 @@ impl<V: Vector> Weighing<'_, V> {
         }
         let is_no_loss = |l: &usize| costs.extra[*l] + ALONE * costs.drawn[*l] <= costs.drawn[LEVELS - 1];
         let levels = level + 1..=usize::from(node.lowest);
-        self.pays[at] = levels.rev().find(is_no_loss).unwrap_or(level) as u8;
+        self.pays[at] = levels.rev().find(is_no_loss).unwrap_or(0) as u8;
         costs
     }
 }
 
-/// Of each item, by its first primitive, the level of the highest leaf that holds it, and how many do.
-fn leaves<V: Vector>(tree: &CellTree<V>, prims: usize) -> Vec<(u8, u32)> {
+/// Of each item, by its first primitive, the level of the highest leaf that holds it, and how many do. A leaf
+/// is as low as the lowest cell about it that can be drawn as its cube.
+fn leaves<V: Vector>(tree: &CellTree<V>, prims: usize, counts: &[u8]) -> Vec<(u8, u32)> {
     let mut leaves = vec![(LEVELS as u8 - 2, 0); prims];
-    for (at, node) in tree.nodes().iter().enumerate().filter(|(_, node)| node.is_leaf()) {
+    let mut lowest = counts.to_vec();
+    for (at, node) in tree.nodes().iter().enumerate() {
+        let here = lowest[at];
+        if !node.is_leaf() {
+            node.children().for_each(|child| lowest[child as usize] = lowest[child as usize].max(here));
+            continue;
+        }
         for PrimId(prim) in tree.references(NodeId(at as u32)) {
             let (highest, count) = &mut leaves[*prim as usize];
-            *highest = node.level.min(*highest);
+            *highest = here.min(*highest);
             *count += 1;
         }
     }
@@ -99,15 +123,22 @@ mod tests {
     use super::*;
     use crate::culling::color_cubes::index::is_small;
     use crate::culling::color_cubes::space::Projected;
-    use crate::geometry::{Flat, Solid};
+    use crate::geometry::{Dice, Flat, Solid};
     use crate::index::Items;
     use crate::scene::samples;
 
-    /// What a visit below a node costs where the cells of a level are drawn as cubes, walked out; the
+    /// What a visit below a node costs where cells of a level are as large as the threshold, walked out; the
     /// primitives that are drawn go to a set.
-    fn walked<V: Vector>(tree: &CellTree<V>, at: u32, cubes: u8, drawn: &mut BTreeSet<PrimId>) -> f32 {
+    fn walked<V: Vector>(
+        (tree, excess): (&CellTree<V>, &[f32]),
+        at: u32,
+        level: u8,
+        drawn: &mut BTreeSet<PrimId>,
+    ) -> f32 {
         let node = &tree.nodes()[at as usize];
-        if node.level >= cubes {
+        // In sizes of the threshold.
+        let size = 2f32.powi(i32::from(level) - i32::from(node.level));
+        if size <= 1.0 && excess.get(at as usize).is_none_or(|excess| excess * size * size <= 1.0) {
             return VISIT + CUBE;
         }
         if node.is_leaf() {
@@ -115,25 +146,29 @@ mod tests {
             drawn.extend(items);
             return VISIT + REFERENCE * items.len() as f32;
         }
-        VISIT + node.children().map(|child| walked(tree, child, cubes, drawn)).sum::<f32>()
+        VISIT + node.children().map(|child| walked((tree, excess), child, level, drawn)).sum::<f32>()
     }
 
-    /// Of the whole scene the deepest level at which the walk costs no more than all primitives.
-    fn is_as_walked<S: Projected>() {
+    /// Of the whole scene the deepest level at which the walk costs no more than all primitives; with cubes
+    /// that are so many times too wrong at most.
+    fn is_as_walked<S: Projected>(most: f32) {
         let mut found = BTreeSet::new();
         for (seed, prims) in [(1, 40), (2, 400), (3, 4000), (4, 20_000)] {
             let scene = samples::soup::<S>(seed, prims);
-            let tree = CellTree::build(&scene, Items::default(), 20, &is_small::<S>, &|| false);
+            let tree = CellTree::build(&scene, Items::default(), 20, &is_small::<S>(1.0), &|| false);
             let tree = tree.expect("not cancelled");
+            let mut dice = Dice::new(seed);
+            let wrong = if most > 0.0 { tree.nodes().len() } else { 0 };
+            let excess: Vec<f32> = (0..wrong).map(|_| dice.between(0.0, most)).collect();
             let lowest = tree.nodes()[0].lowest;
-            let cost = |cubes: u8| {
+            let cost = |level: u8| {
                 let mut drawn = BTreeSet::new();
-                walked(&tree, 0, cubes, &mut drawn) + ALONE * drawn.len() as f32
+                walked((&tree, &excess), 0, level, &mut drawn) + ALONE * drawn.len() as f32
             };
             let live = scene.live().len() as f32;
             // Sums of shares are rounded.
             let want = (1..=lowest).rev().find(|l| cost(*l) <= live * 1.0001).unwrap_or(0);
-            let got = pays(&tree, &scene)[0];
+            let got = pays(&tree, &scene, &excess)[0];
             assert_eq!(got, want, "{prims}: {:?}", (1..=lowest).map(cost).collect::<Vec<_>>());
             found.insert(got);
         }
@@ -142,7 +177,9 @@ mod tests {
 
     #[test]
     fn looking_pays_where_a_walk_costs_less() {
-        is_as_walked::<Flat>();
-        is_as_walked::<Solid>();
+        for most in [0.0, 2.0, 20.0] {
+            is_as_walked::<Flat>(most);
+            is_as_walked::<Solid>(most);
+        }
     }
 }

@@ -12,7 +12,7 @@
 use super::analytic::{self, Surface};
 use super::space::{Corners, Projected, Window};
 use crate::geometry::{Aabb, NodeId, PrimId, Space, Vector};
-use crate::index::{CellTree, octant_of};
+use crate::index::{CellTree, octant_of, octants_touched};
 use crate::raster::{CubeFaces, VEIL, fixed_light};
 use crate::scene::{Progress, Scene, Surfaces};
 
@@ -54,41 +54,43 @@ impl<S: Projected> Baking<'_, S> {
             errors: vec![0.0; if measures { count } else { 0 }],
             room: Room::default(),
         };
-        self.bake_below(
-            &mut work,
-            0,
-            tree.root(),
-            if tree.items().are_single() { &[] } else { self.scene.live() },
-        )?;
+        let all = if tree.items().are_single() { Vec::new() } else { self.scene.live().to_vec() };
+        self.bake_below(&mut work, 0, tree.root(), all)?;
         // From unrounded values, so that nothing adds up.
         Some(Baked { faces: work.faces.iter().map(CubeFaces::new).collect(), errors: work.errors })
     }
 
-    /// The faces of a cell and all below it, in post-order (Section 4), from the primitives of objects that
-    /// are in the cell above it; `None` when cancelled.
+    /// The faces of a cell and all below it, in post-order (Section 4); `None` when cancelled. `prims`: the
+    /// primitives of objects that are in it.
     fn bake_below(
         &self,
         work: &mut Work<'_, S>,
         at: usize,
         cell: &Aabb<S::Vector>,
-        above: &[PrimId],
+        mut prims: Vec<PrimId>,
     ) -> Option<()> {
         let (tree, id) = (work.tree, NodeId(at as u32));
         let node = &tree.nodes()[at];
         let (is_composed, measures) = (self.composes && !node.is_leaf(), !work.errors.is_empty());
-        let mut prims = Vec::new();
-        if !tree.items().are_single() {
+        if !node.is_leaf() {
+            let mut parted: [Vec<PrimId>; 8] = Default::default();
             // Objects are large: of their primitives most are in other cells.
-            let is_in = |prim: &&PrimId| Aabb::of(self.scene.prim_points(**prim)).touches(cell);
-            prims.extend(above.iter().filter(is_in));
-        } else if !is_composed || measures {
-            prims = held(tree, id);
+            for &prim in &prims {
+                let octants = octants_touched(&Aabb::of(self.scene.prim_points(prim)), cell);
+                let met = parted.iter_mut().enumerate().filter(|(octant, _)| octants >> octant & 1 == 1);
+                met.for_each(|(_, to)| to.push(prim));
+            }
+            if is_composed && !measures {
+                prims = Vec::new();
+            }
+            for (octant, prims) in parted.into_iter().enumerate() {
+                if let Some(child) = node.child(octant) {
+                    self.bake_below(work, child.at(), &octant_of(cell, octant), prims)?;
+                }
+            }
         }
-        for octant in
-            (0..1 << S::Vector::AXES).filter(|octant| !node.is_leaf() && node.octants >> octant & 1 == 1)
-        {
-            let child = node.child(octant).expect("it is there");
-            self.bake_below(work, child.at(), &octant_of(cell, octant), &prims)?;
+        if tree.items().are_single() && (!is_composed || measures) {
+            prims = held(tree, id);
         }
         work.faces[at] = match is_composed {
             true => composed::<S::Vector>(|octant, face| {

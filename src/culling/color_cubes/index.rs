@@ -77,7 +77,7 @@ impl<S: Projected> CubeTree<S> {
         }
         progress.report(0.0, "dividing cells");
         let (levels, cancelled) = (params.tree_levels, || progress.cancelled());
-        let tree = CellTree::build(scene, items, levels, &is_small::<S>, &cancelled);
+        let tree = CellTree::build(scene, items, levels, &is_small::<S>(params.cube_cost), &cancelled);
         Ok(tree.and_then(|tree| Self::of_tree(tree, scene, params, progress)))
     }
     /// Makes the cubes of a tree over the scene; `None` when cancelled.
@@ -106,7 +106,8 @@ impl<S: Projected> CubeTree<S> {
         key: saved::Key,
     ) -> Self {
         let occluders = params.hides().then(|| Occluders::new(scene, params, &tree));
-        Self { pays: pays(&tree, scene), tree, baked, occluders, key }
+        let excess: Vec<f32> = baked.errors.iter().map(|error| error * params.inverse_most_error()).collect();
+        Self { pays: pays(&tree, scene, &excess), tree, baked, occluders, key }
     }
 }
 
@@ -119,9 +120,11 @@ pub fn items<S: Space>(scene: &Scene<S>, params: &Params) -> Items {
 }
 
 /// Section 4: a leaf is small enough when its primitives cost no more than the cubes of the children that it
-/// would have. Of a cube three faces at most face the eye, in flatland two.
-pub fn is_small<S: Projected>(shares: f64, children: u32) -> bool {
-    shares <= f64::from(S::CUBE_COST * children)
+/// would have. Of a cube three faces at most face the eye, in flatland two. `cost`: of a cube, beside that of
+/// the primitives of these.
+pub fn is_small<S: Projected>(cost: f32) -> impl Fn(f64, u32) -> bool {
+    let cost = f64::from(cost) * f64::from(S::CUBE_COST);
+    move |shares, children| shares <= cost * f64::from(children)
 }
 
 impl<S: Space> CubeTree<S> {
@@ -133,8 +136,8 @@ impl<S: Space> CubeTree<S> {
     pub fn occluders(&self) -> Option<&Occluders<S::Vector>> {
         self.occluders.as_ref()
     }
-    /// The deepest level from which on the cells below a node must be drawn as cubes, for it to be no loss to
-    /// look below it; the node's own level if it always is one.
+    /// The deepest level whose cells must be no larger than the threshold, for it to be no loss to look below
+    /// a node; 0 if it always is one.
     #[inline]
     pub fn pays_from(&self, node: NodeId) -> u8 {
         self.pays[node.at()]

@@ -66,6 +66,7 @@ pub(crate) struct ColorCubes;
 pub(crate) struct Params {
     pixel_threshold: f32,
     tree_levels: u32,
+    cube_cost: f32,
     primitives: Primitives,
     faces: Coverage,
     face_samples: u32,
@@ -82,6 +83,8 @@ impl Default for Params {
             // Section 3: "no more than a pixel on the display".
             pixel_threshold: 1.0,
             tree_levels: CellTree::<glam::Vec3>::MOST_LEVELS,
+            // Section 4: what its faces cost.
+            cube_cost: 1.0,
             primitives: Primitives::default(),
             faces: Coverage::default(),
             // Section 4: "typically, 4×4 pixels".
@@ -162,6 +165,10 @@ impl Params {
     /// Whether it is measured how wrong cubes are.
     fn measures(&self) -> bool {
         self.error_bound > 0.0
+    }
+    /// What an error is multiplied with to be 1 where a cube at the threshold may just be drawn.
+    fn inverse_most_error(&self) -> f32 {
+        self.pixel_threshold * self.pixel_threshold / self.error_bound
     }
     fn is_analytic(&self) -> bool {
         self.faces == Coverage::Analytic
@@ -244,6 +251,15 @@ impl<S: Projected> Method<S> for ColorCubes {
             "Chamberlain et al. 1996, Section 4",
         );
         knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
+        let cost = Knob::new(
+            "cube-cost",
+            "times",
+            "what drawing a cube costs beside the 6 triangles (in flatland 2 segments) of its faces that can \
+             be toward the eye, when cells are divided; less, such as 0.5, makes smaller leaves and a larger \
+             tree, which is the faster one where drawing a cube takes less time than so many triangles",
+            "Chamberlain et al. 1996, Section 4",
+        );
+        knobs.real(cost, 0.1..=10.0, &mut params.cube_cost);
         face_knobs(params, knobs);
         let bound = Knob::new(
             "error-bound",

@@ -9,11 +9,11 @@ use crate::index::{CellTree, Items};
 use crate::raster::CubeFaces;
 use crate::scene::Scene;
 
-const FORMAT: Format = Format { magic: b"cullscope-c2", method: "color-cubes", has_bytes: false };
+const FORMAT: Format = Format { magic: b"cullscope-c3", method: "color-cubes", has_bytes: false };
 
-/// What a tree was made for: levels at most, whether it refers to objects, samples of a face, whether inner
+/// What a tree was made for: levels at most, what a cube costs, whether it refers to objects, samples of a face, whether inner
 /// faces are composed, whether errors are measured, how surfaces are taken, and whether faces are worked out.
-pub type Key = saved::Key<7>;
+pub type Key = saved::Key<8>;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
@@ -22,15 +22,17 @@ pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     let (composes, measures) = (params.composes().into(), params.measures().into());
     let is_analytic = params.is_analytic().into();
     let objects = u32::from(params.primitives == Primitives::Objects);
-    let Params { tree_levels, face_samples, .. } = *params;
-    let params = [tree_levels, objects, face_samples, composes, measures, surfaces, is_analytic];
+    let Params { tree_levels, face_samples, cube_cost, .. } = *params;
+    let params =
+        [tree_levels, cube_cost.to_bits(), objects, face_samples, composes, measures, surfaces, is_analytic];
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, objects, samples, composed, measured, surfaces, analytic]: [u32; 7]) -> String {
+fn describe([levels, cost, objects, samples, composed, measured, surfaces, analytic]: [u32; 8]) -> String {
     format!(
-        "tree-levels={levels} primitives={} faces={} face-samples={samples} interior={} error-bound={} \
+        "tree-levels={levels} cube-cost={} primitives={} faces={} face-samples={samples} interior={} error-bound={} \
          backface-culling={} see-through={}",
+        f32::from_bits(cost),
         if objects == 1 { "objects" } else { "single" },
         if analytic == 1 { "analytic" } else { "sampled" },
         if composed == 1 { "composed" } else { "direct" },

@@ -159,12 +159,14 @@ fn surfaces_are_more_wrong_than_clouds() {
 #[test]
 fn a_cell_is_a_leaf_by_what_its_childrens_cubes_cost() {
     // Eight cubes of six triangles each, then four.
-    assert_eq!([48.0, 49.0].map(|cost| is_small::<Solid>(cost, 8)), [true, false]);
-    assert_eq!([24.0, 25.0].map(|cost| is_small::<Solid>(cost, 4)), [true, false]);
+    assert_eq!([48.0, 49.0].map(|cost| is_small::<Solid>(1.0)(cost, 8)), [true, false]);
+    assert_eq!([24.0, 25.0].map(|cost| is_small::<Solid>(1.0)(cost, 4)), [true, false]);
     // In flatland two segments face the eye.
-    assert_eq!([8.0, 9.0].map(|cost| is_small::<Flat>(cost, 4)), [true, false]);
+    assert_eq!([8.0, 9.0].map(|cost| is_small::<Flat>(1.0)(cost, 4)), [true, false]);
     // A sphere of 800 triangles in even parts: small enough in 34 cells, not in 33.
-    assert_eq!([33.0, 34.0].map(|cells| is_small::<Solid>(800.0 / cells, 4)), [false, true]);
+    // Where a cube costs half as much, so may what a leaf holds.
+    assert_eq!([24.0, 25.0].map(|cost| is_small::<Solid>(0.5)(cost, 8)), [true, false]);
+    assert_eq!([33.0, 34.0].map(|cells| is_small::<Solid>(1.0)(800.0 / cells, 4)), [false, true]);
 }
 
 /// The share of each primitive in each node, from the tree alone.
@@ -198,7 +200,7 @@ fn shares_add_up<S: Projected>() {
             if children == 1 {
                 sums.borrow_mut().push(sum);
             }
-            is_small::<S>(sum, children)
+            is_small::<S>(1.0)(sum, children)
         };
         let tree = CellTree::build(&scene, Items::default(), 20, &stop, &|| false).expect("not cancelled");
         let (all, mut open, mut want) = (shares(&tree, &scene), vec![NodeId(0)], Vec::new());
@@ -671,8 +673,8 @@ fn what_was_saved_comes_back_or_is_refused() {
 #[test]
 fn tables_of_no_tree_are_refused() {
     let scene = samples::soup::<Solid>(3, 3000);
-    let tree =
-        CellTree::build(&scene, Items::default(), 20, &is_small::<Solid>, &|| false).expect("not cancelled");
+    let tree = CellTree::build(&scene, Items::default(), 20, &is_small::<Solid>(1.0), &|| false)
+        .expect("not cancelled");
     let [nodes, references] = tree.tables();
     let is_taken = |nodes: &[u32], references: &[u32]| {
         CellTree::of_tables(&*scene, Items::default(), nodes, references.to_vec()).is_some()

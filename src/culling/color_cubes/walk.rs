@@ -16,46 +16,58 @@ use crate::scene::Scene;
 
 /// A mark for each primitive.
 #[derive(Default)]
-struct Marks(Vec<u64>);
+struct Marks {
+    words: Vec<u64>,
+    /// A bit for each word that is not 0, so that a few marks among many are found at once.
+    filled: Vec<u64>,
+}
 
 impl Marks {
     fn new(count: usize) -> Self {
-        Self(vec![0; count.div_ceil(64)])
+        let words = count.div_ceil(64);
+        Self { words: vec![0; words], filled: vec![0; words.div_ceil(64)] }
     }
     /// Marks one; whether it was marked before.
     #[inline]
     fn mark(&mut self, prim: PrimId) -> bool {
-        let (word, bit) = (&mut self.0[prim.at() / 64], 1 << (prim.at() % 64));
-        let was = *word & bit != 0;
-        *word |= bit;
+        let (at, bit) = (prim.at() / 64, 1 << (prim.at() % 64));
+        let was = self.words[at] & bit != 0;
+        self.words[at] |= bit;
+        self.filled[at / 64] |= 1 << (at % 64);
         was
     }
     fn has(&self, prim: PrimId) -> bool {
-        self.0[prim.at() / 64] >> (prim.at() % 64) & 1 == 1
+        self.words[prim.at() / 64] >> (prim.at() % 64) & 1 == 1
+    }
+    /// Takes all marks off, and lists what was marked, ascending.
+    fn take(&mut self, to: &mut Vec<PrimId>) {
+        for block in 0..self.filled.len() {
+            for at in ones(std::mem::take(&mut self.filled[block])).map(|k| 64 * block + k) {
+                let first = 64 * at as u32;
+                match std::mem::take(&mut self.words[at]) {
+                    u64::MAX => to.extend((first..first + 64).map(PrimId)),
+                    word => to.extend(ones(word).map(|k| PrimId(first + k as u32))),
+                }
+            }
+        }
     }
     /// No primitive is marked.
     fn clear(&mut self) {
-        self.0.fill(0);
+        for block in 0..self.filled.len() {
+            for at in ones(std::mem::take(&mut self.filled[block])) {
+                self.words[64 * block + at] = 0;
+            }
+        }
     }
 }
 
-/// Sorts distinct primitives of a scene of so many.
-fn ascend(prims: &mut [PrimId], count: usize) {
-    // A mark for each is faster than a sort, unless most have none.
-    if prims.len() * 32 < count {
-        return prims.sort_unstable();
-    }
-    let mut marks = Marks::new(count);
-    prims.iter().for_each(|&prim| _ = marks.mark(prim));
-    let mut places = prims.iter_mut();
-    for (at, &word) in marks.0.iter().enumerate() {
-        let mut bits = word;
-        while bits != 0 {
-            let prim = PrimId(at as u32 * 64 + bits.trailing_zeros());
-            places.next().into_iter().for_each(|place| *place = prim);
-            bits &= bits - 1;
-        }
-    }
+/// The numbers of the bits that are set, ascending.
+fn ones(mut bits: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let next = (bits != 0).then(|| bits.trailing_zeros() as usize);
+        bits &= bits.wrapping_sub(1);
+        next
+    })
 }
 
 /// The size on the screen, pixels, of what has so many at depth 1. About the eye a cell has no size there,
@@ -92,8 +104,12 @@ pub(super) struct Walk<'a, S: Projected, O> {
     sides: [f32; 32],
     /// What of that is half a unit of length.
     pixels_of_half: f32,
-    /// Items of which no leaf alone has all, that were drawn or found to face away.
+    /// Items that were drawn, or found to face away: all where that is how they are listed, else those of
+    /// which no leaf alone has all.
     done: Marks,
+    /// Whether what is to be drawn is listed in the end, by its marks. Its order is of no matter, unless it is
+    /// the paper's; by number those that share points are near each other, as they are in the scene.
+    lists_marks: bool,
     /// Items that are in some cube that was drawn; kept only where somebody listens.
     in_cubes: Marks,
     /// Whether no cell below the one that is visited is to be drawn as a cube.
@@ -139,6 +155,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             sides: std::array::from_fn(|level| side * pixels / (1u32 << level.min(31)) as f32),
             pixels_of_half: 0.5 / pixels,
             done: Marks::new(scene.prim_count()),
+            lists_marks: params.order == Order::Exact && !params.surfaces.one_sided,
             in_cubes: Marks::new(if O::LISTENS { scene.prim_count() } else { 0 }),
             as_geometry: false,
             hiding: None,
@@ -165,10 +182,17 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
     pub(super) fn visit(&mut self, planes: u8) {
         let first = self.out.prims.len();
         self.render(NodeId(0), *self.tree.root(), planes);
-        // Their order is of no matter, unless it is the paper's; by number those that share points are near
-        // each other, as they are in the scene.
-        if self.params.order == Order::Exact {
-            ascend(&mut self.out.prims[first..], self.scene.prim_count());
+        let (items, prims) = (self.tree.items(), &mut self.out.prims);
+        if self.lists_marks && items.are_single() {
+            self.done.take(prims);
+        } else if self.lists_marks {
+            let mut drawn = Vec::new();
+            self.done.take(&mut drawn);
+            items.extend(prims, &drawn);
+        } else if self.params.order == Order::Exact {
+            let mut marks = Marks::new(self.scene.prim_count());
+            prims.drain(first..).for_each(|prim| _ = marks.mark(prim));
+            marks.take(prims);
         }
     }
     /// The eye stands elsewhere and looks the same way: as if another copy of the scene were seen, of which
@@ -298,7 +322,7 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         let from = self.index.pays_from(id);
         // A cell's farthest point lies half a side on from its center, on each axis.
         let farthest = depth + self.sides[usize::from(level)] * self.pixels_of_half * self.spread;
-        from == level || self.sides[usize::from(from)] > self.params.pixel_threshold * farthest
+        from == 0 || self.sides[usize::from(from)] > self.params.pixel_threshold * farthest
     }
 
     fn visit_children(&mut self, id: NodeId, cell: &Aabb<S::Vector>, cutting: u8) {
@@ -333,6 +357,11 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             return self.out.prims.extend_from_slice(scene.live());
         }
         if !node.is_leaf() {
+            if self.lists_marks && self.hiding.is_none() && !O::LISTENS {
+                // Leaf by leaf there is nothing to be told.
+                self.is_marked = true;
+                return tree.references(id).iter().for_each(|&item| _ = self.done.mark(item));
+            }
             return node.children().for_each(|child| self.draw_geometry(NodeId(child)));
         }
         // The verdict about the cell is about these as well: no other one can have drawn them.
@@ -342,13 +371,18 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
             own.iter().flat_map(|&item| items.prims(item)).for_each(|prim| self.draw(PrimId(prim), id));
         } else {
             self.line(line::OWN);
-            items.extend(&mut self.out.prims, own);
+            match self.lists_marks {
+                true => own.iter().for_each(|&item| _ = self.done.mark(item)),
+                false => items.extend(&mut self.out.prims, own),
+            }
         }
         self.is_marked |= !shared.is_empty();
         for &item in shared {
             self.line(line::EACH);
             self.line(line::ONCE);
-            if !self.done.mark(item) {
+            let was_drawn = self.done.mark(item);
+            // Where marks are what is listed, there is more to do only if somebody listens.
+            if (O::LISTENS || !self.lists_marks) && !was_drawn {
                 items.prims(item).for_each(|prim| self.draw(PrimId(prim), id));
             }
         }
@@ -366,7 +400,9 @@ impl<'a, S: Projected, O: Observer<Evidence<S>>> Walk<'a, S, O> {
         self.line(line::DRAW_PRIM);
         self.watch.note(move || Evidence::Settled(Settled::Drawn { prim, node: id }));
         self.watch.event(Event::DecidedPrim(prim, Verdict::Visible));
-        self.out.prims.push(prim);
+        if !self.lists_marks {
+            self.out.prims.push(prim);
+        }
     }
 
     /// Says what became of the primitives that the children of a cell share, now that all of them are done.

@@ -35,7 +35,7 @@ mod ready;
 mod resolve;
 mod segments;
 mod setup;
-mod wide;
+pub(super) mod wide;
 mod window;
 
 pub use clusters::{Boxes, Clusters};
@@ -54,7 +54,7 @@ use crate::geometry::{PixelRect, PrimId, Space, View};
 /// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-struct Line {
+pub(in crate::raster) struct Line {
     /// Nothing in the tile is farther than this.
     far: [f32; 4],
     /// Where `mask` is set nothing is farther than this.

@@ -39,7 +39,7 @@ fn stored<S: Projected>(
                 scene,
                 Items::default(),
                 params.tree_levels,
-                &is_small::<S>,
+                &is_small::<S>(1.0),
                 &|| false,
             );
             CubeTree::of_tree(tree.expect("not cancelled"), scene, params, &Quiet).expect("not cancelled")
