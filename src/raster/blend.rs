@@ -4,12 +4,12 @@
 //! associative (Porter and Duff 1984), so that is what the paper's quads drawn over each other from the back
 //! give, and a sample that lets no more light through can be left alone.
 //!
-//! A sample meets a box where its ray does, by the planes of the box. The inverse of the depth at which a ray
-//! passes a plane is a number of the ray times a number of the plane, the same for all boxes that share the
-//! plane, and descends along the ray. So each depth belongs to one box of a grid: a wall of boxes has no crack
-//! and no seam, however it is turned, and each sample meets one face of a box at most. Where a primitive is
-//! drawn its corners lie on the pixel grid, by 1/362 pixel at most from where a ray has them. (The paper draws
-//! faces as quads, by graphics hardware.)
+//! A sample meets a box where its ray does, by the planes of the box. The inverse of the depth at which a
+//! ray passes a plane is a number of the ray times a number of the plane, the same for all boxes that share
+//! the plane, and descends along the ray. So each depth belongs to one box of a grid: a wall of boxes has no
+//! crack and no seam, however it is turned, and each sample meets one face of a box at most. Where a
+//! primitive is drawn its corners lie on the pixel grid, by 1/362 pixel at most from where a ray has them.
+//! (The paper draws faces as quads, by graphics hardware.)
 //!
 //! Eight samples are asked at a time, on lanes; the same bits come out on every machine.
 //!
@@ -185,13 +185,30 @@ impl Rays {
     /// The directions of eight samples.
     #[inline(always)]
     fn along<L: Wide>(&self, l: L, columns: L::F, rows: L::F) -> [L::F; 3] {
-        let mut along = [l.splat(0.0); 3];
-        for a in 0..3 {
-            let across = l.add(l.splat(self.origin[a] as f32), l.mul(columns, l.splat(self.right[a] as f32)));
-            along[a] = l.add(across, l.mul(rows, l.splat(self.down[a] as f32)));
-        }
-        along
+        let splat = each!(3; a => {
+            let [origin, right, down] = [self.origin[a], self.right[a], self.down[a]];
+            [l.splat(origin as f32), l.splat(right as f32), l.splat(down as f32)]
+        });
+        each!(3; a => {
+            let [origin, right, down] = splat[a];
+            l.add(l.add(origin, l.mul(columns, right)), l.mul(rows, down))
+        })
     }
+}
+
+/// The inverse of where planes lie that are square to an axis, from the eye. What is at the eye belongs to
+/// the lower side, as a box does not have its upper planes.
+#[inline(always)]
+fn inverse<L: Wide>(l: L, place: L::F, is_above: L::M) -> L::F {
+    // Not infinite, since a ray along the plane multiplies it with 0.
+    let size = l.min(l.div(l.splat(1.0), l.abs(place)), l.splat(f32::MAX));
+    l.pick(is_above, size, l.sub(l.splat(0.0), size))
+}
+
+/// The sum of products.
+#[inline(always)]
+fn dot<L: Wide>(l: L, a: &[L::F; 3], b: &[L::F; 3]) -> L::F {
+    l.add(l.mul(a[0], b[0]), l.add(l.mul(a[1], b[1]), l.mul(a[2], b[2])))
 }
 
 /// How far the rectangle about a box is widened, pixels: more than places in it are rounded by, some 2⁻²² of
@@ -202,7 +219,8 @@ const SLACK_PX: f32 = 1.0 / 64.0;
 /// direction.
 #[derive(Clone, Copy, Default)]
 struct Eight {
-    /// Where one is entered, and what is added to that: if the eye is between the planes, more than any depth.
+    /// Where one is entered, and what is added to that: if the eye is between the planes, more than any
+    /// depth.
     enters: [[f32; 8]; 3],
     between: [[f32; 8]; 3],
     /// Where it is left: by the farther plane, or by that of both which is ahead.
@@ -218,83 +236,58 @@ impl Eight {
     /// Eight boxes at most, relative to the eye.
     #[inline(always)]
     fn new<L: Wide, V: Vector>(l: L, rays: &Rays, image: &Rows, boxes: &[StandIn<V>]) -> Self {
-        let mut ends = [[[0.0; 8]; 3]; 2];
+        // Flatland's third axis has the eye between the planes.
+        let (mut low, mut high) = ([[-1.0; 8]; 3], [[1.0; 8]; 3]);
         for (k, one) in boxes.iter().enumerate().take(8) {
-            for a in 0..V::AXES {
-                ends[0][a][k] = one.bounds.min.get(a);
-                ends[1][a][k] = one.bounds.max.get(a);
+            for (a, (low, high)) in low.iter_mut().zip(&mut high).enumerate().take(V::AXES) {
+                (low[k], high[k]) = (one.bounds.min.get(a), one.bounds.max.get(a));
             }
         }
-        let zero = l.splat(0.0);
-        let (mut eight, mut min, mut max) = (Self::default(), [zero; 3], [zero; 3]);
-        for a in 0..V::AXES {
-            let eye = l.splat_d(rays.eye[a]);
-            min[a] = l.narrow(l.sub_d(l.to_d(l.load(&ends[0][a])), eye));
-            max[a] = l.narrow(l.sub_d(l.to_d(l.load(&ends[1][a])), eye));
-            eight.part(l, a, min[a], max[a]);
-        }
-        eight.find::<L, V>(l, rays, image, &min, &max);
+        let eye = each!(3; a => l.splat_d(rays.eye[a]));
+        let min = each!(3; a => l.narrow(l.sub_d(l.to_d(l.load(&low[a])), eye[a])));
+        let max = each!(3; a => l.narrow(l.sub_d(l.to_d(l.load(&high[a])), eye[a])));
+        let mut eight = Self::default();
+        eight.part(l, &min, &max);
+        eight.find(l, rays, image, (&min, &max));
         eight
     }
 
-    /// The planes that are square to an axis, by where they are. What is at the eye belongs to the lower
-    /// side, as a box does not have its upper planes.
+    /// The planes, by where they are.
     #[inline(always)]
-    fn part<L: Wide>(&mut self, l: L, a: usize, min: L::F, max: L::F) {
+    fn part<L: Wide>(&mut self, l: L, min: &[L::F; 3], max: &[L::F; 3]) {
         let (zero, most) = (l.splat(0.0), l.splat(f32::MAX));
-        let (is_above, is_not_below) = (l.gt(min, zero), l.gt(max, zero));
-        let [low, high] = [
-            // Not infinite, since a ray along a plane multiplies it with 0.
-            (is_above, l.min(l.div(l.splat(1.0), l.abs(min)), most)),
-            (is_not_below, l.min(l.div(l.splat(1.0), l.abs(max)), most)),
-        ];
-        let low = l.pick(low.0, low.1, l.sub(zero, low.1));
-        let high = l.pick(high.0, high.1, l.sub(zero, high.1));
-        l.store(&mut self.enters[a], l.pick(is_above, low, l.pick(is_not_below, zero, high)));
-        l.store(&mut self.between[a], l.pick(is_above, zero, l.pick(is_not_below, most, zero)));
-        l.store(&mut self.leaves[a][0], l.pick(is_above, high, low));
-        l.store(&mut self.leaves[a][1], l.pick(is_not_below, high, low));
-        self.upper[a] = !l.bits(is_not_below);
+        for (a, (&min, &max)) in min.iter().zip(max).enumerate() {
+            let (is_above, is_not_below) = (l.gt(min, zero), l.gt(max, zero));
+            let (low, high) = (inverse(l, min, is_above), inverse(l, max, is_not_below));
+            l.store(&mut self.enters[a], l.pick(is_above, low, l.pick(is_not_below, zero, high)));
+            l.store(&mut self.between[a], l.pick(is_above, zero, l.pick(is_not_below, most, zero)));
+            l.store(&mut self.leaves[a][0], l.pick(is_above, high, low));
+            l.store(&mut self.leaves[a][1], l.pick(is_not_below, high, low));
+            self.upper[a] = !l.bits(is_not_below);
+        }
     }
 
     /// The rectangles that no sample outside of which meets a box.
     #[inline(always)]
-    fn find<L: Wide, V: Vector>(
-        &mut self,
-        l: L,
-        rays: &Rays,
-        image: &Rows,
-        min: &[L::F; 3],
-        max: &[L::F; 3],
-    ) {
-        let (half, zero) = (l.splat(0.5), l.splat(0.0));
-        let (mut middle, mut reach, mut forward) = ([zero; 3], [zero; 3], [zero; 3]);
-        let (mut depth, mut spread) = (zero, zero);
-        for a in 0..V::AXES {
-            middle[a] = l.mul(l.add(min[a], max[a]), half);
-            reach[a] = l.mul(l.sub(max[a], min[a]), half);
-            forward[a] = l.splat(rays.rows[2][a] as f32);
-            depth = l.add(depth, l.mul(forward[a], middle[a]));
-            spread = l.add(spread, l.mul(l.abs(forward[a]), reach[a]));
-        }
-        let nearest = l.sub(depth, spread);
+    fn find<L: Wide>(&mut self, l: L, rays: &Rays, image: &Rows, (min, max): (&[L::F; 3], &[L::F; 3])) {
+        let (half, zero, one) = (l.splat(0.5), l.splat(0.0), l.splat(1.0));
+        let middle = each!(3; a => l.mul(l.add(min[a], max[a]), half));
+        let reach = each!(3; a => l.mul(l.sub(max[a], min[a]), half));
+        let forward = each!(3; a => l.splat(rays.rows[2][a] as f32));
+        let depth = dot(l, &forward, &middle);
+        let nearest = l.sub(depth, dot(l, &each!(3; a => l.abs(forward[a])), &reach));
         let is_ahead = l.gt(nearest, l.splat(rays.near as f32));
-        let (inverse, most) = (l.div(l.splat(1.0), depth), l.div(l.splat(1.0), nearest));
+        let (inverse, most) = (l.div(one, depth), l.div(one, nearest));
         for axis in 0..2 {
             let count = l.splat([image.width, image.count][axis] as f32);
             let offset = l.splat([0.0, image.first as f32][axis]);
             let half = rays.half[axis] as f32;
-            let (mut place, mut spread) = (zero, zero);
-            for a in 0..V::AXES {
-                place = l.add(place, l.mul(l.splat(rays.rows[axis][a] as f32), middle[a]));
-            }
+            let row = each!(3; a => l.splat(rays.rows[axis][a] as f32));
             // A point `middle + d` lies at `(row · middle + row · d) / (depth + forward · d)`, which differs
             // from the middle's place by `(row − place · forward) · d / (depth + forward · d)`.
-            place = l.mul(place, inverse);
-            for a in 0..V::AXES {
-                let slope = l.sub(l.splat(rays.rows[axis][a] as f32), l.mul(place, forward[a]));
-                spread = l.add(spread, l.mul(l.abs(slope), reach[a]));
-            }
+            let place = l.mul(dot(l, &row, &middle), inverse);
+            let slope = each!(3; a => l.abs(l.sub(row[a], l.mul(place, forward[a]))));
+            let spread = dot(l, &slope, &reach);
             let sign = if axis == 0 { half } else { -half };
             let center = l.sub(l.add(l.splat(half), l.mul(l.splat(sign), place)), offset);
             let reach = l.add(l.mul(l.splat(half), l.mul(spread, most)), l.splat(SLACK_PX));
@@ -309,21 +302,16 @@ impl Eight {
 
     /// Which of eight rays enter a box, the inverse depths, and the axes along which.
     #[inline(always)]
-    fn of_rays<L: Wide, V: Vector>(
-        &self,
-        l: L,
-        k: usize,
-        along: &[L::F; 3],
-        most: L::F,
-    ) -> (L::M, L::F, L::I) {
+    fn of_rays<L: Wide>(&self, l: L, k: usize, along: &[L::F; 3], most: L::F) -> (L::M, L::F, L::I) {
         let (mut enters, mut leaves, mut axis) = (l.splat(f32::MAX), l.splat(0.0), l.splat_i(0));
-        for a in 0..V::AXES {
-            let enter = l.add(l.mul(along[a], l.splat(self.enters[a][k])), l.splat(self.between[a][k]));
+        for (a, &along) in along.iter().enumerate() {
+            let enter = l.add(l.mul(along, l.splat(self.enters[a][k])), l.splat(self.between[a][k]));
             let is_later = l.gt(enters, enter);
             enters = l.pick(is_later, enter, enters);
             axis = l.pick_i(is_later, l.splat_i(a as i32), axis);
-            leaves = l.max(l.mul(along[a], l.splat(self.leaves[a][0][k])), leaves);
-            leaves = l.max(l.mul(along[a], l.splat(self.leaves[a][1][k])), leaves);
+            let [first, second] = self.leaves[a];
+            leaves = l.max(l.mul(along, l.splat(first[k])), leaves);
+            leaves = l.max(l.mul(along, l.splat(second[k])), leaves);
         }
         // Where it leaves is the next box's. A box about the eye has no face toward it.
         (l.both(l.gt(enters, leaves), l.ge(most, enters)), enters, axis)
@@ -379,7 +367,7 @@ fn meet<L: Wide, V: Vector>(l: L, rays: &Rays, image: &Rows, boxes: &[StandIn<V>
                 for column in columns.clone().step_by(BLOCK[0]) {
                     let x = l.add(l.splat(column as f32), right);
                     let along = rays.along(l, x, y);
-                    let (is_met, enters, axis) = eight.of_rays::<L, V>(l, k, &along, most);
+                    let (is_met, enters, axis) = eight.of_rays(l, k, &along, most);
                     let is_inside = l.both(l.gt(past_column, x), l.gt(past_row, y));
                     let mut bits = l.bits(l.both(is_met, is_inside));
                     l.store(&mut depths, enters);

@@ -123,7 +123,8 @@ mod tests {
     use super::*;
     use crate::culling::color_cubes::index::is_small;
     use crate::culling::color_cubes::space::Projected;
-    use crate::geometry::{Dice, Flat, Solid};
+    use crate::geometry::dice::Dice;
+    use crate::geometry::{Flat, Solid};
     use crate::index::Items;
     use crate::scene::samples;
 

@@ -178,6 +178,35 @@ impl Params {
     }
 }
 
+/// Declares how cells are divided, and which are drawn as cubes.
+fn cell_knobs<S: Projected>(params: &mut Params, knobs: &mut dyn Knobs) {
+    let threshold = Knob::new(
+        "pixel-threshold",
+        "pixels",
+        "a cell no larger on the screen is drawn as its color cube; 0: none is, and the image is that of \
+         the z-buffer",
+        "Chamberlain et al. 1996, Section 3",
+    );
+    // Larger ones are for looking at the cubes.
+    knobs.real(threshold, 0.0..=256.0, &mut params.pixel_threshold);
+    let levels = Knob::new(
+        "tree-levels",
+        "levels",
+        "levels of the octree at most; where cells are small enough is found by what drawing them costs",
+        "Chamberlain et al. 1996, Section 4",
+    );
+    knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
+    let cost = Knob::new(
+        "cube-cost",
+        "times",
+        "what drawing a cube costs beside the 6 triangles (in flatland 2 segments) of its faces that can \
+         be toward the eye, when cells are divided; less, such as 0.5, makes smaller leaves and a larger \
+         tree, which is the faster one where drawing a cube takes less time than so many triangles",
+        "Chamberlain et al. 1996, Section 4",
+    );
+    knobs.real(cost, 0.1..=10.0, &mut params.cube_cost);
+}
+
 /// Declares how faces are made.
 fn face_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let primitives = Knob::new(
@@ -235,31 +264,7 @@ impl<S: Projected> Method<S> for ColorCubes {
     };
 
     fn knobs(params: &mut Params, knobs: &mut dyn Knobs) {
-        let threshold = Knob::new(
-            "pixel-threshold",
-            "pixels",
-            "a cell no larger on the screen is drawn as its color cube; 0: none is, and the image is that of \
-             the z-buffer",
-            "Chamberlain et al. 1996, Section 3",
-        );
-        // Larger ones are for looking at the cubes.
-        knobs.real(threshold, 0.0..=256.0, &mut params.pixel_threshold);
-        let levels = Knob::new(
-            "tree-levels",
-            "levels",
-            "levels of the octree at most; where cells are small enough is found by what drawing them costs",
-            "Chamberlain et al. 1996, Section 4",
-        );
-        knobs.integer(levels, 1..=CellTree::<S::Vector>::MOST_LEVELS, &mut params.tree_levels);
-        let cost = Knob::new(
-            "cube-cost",
-            "times",
-            "what drawing a cube costs beside the 6 triangles (in flatland 2 segments) of its faces that can \
-             be toward the eye, when cells are divided; less, such as 0.5, makes smaller leaves and a larger \
-             tree, which is the faster one where drawing a cube takes less time than so many triangles",
-            "Chamberlain et al. 1996, Section 4",
-        );
-        knobs.real(cost, 0.1..=10.0, &mut params.cube_cost);
+        cell_knobs::<S>(params, knobs);
         face_knobs(params, knobs);
         let bound = Knob::new(
             "error-bound",

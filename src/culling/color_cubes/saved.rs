@@ -11,9 +11,12 @@ use crate::scene::Scene;
 
 const FORMAT: Format = Format { magic: b"cullscope-c3", method: "color-cubes", has_bytes: false };
 
-/// What a tree was made for: levels at most, what a cube costs, whether it refers to objects, samples of a face, whether inner
-/// faces are composed, whether errors are measured, how surfaces are taken, and whether faces are worked out.
+/// What a tree was made for: levels at most, what a cube costs, whether it refers to objects, samples of a
+/// face, whether inner faces are composed, whether errors are measured, how surfaces are taken, and whether
+/// faces are worked out.
 pub type Key = saved::Key<8>;
+/// Which of these says whether errors are measured.
+const MEASURED: usize = 5;
 
 /// The key of a scene and parameters.
 pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
@@ -28,10 +31,11 @@ pub fn key<S: Space>(scene: &Scene<S>, params: &Params) -> Key {
     Key { scene: scene.hash_hex(), params }
 }
 
-fn describe([levels, cost, objects, samples, composed, measured, surfaces, analytic]: [u32; 8]) -> String {
+fn describe(params: [u32; 8]) -> String {
+    let [levels, cost, objects, samples, composed, measured, surfaces, analytic] = params;
     format!(
-        "tree-levels={levels} cube-cost={} primitives={} faces={} face-samples={samples} interior={} error-bound={} \
-         backface-culling={} see-through={}",
+        "tree-levels={levels} cube-cost={} primitives={} faces={} face-samples={samples} interior={} \
+         error-bound={} backface-culling={} see-through={}",
         f32::from_bits(cost),
         if objects == 1 { "objects" } else { "single" },
         if analytic == 1 { "analytic" } else { "sampled" },
@@ -60,7 +64,7 @@ pub fn read<S: Space>(
     scene: &Scene<S>,
     items: Items,
 ) -> Result<(CellTree<S::Vector>, Baked), String> {
-    let ([nodes, references, faces, errors], _) = FORMAT.read::<7, 4>(bytes, key, describe)?;
+    let ([nodes, references, faces, errors], _) = FORMAT.read::<8, 4>(bytes, key, describe)?;
     // A right sum says that nothing was damaged, and not that the numbers fit.
     let tree = CellTree::of_tables(scene, items, &nodes, references).ok_or_else(damaged)?;
     let (cubes, rest) = faces.as_chunks::<6>();
@@ -69,7 +73,7 @@ pub fn read<S: Space>(
     let fits = |cubes: &Vec<CubeFaces>| rest.is_empty() && cubes.len() == tree.nodes().len();
     let cubes = cubes.filter(fits).ok_or_else(damaged)?;
     let errors: Vec<f32> = errors.into_iter().map(f32::from_bits).collect();
-    let count = if key.params[4] == 1 { cubes.len() } else { 0 };
+    let count = if key.params[MEASURED] == 1 { cubes.len() } else { 0 };
     if errors.len() != count || !errors.iter().all(|e| (0.0..=1.0).contains(e)) {
         return Err(damaged());
     }

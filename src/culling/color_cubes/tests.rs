@@ -609,7 +609,7 @@ fn light_comes_through_each_layer_once() {
 fn cubes_that_are_too_wrong_are_refined() {
     let scene = samples::soup::<Flat>(4, 2000);
     let mut counts = Vec::new();
-    for bound in [0.0, 3.0, 30.0] {
+    for bound in [0.0, 60.0, 100.0] {
         let params = Params { pixel_threshold: 12.0, error_bound: bound, ..Params::default() };
         let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
         let view = framing_view(&scene.bounds(), 256, 1);

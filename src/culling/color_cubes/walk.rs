@@ -107,8 +107,8 @@ pub(super) struct Walk<'a, S: Projected, O> {
     /// Items that were drawn, or found to face away: all where that is how they are listed, else those of
     /// which no leaf alone has all.
     done: Marks,
-    /// Whether what is to be drawn is listed in the end, by its marks. Its order is of no matter, unless it is
-    /// the paper's; by number those that share points are near each other, as they are in the scene.
+    /// Whether what is to be drawn is listed in the end, by its marks. Its order is of no matter, unless it
+    /// is the paper's; by number those that share points are near each other, as they are in the scene.
     lists_marks: bool,
     /// Items that are in some cube that was drawn; kept only where somebody listens.
     in_cubes: Marks,

@@ -39,7 +39,7 @@ pub const SWEEP: Sweep = Sweep {
 const SIDES: [u32; 4] = [64, 124, 256, 1024];
 /// Views of a path that are timed at most, and rounds of each.
 const VIEWS: usize = 8;
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 31;
 
 /// How far an eye is from the middle of a scene, in halves of the diagonal of its box.
 pub fn distance<S: Space>(bounds: &Aabb<S::Vector>, view: &View<S>) -> f64 {

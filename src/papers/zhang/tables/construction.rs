@@ -119,7 +119,6 @@ fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn P
                 || mapper.make_maps(&views[k]),
                 || {
                     draw(&mut target, scene, &views[k], &occluders, surfaces);
-                    pyramid.clear(target.width, target.height, 1.0 / views[k].eye.far);
                     pyramid.touch(all);
                     pyramid.refresh_all(&target.depth);
                 },
@@ -130,9 +129,8 @@ fn rows<S: World + Faces>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn P
         let [opacity, whole, maps, buffer] = times.map(median);
         let [columns, levels] = [mapper.opacity().size(0)[0].into(), f64::from(mapper.opacity().levels())];
         let plain = [average, minimum, average / minimum];
-        let ratios = [opacity / whole, maps / buffer];
-        let side = side.into();
-        let numbers = [side, columns, levels, opacity, whole, ratios[0], maps, buffer, ratios[1]];
+        let of = [opacity / whole, maps / buffer];
+        let numbers = [side.into(), columns, levels, opacity, whole, of[0], maps, buffer, of[1]];
         let mut row = measured(scene.name(), [], numbers);
         row.extend(plain.map(Cell::from));
         rows.push(row);
