@@ -47,7 +47,12 @@ pub const TABLES: &[Experiment] = &[
         scenes: MODELS,
         title: "Chamberlain et al. 1996, Table 2 and Section 5: frames with and without the hierarchy",
         summary: "Time of a frame with geometry and with color cubes, by distance and by size of the image",
-        notes: &[IMAGES, COUNTS],
+        notes: &[
+            IMAGES,
+            "A turn of the hierarchy is as many frames as take about as long as one of geometry, 32 at most: \
+             after a long frame the caches hold nothing of a short one.",
+            COUNTS,
+        ],
         settings: &[],
         sweep: &frames::SWEEP,
     },
