@@ -609,7 +609,7 @@ fn light_comes_through_each_layer_once() {
 fn cubes_that_are_too_wrong_are_refined() {
     let scene = samples::soup::<Flat>(4, 2000);
     let mut counts = Vec::new();
-    for bound in [0.0, 60.0, 100.0] {
+    for bound in [0].into_iter().chain((2..=100).step_by(2)).map(|bound| bound as f32) {
         let params = Params { pixel_threshold: 12.0, error_bound: bound, ..Params::default() };
         let index = CubeTree::build(&scene, &params, None, &Quiet).expect("no bytes").expect("not cancelled");
         let view = framing_view(&scene.bounds(), 256, 1);
@@ -626,7 +626,10 @@ fn cubes_that_are_too_wrong_are_refined() {
         }
         counts.push(list.stand_ins.len());
     }
-    assert!(counts[0] > 0 && counts[1] != counts[0] && counts[1] != counts[2], "{counts:?}");
+    // Some bound parts them, a low one refuses more than a high one.
+    let all = counts[0];
+    assert!(counts.iter().any(|count| (1..all).contains(count)), "{counts:?}");
+    assert!(counts[1] < all && counts[50] == all, "{counts:?}");
 }
 
 /// A preprocess comes back as it was, and one that does not fit is refused in one line.
