@@ -3,6 +3,8 @@
 //! Primitives out of view or turned away are dropped, and those that leave the grid are clipped. What is left
 //! goes to whoever takes it ([`Taker`]): some set it up at once, some look first where it goes.
 
+use glam::Vec3;
+
 use super::setup::{Setup, center};
 use super::vertex::{Camera, Clip, NEEDS_CLIP, REJECTS, Vertex};
 use super::{Extent, Options, fill};
@@ -55,6 +57,7 @@ impl Frame<'_> {
     pub fn find(&self, prims: &[PrimId], taker: &mut impl Taker) {
         let mut live = [(PrimId(0), [0; 3]); BATCH];
         let mut own = [Vertex::default(); 3 * BATCH];
+        let mut points = [Vec3::ZERO; 3 * BATCH];
         for prims in prims.chunks(BATCH) {
             // Corners are scattered in memory: read by themselves, many are under way at a time.
             let mut count = 0;
@@ -66,10 +69,14 @@ impl Frame<'_> {
             }
             let live = &live[..count];
             if self.vertices.is_empty() {
-                for (own, (_, corners)) in own.chunks_exact_mut(3).zip(live) {
-                    for (own, &c) in own.iter_mut().zip(corners) {
-                        *own = self.camera.vertex(self.camera.clip(self.scene.points()[c as usize]));
+                for (points, (_, corners)) in points.chunks_exact_mut(3).zip(live) {
+                    for (point, &c) in points.iter_mut().zip(corners) {
+                        *point = self.scene.points()[c as usize];
                     }
+                }
+                // Side by side, many are projected at a time.
+                for (own, &point) in own.iter_mut().zip(&points[..3 * count]) {
+                    *own = self.camera.vertex(self.camera.clip(point));
                 }
             }
             for (&(prim, corners), own) in live.iter().zip(own.chunks_exact(3)) {
