@@ -93,8 +93,8 @@ pub(super) fn redraw(
     draw_onto(target, scene, view, prims, options, Onto::Nothing(1.0 / view.eye.far));
 }
 
-/// Points a primitive up to which all points of a scene are projected.
-const BULK: usize = 8;
+/// Points a primitive up to which all points of a scene are projected: as many as it has corners.
+const BULK: usize = 3;
 
 /// Draws onto what the target holds, or onto nothing.
 fn draw_onto(
@@ -108,8 +108,8 @@ fn draw_onto(
     let threads = options.thread_count();
     let mut scratch = std::mem::take(&mut target.scratch);
     let camera = Camera::new(view);
-    // 1. Projecting every point, many at a time, costs no more than the corners of each primitive one by one,
-    // which take some twenty times as long. The code is the same either way, and so are the vertices.
+    // 1. Each point once, or each corner of each primitive, whatever are fewer. The code is the same either
+    // way, and so are the vertices.
     let points = if prims.len() * BULK >= scene.points().len() { scene.points() } else { &[] };
     scratch.vertices.resize(points.len(), Vertex::default());
     // Four parts a thread, so that one slow part does not keep the others waiting; none so small that handing
