@@ -106,9 +106,10 @@ pub const TABLES: &[Experiment] = &[
             "Wall-clock times on one thread; each pair in turn, medians over the frames. Section 7.2 says \
              that averages are made faster than minima and maxima, \"due to the absence of branch \
              instructions\". Levels of opacity are counted from the masks of tiles that the occluders are \
-             drawn into; the z-pyramid is brought up to date whole from the depths of the same image. Plain \
-             loops average and take minima of the same 256 × 256 numbers down to 4 × 4: here a minimum is \
-             one instruction, as is a sum.",
+             drawn into; the z-pyramid is brought up to date whole from the depths of the same image. Maps \
+             with occluders: these chosen and drawn, all levels made; beside it the same occluders drawn \
+             into a z-buffer, and its pyramid. Plain loops average and take minima of the same 256 × 256 \
+             numbers down to 4 × 4: here a minimum is one instruction, as is a sum.",
         ],
         settings: &[("adapt", "false")],
         sweep: &construction::SWEEP,
