@@ -10,9 +10,9 @@ use super::methods::{json_text, settings};
 use super::progress::Bar;
 use super::{CliError, output, scene, suggest};
 use crate::figure::chart;
+use crate::geometry::MAX_SIDE_PX;
 use crate::measure::{Experiment, ExperimentError, Report, Setup};
 use crate::papers::{self, PAPERS, Paper};
-use crate::raster::Target;
 use crate::render::{self, RenderError, Theme};
 use crate::scene::{AnyScene, LoadOptions, Part};
 
@@ -87,11 +87,9 @@ enum Format {
 }
 
 pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
-    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
+    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=MAX_SIDE_PX).contains(v));
     let both = text.split_once(['x', 'X', '×']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
-    both.ok_or_else(|| {
-        format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX)
-    })
+    both.ok_or_else(|| format!("expected a width and a height from 1 to {MAX_SIDE_PX} such as 1024x1024"))
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {

@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::{CliError, World, output, suggest};
-use crate::geometry::{Eye, Vector, View, ViewPath};
-use crate::raster::Target;
+use crate::geometry::{Eye, MAX_SIDE_PX, Vector, View, ViewPath};
 use crate::scene::{Scene, framing_view, motion_path, random_views, read_views};
 
 /// Options that choose views.
@@ -72,11 +71,9 @@ fn numbers(text: &str) -> Result<Numbers, String> {
 
 fn size(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once(['x', 'X', '×']).unwrap_or((text, "1"));
-    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=Target::MAX_SIDE_PX).contains(v));
+    let side = |t: &str| t.trim().parse().ok().filter(|v| (1..=MAX_SIDE_PX).contains(v));
     let both = side(width).zip(side(height));
-    both.ok_or_else(|| {
-        format!("expected a width and a height from 1 to {} such as 1024x1024", Target::MAX_SIDE_PX)
-    })
+    both.ok_or_else(|| format!("expected a width and a height from 1 to {MAX_SIDE_PX} such as 1024x1024"))
 }
 
 impl ViewArgs {

@@ -45,18 +45,28 @@ impl<S: Space> Eye<S> {
     }
 }
 
+/// The greatest width and height of an image, in pixels, that the arithmetic of the rasterizer is exact for.
+pub const MAX_SIDE_PX: u32 = 16384;
+
 /// An Eye and the image it sees into. A flatland image has height 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View<S: Space> {
     /// The viewpoint.
     pub eye: Eye<S>,
-    /// Image width in pixels, 1 to 16384.
+    /// Image width in pixels, 1 to [`MAX_SIDE_PX`].
     pub width: u32,
-    /// Image height in pixels, 1 to 16384; 1 in flatland.
+    /// Image height in pixels, 1 to [`MAX_SIDE_PX`]; 1 in flatland.
     pub height: u32,
 }
 
 impl<S: Space> View<S> {
+    /// The samples of its pixels as pixels of a larger image: so many along each side of a pixel, or as many as
+    /// such an image may have, but one at least.
+    pub fn sampled(&self, samples: u32) -> Self {
+        let samples = samples.min(MAX_SIDE_PX / self.width.max(self.height).max(1)).max(1);
+        let down = if S::Vector::AXES == 2 { 1 } else { samples };
+        Self { width: self.width * samples, height: self.height * down, ..*self }
+    }
     /// The linear map from world to clip space.
     pub fn projection(&self) -> Projection<S::Vector> {
         Projection::new(self)

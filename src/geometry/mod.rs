@@ -23,7 +23,7 @@ mod walk;
 pub use bounds::Aabb;
 pub use either::Either;
 pub(crate) use either::each;
-pub use eye::{Eye, Projection, View, ViewPath, figure_eight, raise};
+pub use eye::{Eye, MAX_SIDE_PX, Projection, View, ViewPath, figure_eight, raise};
 pub use frustum::{Frustum, FrustumTest, PlaneTest};
 pub use id::{CellId, MaterialId, NodeId, ObjectId, PrimId};
 pub use overlap::{

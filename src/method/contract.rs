@@ -6,7 +6,9 @@ use super::{Card, Knobs, Note, Observer};
 use crate::drawing::Drawing;
 use crate::geometry::{PrimId, Space, View};
 use crate::index::Hierarchy;
-use crate::raster::{Canvas, DepthScale, Drawable, Light, Options, StandIn, Target, paint, paint_in_order};
+use crate::raster::{
+    Canvas, DepthScale, Drawable, Light, Options, StandIn, Target, averaged, paint, paint_in_order,
+};
 use crate::scene::{Progress, Scene};
 
 /// What a frame draws.
@@ -19,13 +21,21 @@ pub struct DrawList<S: Space> {
     pub stand_ins: Vec<StandIn<S::Vector>>,
     /// Whether both lists are drawn in one order instead, the farthest first, and stand-ins write depths.
     pub in_order: bool,
+    /// Samples along each side of a pixel of its picture, which is their mean.
+    pub samples: u32,
     /// The light under which it is to be seen.
     pub light: Light,
 }
 
 impl<S: Space> Default for DrawList<S> {
     fn default() -> Self {
-        Self { prims: Vec::new(), stand_ins: Vec::new(), in_order: false, light: Light::default() }
+        Self {
+            prims: Vec::new(),
+            stand_ins: Vec::new(),
+            in_order: false,
+            samples: 1,
+            light: Light::default(),
+        }
     }
 }
 
@@ -44,8 +54,9 @@ impl<S: Drawable> DrawList<S> {
     pub fn redraw(&self, target: &mut Target, scene: &Scene<S>, view: &View<S>, options: &Options) {
         S::redraw(target, scene, view, &self.prims, options);
     }
-    /// Makes a target that image, and a canvas what the stand-ins put over it: of no size where there are
-    /// none, and where they are drawn in one order with the primitives.
+    /// Makes a target that image, a pixel for each of the picture's samples, and a canvas what the stand-ins
+    /// put over it: of no size where there are none, and where they are drawn in one order with the
+    /// primitives.
     pub fn draw(
         &self,
         (image, canvas): (&mut Target, &mut Canvas),
@@ -53,6 +64,7 @@ impl<S: Drawable> DrawList<S> {
         view: &View<S>,
         options: &Options,
     ) {
+        let view = &view.sampled(self.samples);
         self.redraw(image, scene, view, options);
         canvas.empty();
         if !self.stand_ins.is_empty() && !self.in_order {
@@ -60,8 +72,8 @@ impl<S: Drawable> DrawList<S> {
             canvas.composite(&self.stand_ins, image, view, options);
         }
     }
-    /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: the images of its two parts from
-    /// that view; `shown`: the light and the background (linear).
+    /// The picture of all of it: RGBA, sRGB-encoded, row by row. `drawn`: its two parts drawn from that view;
+    /// `shown`: the light and the background (linear).
     pub fn picture(
         &self,
         scene: &Scene<S>,
@@ -69,10 +81,20 @@ impl<S: Drawable> DrawList<S> {
         drawn: (&Target, &Canvas),
         shown: (Light, [f32; 3]),
     ) -> Vec<u8> {
-        if self.in_order && !self.stand_ins.is_empty() {
-            return paint_in_order(scene, view, (&self.prims, &self.stand_ins), shown);
+        let fine = view.sampled(self.samples);
+        let rgba = if self.in_order && !self.stand_ins.is_empty() {
+            paint_in_order(scene, &fine, (&self.prims, &self.stand_ins), shown)
+        } else {
+            paint(drawn.0, drawn.1, scene, &fine, shown)
+        };
+        if self.samples == 1 {
+            return rgba;
         }
-        paint(drawn.0, drawn.1, scene, view, shown)
+        averaged(
+            &rgba,
+            fine.width as usize,
+            [fine.width / view.width, fine.height / view.height].map(|n| n as usize),
+        )
     }
     /// The same under its own light, drawn anew.
     pub fn paint(

@@ -55,7 +55,7 @@ pub use through::look_through;
 pub use tiles::{Answer, Boxes, Clusters, Fate, Hears, How, Outcome, Question, Read, Tiles};
 pub use turns::Turns;
 
-use crate::geometry::{Flat, PixelRect, PrimId, Solid, Space, View};
+use crate::geometry::{Flat, MAX_SIDE_PX, PixelRect, PrimId, Solid, Space, View};
 use crate::scene::{Scene, Surfaces};
 
 /// A depth image and an item image of the same size; height 1 in flatland. Row 0 is the top.
@@ -78,8 +78,6 @@ pub struct Target {
 impl Target {
     /// The item of a pixel that shows no primitive.
     pub const NONE: u32 = u32::MAX;
-    /// The greatest width and height in pixels that the arithmetic is exact for.
-    pub const MAX_SIDE_PX: u32 = 16384;
 
     /// An empty image of the view's size.
     pub fn new<S: Space>(view: &View<S>) -> Self {
@@ -194,12 +192,12 @@ pub trait Drawable: Space {
     /// Draws `prims` (any order, any subset, dropped ones ignored) over what the target holds.
     ///
     /// # Panics
-    /// If the target has not the view's size, or a side exceeds [`Target::MAX_SIDE_PX`].
+    /// If the target has not the view's size, or a side exceeds [`MAX_SIDE_PX`].
     fn draw(target: &mut Target, scene: &Scene<Self>, view: &View<Self>, prims: &[PrimId], options: &Options);
     /// Makes the image anew, with its items: the same as [`Target::clear`] and [`Drawable::draw`], faster.
     ///
     /// # Panics
-    /// If a side of the view exceeds [`Target::MAX_SIDE_PX`].
+    /// If a side of the view exceeds [`MAX_SIDE_PX`].
     fn redraw(
         target: &mut Target,
         scene: &Scene<Self>,
@@ -385,9 +383,5 @@ fn check_size<S: Space>(target: &Target, view: &View<S>) {
 fn check_rows<S: Space>(target: &Target, view: &View<S>, first: u32) {
     assert_eq!(target.width, view.width, "the target has another width than the view");
     assert!(first + target.height <= view.height, "the target's rows reach beyond the image");
-    assert!(
-        view.width.max(view.height) <= Target::MAX_SIDE_PX,
-        "an image side exceeds {} pixels",
-        Target::MAX_SIDE_PX
-    );
+    assert!(view.width.max(view.height) <= MAX_SIDE_PX, "an image side exceeds {MAX_SIDE_PX} pixels");
 }

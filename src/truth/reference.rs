@@ -6,7 +6,7 @@
 //! O(primitives · bands + samples).
 
 use super::{Flip, Truth, flip, seen_from};
-use crate::geometry::{PixelRect, PrimId, Vector, View};
+use crate::geometry::{PixelRect, PrimId, View};
 use crate::raster::{Drawable, Light, Options, Target, Veil, srgb_bytes};
 use crate::scene::Scene;
 
@@ -23,7 +23,7 @@ pub struct Reference {
     /// Height in pixels; 1 in flatland.
     pub height: u32,
     /// Samples of a pixel across and down; in flatland across alone. Fewer than were asked for where an image
-    /// of all samples would be wider or higher than [`Target::MAX_SIDE_PX`].
+    /// of all samples would be wider or higher than [`crate::geometry::MAX_SIDE_PX`].
     pub samples: u32,
 }
 
@@ -44,10 +44,8 @@ impl Truth {
         samples: u32,
         light: Light,
     ) -> Reference {
-        let longest = view.width.max(view.height).max(1);
-        let samples = samples.min(Target::MAX_SIDE_PX / longest).max(1);
-        let down = if S::Vector::AXES == 2 { 1 } else { samples };
-        let fine = View { width: view.width * samples, height: view.height * down, ..*view };
+        let fine = view.sampled(samples);
+        let [samples, down] = [fine.width / view.width, fine.height / view.height];
         let prims = seen_from(&self.prims, &mut self.facing, self.surfaces, scene, view);
         let rows = (BAND_SAMPLES / (fine.width * down).max(1) as usize).max(1);
         let mut band = Band { target: Target::default(), first: 0, veils: Vec::new() };

@@ -114,7 +114,7 @@ impl<S: Projected> CubeTree<S> {
 /// What the tree refers to.
 pub fn items<S: Space>(scene: &Scene<S>, params: &Params) -> Items {
     match params.primitives {
-        Primitives::Single => Items::default(),
+        Primitives::Triangles => Items::default(),
         Primitives::Objects => Items::objects(scene),
     }
 }

@@ -74,6 +74,7 @@ pub(crate) struct Params {
     error_bound: f32,
     order: Order,
     occlusion: Occlusion,
+    samples: u32,
     surfaces: Surfaces,
 }
 
@@ -95,6 +96,8 @@ impl Default for Params {
             order: Order::default(),
             // The paper has none (Section 6).
             occlusion: Occlusion::default(),
+            // The paper has 2 (Section 5), against tearing and flicker of geometry.
+            samples: 1,
             surfaces: Surfaces::default(),
         }
     }
@@ -104,7 +107,7 @@ words! {
     /// What is drawn at once and has one cost (Section 4).
     pub(crate) enum Primitives {
         /// Each triangle, in flatland each segment.
-        Single = "single",
+        Triangles = "triangles",
         /// All of an object, such as a sphere of a molecule.
         Objects = "objects",
     }
@@ -153,10 +156,11 @@ words! {
 }
 
 impl Params {
-    /// Whether cells can be hidden. Back to front there is nothing yet before any of them.
+    /// Whether cells can be hidden. Back to front there is nothing yet before any of them, and between the
+    /// samples of pixels that are asked for a cell may show.
     fn hides(&self) -> bool {
-        let are_single = self.primitives == Primitives::Single;
-        self.occlusion != Occlusion::None && self.order == Order::Exact && are_single
+        let can = self.order == Order::Exact && self.primitives == Primitives::Triangles && self.samples == 1;
+        self.occlusion != Occlusion::None && can
     }
     /// Whether cubes can hide them.
     fn hides_behind_cubes(&self) -> bool {
@@ -212,8 +216,8 @@ fn face_knobs(params: &mut Params, knobs: &mut dyn Knobs) {
     let primitives = Knob::new(
         "primitives",
         "",
-        "what is drawn at once: single, each triangle or segment by itself; objects, all of an object, such \
-         as a sphere of a molecule, which takes far fewer references",
+        "what is drawn at once: triangles, each by itself (in flatland each segment); objects, all of an \
+         object, such as a sphere of a molecule, which takes far fewer references",
         "Chamberlain et al. 1996, Sections 4 and 5",
     );
     knobs.words(primitives, &mut params.primitives);
@@ -286,12 +290,20 @@ impl<S: Projected> Method<S> for ColorCubes {
         let occlusion = Knob::new(
             "occlusion",
             "",
-            "cells that are left out because they do not show, with order=exact and primitives=single: none; \
-             depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color \
+            "cells that are left out because they do not show, with order=exact, primitives=triangles and \
+             samples=1: none; depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color \
              cubes as well that let less than 1/1024 of the light through",
             "Chamberlain et al. 1996, Section 6",
         );
         knobs.words(occlusion, &mut params.occlusion);
+        let samples = Knob::new(
+            "samples",
+            "samples",
+            "samples along each side of a pixel, geometry and cubes alike, of which the picture is the mean: \
+             2 gives 2×2, in flatland 2, as the paper has it. What is drawn stays the same",
+            "Chamberlain et al. 1996, Section 5",
+        );
+        knobs.integer(samples, 1..=2, &mut params.samples);
         surface_knobs(knobs, &mut params.surfaces);
     }
     fn build(
@@ -313,6 +325,7 @@ impl<S: Projected> Method<S> for ColorCubes {
         // Faces were made in this light.
         out.light = Light::Fixed;
         out.in_order = frame.params.order == Order::Paper;
+        out.samples = frame.params.samples;
         let walk = Walk::new((frame.index, frame.scene), frame.view, frame.params, out, watch);
         walk.hiding(Hiding::new(frame, drawn)).run();
     }

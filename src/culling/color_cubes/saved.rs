@@ -37,7 +37,7 @@ fn describe(params: [u32; 8]) -> String {
         "tree-levels={levels} cube-cost={} primitives={} faces={} face-samples={samples} interior={} \
          error-bound={} backface-culling={} see-through={}",
         f32::from_bits(cost),
-        if objects == 1 { "objects" } else { "single" },
+        if objects == 1 { "objects" } else { "triangles" },
         if analytic == 1 { "analytic" } else { "sampled" },
         if composed == 1 { "composed" } else { "direct" },
         if measured == 1 { "above 0" } else { "0" },

@@ -16,7 +16,8 @@ use crate::raster::{Light, Options, SEEN, StandIn, difference_color, flip_map, s
 pub fn drawn<S: Projected>(moment: At<'_, '_, S>) -> DrawList<S> {
     let (frame, params) = (&moment.frame, moment.frame.params);
     let in_order = params.order == Order::Paper;
-    let mut list = DrawList { light: Light::Fixed, in_order, ..DrawList::default() };
+    let samples = params.samples;
+    let mut list = DrawList { light: Light::Fixed, in_order, samples, ..DrawList::default() };
     // What leaves share is told twice: by itself, and as a part of a cell.
     let mut is_listed = vec![false; frame.scene.prim_count()];
     for note in moment.notes {
@@ -71,7 +72,8 @@ fn smaller<S: Projected>(view: &View<S>) -> View<S> {
 pub fn beside<S: Projected>(moment: At<'_, '_, S>) -> Drawing {
     let (scene, view) = (moment.frame.scene, &smaller(moment.frame.view));
     let with_cubes = painted(moment, view, &drawn(moment));
-    let whole = DrawList { prims: scene.live().to_vec(), light: Light::Fixed, ..DrawList::default() };
+    let (prims, samples) = (scene.live().to_vec(), moment.frame.params.samples);
+    let whole = DrawList { prims, light: Light::Fixed, samples, ..DrawList::default() };
     let geometry = painted(moment, view, &whole);
     let map = flip_map(&geometry, &with_cubes, view.width as usize, view.height as usize);
     let is_line = view.height == 1;

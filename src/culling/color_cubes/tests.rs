@@ -13,7 +13,7 @@ use crate::geometry::dice::Dice;
 use crate::geometry::{Aabb, Eye, Flat, Frustum, FrustumTest, NodeId, PrimId, Solid, Vector, View};
 use crate::index::{Hierarchy, Items};
 use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
-use crate::raster::{Canvas, Options, Target, fixed_light, paint, render};
+use crate::raster::{Canvas, Options, Target, averaged, fixed_light, paint, render};
 use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, framing_view, load, random_views, samples};
 
 fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
@@ -440,6 +440,39 @@ fn thresholds_bound_what_is_drawn_in_both_spaces() {
     thresholds_bound_what_is_drawn::<Solid>();
 }
 
+/// With two samples along a pixel's sides the same is drawn, and the picture is the mean of one with twice as
+/// many pixels a side; so without cubes it is that of geometry (Section 5: "2×2 samples").
+fn samples_are_averaged<S: Projected>() {
+    let (white, options) = ([1.0; 3], Options::default());
+    for order in ["exact", "paper"] {
+        for threshold in ["0", "6"] {
+            let scene = samples::soup::<S>(5, 400);
+            let pairs = [("pixel-threshold", threshold), ("order", order)];
+            let mut one = ready(&scene, &pairs);
+            let mut two = ready(&scene, &[pairs[0], pairs[1], ("samples", "2")]);
+            for view in random_views(&scene, 3, 11) {
+                let [list, fine] = [&mut one, &mut two].map(|run| run.cull(&view));
+                assert_eq!((list.samples, fine.samples), (1, 2));
+                assert_eq!(DrawList { samples: 1, ..fine.clone() }, list);
+                let down = if S::Vector::AXES == 2 { 1 } else { 2 };
+                let large = View { width: view.width * 2, height: view.height * down, ..view };
+                let painted = list.paint(&scene, &large, &options, white);
+                let mean = averaged(&painted, large.width as usize, [2, down as usize]);
+                let seen = fine.paint(&scene, &view, &options, white);
+                assert!(seen == mean, "{order}, {threshold}");
+                assert_ne!(seen, list.paint(&scene, &view, &options, white));
+                assert_eq!(list.stand_ins.is_empty(), threshold == "0");
+            }
+        }
+    }
+}
+
+#[test]
+fn samples_are_averaged_in_both_spaces() {
+    samples_are_averaged::<Flat>();
+    samples_are_averaged::<Solid>();
+}
+
 /// A primitive in several cells: drawn once if one of them is drawn as geometry, else in cubes alone.
 #[test]
 fn what_cells_share_is_drawn_once() {
@@ -700,6 +733,30 @@ fn tables_of_no_tree_are_refused() {
     let mut strange = references.clone();
     strange[7] = 3000;
     assert!(!is_taken(&nodes, &strange));
+}
+
+/// A leaf refers to the objects of which a primitive comes into its cell, found by brute force.
+#[test]
+fn a_leaf_refers_to_the_objects_in_it() {
+    let loaded = load("generate:molecule?atoms=24", &LoadOptions::default(), &Quiet).expect("a molecule");
+    let AnyScene::Solid(scene) = loaded else { panic!("in space") };
+    let stop = is_small::<Solid>(1.0);
+    let tree = CellTree::build(&scene, Items::objects(&scene), 20, &stop, &|| false).expect("not cancelled");
+    let mut shared = 0;
+    for at in (0..tree.nodes().len()).filter(|&at| tree.nodes()[at].is_leaf()) {
+        let id = NodeId(at as u32);
+        let cell = tree.cell(id);
+        let comes_in = |&prim: &PrimId| {
+            let of = Aabb::of(scene.prim_points(prim));
+            of.min.cmplt(cell.max).all() && of.max.cmpgt(cell.min).all()
+        };
+        let inside: BTreeSet<_> =
+            scene.live().iter().filter(|p| comes_in(p)).map(|p| scene.object_of(*p)).collect();
+        let listed: BTreeSet<_> = tree.references(id).iter().map(|p| scene.object_of(*p)).collect();
+        assert_eq!(listed, inside, "node {id}");
+        shared += usize::from(inside.len() > 1);
+    }
+    assert!(shared > 20, "{shared} leaves of several objects");
 }
 
 /// Objects are drawn whole or not at all, no primitive twice; and their cells have the faces that all the

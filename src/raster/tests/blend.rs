@@ -123,6 +123,23 @@ fn a_ray_along_a_shared_edge_meets_one_cell() {
     assert!(over(&cells, &Target::new(&view), &view, 1).samples().all(|s| is_near(s, [0.5; 4])));
 }
 
+/// A sample that looks through an edge of a cell, past which its ray would be in the next one, belongs to
+/// the next one alone.
+#[test]
+fn a_ray_through_an_edge_meets_one_cell() {
+    // Samples look along x = ±¼ and ±¾ of the depth: at depth 4 through the edges at ±1 and ±3.
+    let view = straight_view(4, 0.1, 100.0);
+    let planes = [-16.0, -3.0, -1.0, 1.0, 3.0, 16.0];
+    let cell = |x: [f32; 2]| cube(vec3(x[0], -16.0, -5.0), vec3(x[1], 16.0, -4.0), [0.5; 4]);
+    let across: Vec<_> = planes.windows(2).map(|x| cell([x[0], x[1]])).collect();
+    let cell = |y: [f32; 2]| cube(vec3(-16.0, y[0], -5.0), vec3(16.0, y[1], -4.0), [0.5; 4]);
+    let up: Vec<_> = planes.windows(2).map(|y| cell([y[0], y[1]])).collect();
+    for cells in [across, up] {
+        let seen: Vec<_> = over(&cells, &Target::new(&view), &view, 1).samples().collect();
+        assert!(seen.iter().all(|s| is_near(*s, [0.5; 4])), "each is met once: {seen:?}");
+    }
+}
+
 /// The faces that a cell turns to the eye, by the axis along which the ray enters it.
 #[test]
 fn the_face_toward_the_eye_is_drawn() {

@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn widest_and_highest_images() {
     let dice = &mut Dice::new(21);
-    for (width, height) in [(Target::MAX_SIDE_PX, 3), (3, Target::MAX_SIDE_PX), (2500, 40)] {
+    for (width, height) in [(MAX_SIDE_PX, 3), (3, MAX_SIDE_PX), (2500, 40)] {
         let triangles: Vec<[Vec3; 3]> = (0..100)
             .map(|i| {
                 let reach = [3.0, 30.0, 3e4][i % 3];

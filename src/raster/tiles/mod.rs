@@ -49,7 +49,7 @@ use self::setup::Scratch;
 use super::PyramidCell;
 use super::simd::Isa;
 use super::vertex::Camera;
-use crate::geometry::{PixelRect, PrimId, Space, View};
+use crate::geometry::{MAX_SIDE_PX, PixelRect, PrimId, Space, View};
 
 /// Four tiles of 8×4 pixels side by side: 32×4 pixels in a cache line. Depths are `1/w`, larger is nearer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,13 +147,9 @@ impl Tiles {
     /// Empties them for a view. `keeps`: exact answers will be asked for.
     ///
     /// # Panics
-    /// If a side of the image exceeds [`super::Target::MAX_SIDE_PX`].
+    /// If a side of the image exceeds [`MAX_SIDE_PX`].
     pub fn clear<S: Space>(&mut self, view: &View<S>, keeps: bool) {
-        assert!(
-            view.width.max(view.height) <= super::Target::MAX_SIDE_PX,
-            "an image side exceeds {} pixels",
-            super::Target::MAX_SIDE_PX
-        );
+        assert!(view.width.max(view.height) <= MAX_SIDE_PX, "an image side exceeds {MAX_SIDE_PX} pixels");
         (self.width, self.height, self.keeps) = (view.width as i32, view.height as i32, keeps);
         self.is_flat = S::CORNERS == 2;
         self.strips = view.width.div_ceil(32) as usize;

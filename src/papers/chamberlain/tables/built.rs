@@ -42,7 +42,7 @@ fn rows<S: World>(scene: &Arc<Scene<S>>, setup: &Setup, progress: &dyn Progress)
     let path = whole_path(scene, setup);
     let side = setup.size_px.map_or(SIDE, |[width, _]| width);
     let mut rows = Vec::new();
-    let ways = ["single", "objects"];
+    let ways = ["triangles", "objects"];
     for (number, way) in ways.into_iter().enumerate() {
         // Objects that are the whole scene, or single primitives, say nothing more.
         if way == "objects" && scene.objects().len() < 2 {

@@ -34,7 +34,8 @@ pub fn geometry<S: World>(
     ready(scene, Z_BUFFER, setup, &[], progress)
 }
 
-/// Color cubes with the experiment's settings, and these on top; the threshold is of pixels, not of samples.
+/// Color cubes with the experiment's settings, and these on top; the threshold is of pixels, not of samples,
+/// which are pixels of the views.
 ///
 /// # Errors
 /// A setting does not fit, or it was cancelled.
@@ -48,7 +49,8 @@ pub fn color_cubes<S: World>(
     let pixels = |value: &String| value.parse().unwrap_or(1.0);
     let pixels: f32 = setup.settings.0.get("pixel-threshold").map_or(1.0, pixels);
     let threshold = (pixels * SAMPLES as f32).to_string();
-    let on_top: Vec<_> = on_top.iter().copied().chain([("pixel-threshold", &*threshold)]).collect();
+    let on_top: Vec<_> =
+        on_top.iter().copied().chain([("pixel-threshold", &*threshold), ("samples", "1")]).collect();
     ready(scene, COLOR_CUBES, setup, &on_top, progress)
 }
 
