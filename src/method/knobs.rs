@@ -313,12 +313,12 @@ pub(crate) fn surface_knobs(knobs: &mut dyn Knobs, surfaces: &mut Surfaces) {
     let knob = Knob {
         name: SEE_THROUGH,
         unit: "",
-        meaning: "clear: glass and what has holes is drawn and hides nothing; solid: it hides what is behind \
+        meaning: "open: glass and what has holes is drawn and hides nothing; solid: it hides what is behind \
                   it, as if it were opaque",
         source: "our own: the papers know opaque polygons only",
     };
     let mut at = usize::from(surfaces.solid);
-    knobs.choice(knob, &["clear", "solid"], &mut at);
+    knobs.choice(knob, &["open", "solid"], &mut at);
     surfaces.solid = at == 1;
 }
 

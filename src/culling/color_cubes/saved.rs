@@ -42,7 +42,7 @@ fn describe(params: [u32; 8]) -> String {
         if composed == 1 { "composed" } else { "direct" },
         if measured == 1 { "above 0" } else { "0" },
         surfaces & 1 == 1,
-        if surfaces & 2 == 2 { "solid" } else { "clear" }
+        if surfaces & 2 == 2 { "solid" } else { "open" }
     )
 }
 

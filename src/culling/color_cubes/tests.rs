@@ -10,11 +10,11 @@ use super::index::is_small;
 use super::walk::pixels_at_depth_1;
 use super::*;
 use crate::geometry::dice::Dice;
-use crate::geometry::{Aabb, Eye, Flat, Frustum, FrustumTest, NodeId, PrimId, Solid, Vector, View};
+use crate::geometry::{Aabb, Eye, Flat, Frustum, FrustumTest, NodeId, ObjectId, PrimId, Solid, Vector, View};
 use crate::index::{Hierarchy, Items};
 use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, Target, averaged, fixed_light, paint, render};
-use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, framing_view, load, random_views, samples};
+use crate::scene::{AnyScene, LoadOptions, Object, Parts, Quiet, framing_view, load, random_views, samples};
 
 fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
     (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6)
@@ -444,6 +444,7 @@ fn thresholds_bound_what_is_drawn_in_both_spaces() {
 /// many pixels a side; so without cubes it is that of geometry (Section 5: "2×2 samples").
 fn samples_are_averaged<S: Projected>() {
     let (white, options) = ([1.0; 3], Options::default());
+    let mut softer = 0;
     for order in ["exact", "paper"] {
         for threshold in ["0", "6"] {
             let scene = samples::soup::<S>(5, 400);
@@ -460,11 +461,12 @@ fn samples_are_averaged<S: Projected>() {
                 let mean = averaged(&painted, large.width as usize, [2, down as usize]);
                 let seen = fine.paint(&scene, &view, &options, white);
                 assert!(seen == mean, "{order}, {threshold}");
-                assert_ne!(seen, list.paint(&scene, &view, &options, white));
+                softer += usize::from(seen != list.paint(&scene, &view, &options, white));
                 assert_eq!(list.stand_ins.is_empty(), threshold == "0");
             }
         }
     }
+    assert!(softer > 8, "of 12 pictures {softer} have a pixel of several colors");
 }
 
 #[test]
@@ -757,6 +759,45 @@ fn a_leaf_refers_to_the_objects_in_it() {
         shared += usize::from(inside.len() > 1);
     }
     assert!(shared > 20, "{shared} leaves of several objects");
+}
+
+/// Objects that are images of each other in the middle planes of a cube divide its eight cells alike.
+#[test]
+fn each_cell_is_handed_its_part_of_an_object() {
+    const SIDE: f32 = 8.0;
+    let mut dice = Dice::new(3);
+    let corners: Vec<_> = (0..600)
+        .flat_map(|_| {
+            let at = (dice.point(0.9) + 1.0) * 1.4;
+            [at, at + dice.point(0.1), at + dice.point(0.1)]
+        })
+        // No corner on a plane that halves a cell, and exact images.
+        .map(|at| ((at * 1024.0).floor() * 2.0 + 1.0) / 2048.0)
+        .collect();
+    let image = |octant: usize, at: glam::Vec3| {
+        glam::Vec3::from_array(std::array::from_fn(
+            |a| if octant >> a & 1 == 0 { at[a] } else { SIDE - at[a] },
+        ))
+    };
+    let points: Vec<_> = (0..8).flat_map(|o| corners.iter().map(move |at| image(o, *at))).collect();
+    let prims: Vec<_> = (0..points.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let mut parts: Parts<Solid> = Parts::simple("eight images", points, prims);
+    parts.objects =
+        (0..8).map(|o| Object { name: format!("image {o}"), ..parts.objects[0].clone() }).collect();
+    parts.prim_object = (0..4800).map(|k| ObjectId(k / 600)).collect();
+    let scene = Scene::new(parts).expect("a valid scene");
+    let root = Aabb { min: glam::Vec3::ZERO, max: glam::Vec3::splat(SIDE) };
+    let items = Items::objects(&scene);
+    let tree = CellTree::build_in(root, &scene, items, 7, &is_small::<Solid>(1.0), &|| false);
+    let tree = tree.expect("not cancelled");
+    let mut below = vec![1; tree.nodes().len()];
+    for at in (1..below.len()).rev() {
+        let parent = Hierarchy::<Solid>::parent(&tree, NodeId(at as u32)).expect("not the root");
+        below[parent.at()] += below[at];
+    }
+    let of_octants: Vec<usize> =
+        (0..8).map(|o| below[tree.nodes()[0].child(o).expect("full").at()]).collect();
+    assert!(of_octants[0] > 50 && of_octants.iter().all(|n| *n == of_octants[0]), "{of_octants:?}");
 }
 
 /// Objects are drawn whole or not at all, no primitive twice; and their cells have the faces that all the

@@ -28,7 +28,7 @@ fn describe(params: [u32; PARAMS]) -> String {
         params[3],
         params[4],
         params[5] & 1 == 1,
-        if params[5] & 2 == 2 { "solid" } else { "clear" }
+        if params[5] & 2 == 2 { "solid" } else { "open" }
     )
 }
 

@@ -26,7 +26,7 @@ fn describe([grid, leaf, size, surfaces]: [u32; 4]) -> String {
     format!(
         "grid={grid} leaf-primitives={leaf} occluder-size={size} backface-culling={} see-through={}",
         surfaces & 1 == 1,
-        if surfaces & 2 == 2 { "solid" } else { "clear" }
+        if surfaces & 2 == 2 { "solid" } else { "open" }
     )
 }
 
