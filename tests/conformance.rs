@@ -23,7 +23,7 @@ use cullscope::culling::Methods;
 use cullscope::drawing::Drawing;
 use cullscope::geometry::{Flat, ObjectId, PrimId, Solid, Space, Vector, View};
 use cullscope::method::{Entry, Event, Film, Run, Settings, Verdict};
-use cullscope::raster::{Drawable, Options, Target};
+use cullscope::raster::{Canvas, Drawable, Options, Target};
 use cullscope::scene::{
     AnyScene, LoadOptions, Material, Motion, Object, Parts, Pose, Quiet, Scene, framing_view, load,
     random_views,
@@ -360,10 +360,10 @@ fn nothing_visible_is_missed<S: World>(scenes: &[Arc<Scene<S>>]) {
                 let mut truth = Truth::new(scene, surfaces, 1, [1.0; 3]);
                 for view in SEEDS.iter().flat_map(|&seed| views(scene, seed)) {
                     let list = run.cull(&view);
-                    let mut target = Target::default();
+                    let (mut target, mut canvas) = (Target::default(), Canvas::default());
                     let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-                    list.redraw(&mut target, scene, &view, &options);
-                    let judged = truth.judge(scene, &view, &list.prims, &target);
+                    list.draw((&mut target, &mut canvas), scene, &view, &options);
+                    let judged = truth.judge(scene, &view, &list, (&target, &canvas));
                     if run.is_conservative() {
                         assert!(judged.is_exact(), "{key} on {}: {judged:?} in {view:?}", scene.name());
                         assert_eq!((judged.coverage_ratio(), judged.flip_mean), (1.0, 0.0), "{key}");
@@ -504,9 +504,9 @@ fn what_moves_is_followed<S: World>(scenes: &[Arc<Scene<S>>]) {
             assert_eq!(recorded.ended_like(&*film.film), Some(true), "{what}: the film ends as the run did");
             told_is_answered(&*film.film, &list.prims, &what);
             check_film(&*film.film).unwrap_or_else(|why| panic!("{what}: {why}"));
-            let mut target = Target::default();
-            list.redraw(&mut target, &now, &view, &options);
-            let judged = truth.judge(&now, &view, &list.prims, &target);
+            let (mut target, mut canvas) = (Target::default(), Canvas::default());
+            list.draw((&mut target, &mut canvas), &now, &view, &options);
+            let judged = truth.judge(&now, &view, &list, (&target, &canvas));
             assert!(judged.is_exact() || !plain.is_conservative(), "{what}: {judged:?} in {view:?}");
             // What there was before makes no difference, once it is forgotten.
             plain.forget();

@@ -12,7 +12,7 @@ use cullscope::culling::Methods;
 use cullscope::geometry::View;
 use cullscope::measure::timing::timed;
 use cullscope::method::Settings;
-use cullscope::raster::{Drawable, Options, Target, shade};
+use cullscope::raster::{Canvas, Drawable, Options, Target, shade};
 use cullscope::scene::{AnyScene, LoadOptions, Quiet, Scene, load, random_views};
 use cullscope::truth::Truth;
 
@@ -60,7 +60,7 @@ fn look<S: Methods + Drawable>(
     for view in views {
         let (list, cull_ms) = timed(|| run.cull(view));
         let draw_ms = timed(|| list.redraw(&mut target, scene, view, &Options::default())).1;
-        let (judged, all_ms) = timed(|| truth.judge(scene, view, &list.prims, &target));
+        let (judged, all_ms) = timed(|| truth.judge(scene, view, &list, (&target, &Canvas::default())));
         assert_eq!(judged.wrong_items == 0, *truth.image() == target, "{}: items and depths", scene.name());
         // The colored images as bytes, from now and then, since coloring is slower than drawing.
         if sum.drawn == 0 {

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use cullscope::culling::Methods;
 use cullscope::drawing::Subject;
 use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Vector, View};
-use cullscope::method::{self, Film, Settings};
-use cullscope::raster::{Drawable, pick, render};
+use cullscope::method::{self, DrawList, Film, Settings};
+use cullscope::raster::{Canvas, Drawable, pick, render};
 use cullscope::scene::{AnyScene, LoadOptions, Motion, Quiet, Scene, Surfaces, load, random_views};
-use cullscope::truth::Truth;
+use cullscope::truth::{Judgement, Truth};
 use cullscope::truth::certificate::{Certificate, Checker, Claim, certificates, check_film};
 use glam::DVec3;
 
@@ -99,6 +99,12 @@ fn what_pixels_show_agrees_with_exact_arithmetic() {
     }
 }
 
+/// What is said of an answer.
+fn judged<S: Drawable>(truth: &mut Truth, scene: &Scene<S>, view: &View<S>, prims: Vec<PrimId>) -> Judgement {
+    let image = render(scene, view, &prims);
+    truth.judge(scene, view, &DrawList { prims, ..DrawList::default() }, (&image, &Canvas::default()))
+}
+
 #[test]
 fn leaving_out_something_visible_is_seen() {
     let scene = building();
@@ -107,17 +113,18 @@ fn leaving_out_something_visible_is_seen() {
         let visible = truth.look(&scene, &view);
         let Some(&missing) = visible.get(visible.len() / 2) else { continue };
         let drawn: Vec<PrimId> = scene.live().iter().copied().filter(|&p| p != missing).collect();
-        let judged = truth.judge(&scene, &view, &drawn, &render(&scene, &view, &drawn));
+        let count = drawn.len();
+        let judged = judged(&mut truth, &scene, &view, drawn);
         assert_eq!(judged.missed, [missing]);
         let owned = truth.image().item.iter().filter(|&&i| i == missing.0).count();
         assert_eq!(judged.wrong_items, owned, "exactly its pixels are wrong");
         assert!(judged.wrong_pixels <= owned);
         assert!((judged.flip_mean > 0.0) == (judged.wrong_pixels > 0) && judged.flip_mean < 1.0);
         assert_eq!(judged.coverage_ratio(), (visible.len() - 1) as f64 / visible.len() as f64);
-        assert_eq!(judged.overdraw(), Some(drawn.len() as f64 / visible.len() as f64));
+        assert_eq!(judged.overdraw(), Some(count as f64 / visible.len() as f64));
         // Only what is visible, in any order, is enough.
         let backwards: Vec<PrimId> = visible.iter().rev().copied().collect();
-        let judged = truth.judge(&scene, &view, &backwards, &render(&scene, &view, &backwards));
+        let judged = self::judged(&mut truth, &scene, &view, backwards);
         assert!(judged.is_exact() && judged.overdraw() == Some(1.0), "{judged:?}");
     }
 }
@@ -128,12 +135,8 @@ fn an_eye_that_sees_nothing_is_no_division_by_zero() {
     let mut view = random_views(&*scene, 1, 1)[0];
     view.eye.position = scene.bounds().max + scene.bounds().size();
     view.eye.target = view.eye.position + scene.bounds().size();
-    let judged = Truth::new(&scene, Surfaces::default(), 1, WHITE).judge(
-        &scene,
-        &view,
-        &[],
-        &render(&scene, &view, &[]),
-    );
+    let mut truth = Truth::new(&scene, Surfaces::default(), 1, WHITE);
+    let judged = judged(&mut truth, &scene, &view, Vec::new());
     assert_eq!(
         (judged.visible.len(), judged.coverage_ratio(), judged.overdraw(), judged.flip_mean),
         (0, 1.0, None, 0.0)

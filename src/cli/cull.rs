@@ -208,11 +208,7 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
             write_image(&output::numbered(path, i, count), view, rgba.clone())?;
         }
         let truth = truth.as_mut().map(|t| {
-            // Whether a primitive shows is asked at the centers of pixels, whatever the picture is made of.
-            if list.samples > 1 {
-                list.redraw(&mut target, scene, view, &options);
-            }
-            let judged = t.judge(scene, view, &list.prims, &target);
+            let judged = t.judge(scene, view, &list, (&target, &canvas));
             let seen = |rgba| t.reference(scene, view, REFERENCE_SAMPLES, light).judge(rgba);
             truth_report(args, judged, picture.as_deref().filter(|_| stands_in).map(seen))
         });

@@ -17,6 +17,7 @@ mod progress;
 mod scene;
 mod step;
 mod suggest;
+mod sweep;
 mod task;
 mod trace;
 mod view;
@@ -63,6 +64,8 @@ enum Command {
     Figure(figure::Args),
     /// Measure the tables of the papers, beside the papers' own figures
     Paper(paper::Args),
+    /// Chart speed against error, of methods with their parameters on scenes
+    Sweep(sweep::Args),
     /// Measure on an input that other programs read too
     #[command(subcommand)]
     Bench(bench::Command),
@@ -92,6 +95,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Paper(args)) => paper::run(&args),
+        Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),

@@ -9,7 +9,7 @@ pub mod metrics;
 mod plot;
 pub mod words;
 
-pub use plot::{Plot, Series, Shape};
+pub use plot::{Curve, Plot, Series, Shape, Tradeoff, Tried};
 
 use std::sync::Arc;
 
@@ -33,6 +33,8 @@ pub enum Subject {
     Plane(u8),
     /// The Eye.
     Eye,
+    /// A configuration of a chart, by its number.
+    Tried(u32),
 }
 
 /// Meaning, not color: the theme turns roles into stroke, fill, dash and hatch at the last moment.

@@ -13,6 +13,7 @@ mod panels;
 mod pick;
 mod place;
 pub mod tools;
+mod tradeoff;
 
 pub use chart::{chart, charts};
 pub use clip::clip;
@@ -22,3 +23,4 @@ pub use page::{Entry, Page, Paper, Swatch};
 pub use panels::{Panel, Picture, panels, plate_labels};
 pub use pick::{pick, pick_node, pick_segment};
 pub use place::{Sheet, project};
+pub use tradeoff::{tradeoff, tradeoff_charts, tradeoffs};

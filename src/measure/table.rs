@@ -125,24 +125,18 @@ impl Table {
 
     /// Comma-separated values (RFC 4180 but for its line ends, which are plain), keys first.
     pub fn csv(&self) -> String {
-        let quoted = |text: &str| {
-            if text.contains([',', '"', '\n', '\r']) {
-                format!("\"{}\"", text.replace('"', "\"\""))
-            } else {
-                text.to_owned()
-            }
-        };
         let cell = |cell: &Cell| match cell {
-            Cell::Text(text) => quoted(text),
+            Cell::Text(text) => text.clone(),
             Cell::Number(value) => value.to_string(),
             Cell::Missing => String::new(),
         };
-        let mut text = self.columns.iter().map(|c| c.key).collect::<Vec<_>>().join(",") + "\n";
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        // Writing to memory cannot fail, and all rows are as long as the head.
+        let _ = writer.write_record(self.columns.iter().map(|c| c.key));
         for row in &self.rows {
-            text += &row.iter().map(cell).collect::<Vec<_>>().join(",");
-            text.push('\n');
+            let _ = writer.write_record(row.iter().map(cell));
         }
-        text
+        String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
     }
 
     /// The rows as JSON objects by key.

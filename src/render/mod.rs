@@ -1,4 +1,4 @@
-//! Readers of drawings: SVG, PDF, PNG and the screen; and the theme, the only place with colors.
+//! Readers of drawings: SVG, PDF, PNG, pages for browsers and the screen; and the theme, the only place with colors.
 //!
 //! A reader adds no mark of its own. What a role needs beyond one stroke (halo, hatch, sign) is decided once,
 //! in `piece.rs`, so that all readers show the same picture. Every file format carries the recipe of the
@@ -10,6 +10,7 @@ mod face;
 #[cfg(feature = "gui")]
 pub mod gpu;
 mod hatch;
+mod html;
 mod number;
 mod pdf;
 mod piece;
@@ -21,6 +22,7 @@ mod svg;
 pub mod theme;
 
 pub use export::{Format, export};
+pub use html::page;
 pub use pdf::pdf;
 pub use png::png_pixels;
 pub use raster::{PngSize, pixels, png};

@@ -285,6 +285,7 @@ fn subject(subject: Subject) -> String {
         Subject::Object(id) => format!(" data-object=\"{}\"", id.0),
         Subject::Plane(i) => format!(" data-plane=\"{i}\""),
         Subject::Eye => " data-eye=\"\"".to_owned(),
+        Subject::Tried(number) => format!(" data-tried=\"{number}\""),
     }
 }
 
@@ -293,7 +294,7 @@ fn hex([r, g, b]: Rgb) -> String {
 }
 
 /// Text for XML; characters that XML cannot hold become spaces.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -23,7 +23,8 @@ pub use reference::Reference;
 use glam::DVec3;
 
 use crate::geometry::{PrimId, Vector, View};
-use crate::raster::{Drawable, Options, Target, look_through, shade, visible};
+use crate::method::DrawList;
+use crate::raster::{Canvas, Drawable, Options, Target, look_through, paint, visible};
 use crate::scene::{Scene, Surfaces};
 
 /// The exact answer of views of one scene; keeps its buffers from view to view.
@@ -47,7 +48,7 @@ pub struct Judgement {
     pub drawn: usize,
     /// Pixels of the image.
     pub pixels: usize,
-    /// Pixels whose color differs from the image of the whole scene.
+    /// Pixels whose color differs from the image of the whole scene, both in the light of the answer.
     pub wrong_pixels: usize,
     /// Pixels that show another primitive, or it at another depth, or lack a see-through one.
     pub wrong_items: usize,
@@ -109,26 +110,58 @@ impl Truth {
         &self.all
     }
 
-    /// Compares an answer, `drawn` in any order and `image` drawn of it, with the whole scene.
+    /// Compares an answer with the whole scene. `drawn`: the images of its two parts from that view
+    /// ([`DrawList::draw`]). Whether a primitive shows is asked at the centers of pixels, whatever the picture
+    /// is made of.
     pub fn judge<S: Drawable>(
         &mut self,
         scene: &Scene<S>,
         view: &View<S>,
-        drawn: &[PrimId],
-        image: &Target,
+        list: &DrawList<S>,
+        drawn: (&Target, &Canvas),
     ) -> Judgement {
         let visible = self.look(scene, view);
-        let missed = missing(&visible, drawn, scene.prim_count());
-        let wrong_items = self.wrong_items(scene, view, &missed, image);
+        self.compare(scene, view, visible, list, drawn)
+    }
+    /// The same of the view that was looked at last, where that was `visible`.
+    pub fn compare<S: Drawable>(
+        &mut self,
+        scene: &Scene<S>,
+        view: &View<S>,
+        visible: Vec<PrimId>,
+        list: &DrawList<S>,
+        drawn: (&Target, &Canvas),
+    ) -> Judgement {
+        let missed = missing(&visible, &list.prims, scene.prim_count());
+        let wrong_items = if list.samples == 1 {
+            self.wrong_items(scene, view, &missed, drawn.0)
+        } else {
+            let mut image = Target::default();
+            list.redraw(&mut image, scene, view, &self.options);
+            self.wrong_items(scene, view, &missed, &image)
+        };
         let (mut wrong_pixels, mut flip) = (0, 0.0);
-        if wrong_items > 0 {
-            let [reference, test] = [&self.all, image].map(|t| shade(t, scene, view, self.background));
+        // Where all pixels show the same at the same depth, so do the pictures, but for what is over them.
+        if wrong_items > 0 || list.samples > 1 || !list.stand_ins.is_empty() {
+            let reference = self.shown(scene, view, list);
+            let test = list.picture(scene, view, drawn, (list.light, self.background));
             wrong_pixels =
                 reference.chunks_exact(4).zip(test.chunks_exact(4)).filter(|(a, b)| a != b).count();
-            flip = flip_mean(&reference, &test, view.width as usize, view.height as usize);
+            if wrong_pixels > 0 {
+                flip = flip_mean(&reference, &test, view.width as usize, view.height as usize);
+            }
         }
-        let pixels = view.width as usize * view.height as usize;
-        Judgement { visible, missed, drawn: drawn.len(), pixels, wrong_pixels, wrong_items, flip_mean: flip }
+        let (drawn, pixels) = (list.prims.len(), view.width as usize * view.height as usize);
+        Judgement { visible, missed, drawn, pixels, wrong_pixels, wrong_items, flip_mean: flip }
+    }
+    /// The picture of the whole scene that was looked at last, in the light and samples of an answer.
+    fn shown<S: Drawable>(&mut self, scene: &Scene<S>, view: &View<S>, list: &DrawList<S>) -> Vec<u8> {
+        if list.samples == 1 {
+            return paint(&self.all, &Canvas::default(), scene, view, (list.light, self.background));
+        }
+        let prims = seen_from(&self.prims, &mut self.facing, self.surfaces, scene, view).to_vec();
+        let whole = DrawList { prims, samples: list.samples, light: list.light, ..DrawList::default() };
+        whole.paint(scene, view, &self.options, self.background)
     }
     fn wrong_items<S: Drawable>(
         &self,

@@ -16,6 +16,7 @@ pub fn subject_name(state: &State, subject: Subject) -> String {
         Subject::Object(o) => format!("object {}", stage.scene().object_name(o)),
         Subject::Plane(i) => format!("plane {i} of the frustum"),
         Subject::Eye => "the Eye".into(),
+        Subject::Tried(n) => format!("configuration {n}"),
         Subject::None => "nothing".into(),
     }
 }

@@ -14,7 +14,7 @@ use crate::geometry::{Aabb, Eye, Flat, Frustum, FrustumTest, NodeId, ObjectId, P
 use crate::index::{Hierarchy, Items};
 use crate::method::{Entry, Of, Recorder, Settings, Unobserved, Verdict};
 use crate::raster::{Canvas, Options, Target, averaged, fixed_light, paint, render};
-use crate::scene::{AnyScene, LoadOptions, Object, Parts, Quiet, framing_view, load, random_views, samples};
+use crate::scene::{AnyScene, LoadOptions, Parts, Quiet, framing_view, load, random_views, samples};
 
 fn is_near(a: [f32; 4], b: [f32; 4]) -> bool {
     (0..4).all(|c| (a[c] - b[c]).abs() < 1e-6)
@@ -444,7 +444,7 @@ fn thresholds_bound_what_is_drawn_in_both_spaces() {
 /// many pixels a side; so without cubes it is that of geometry (Section 5: "2×2 samples").
 fn samples_are_averaged<S: Projected>() {
     let (white, options) = ([1.0; 3], Options::default());
-    let mut softer = 0;
+    let (mut softer, mut with_cubes) = (0, 0);
     for order in ["exact", "paper"] {
         for threshold in ["0", "6"] {
             let scene = samples::soup::<S>(5, 400);
@@ -462,11 +462,12 @@ fn samples_are_averaged<S: Projected>() {
                 let seen = fine.paint(&scene, &view, &options, white);
                 assert!(seen == mean, "{order}, {threshold}");
                 softer += usize::from(seen != list.paint(&scene, &view, &options, white));
-                assert_eq!(list.stand_ins.is_empty(), threshold == "0");
+                assert!(list.stand_ins.is_empty() || threshold != "0");
+                with_cubes += usize::from(!list.stand_ins.is_empty());
             }
         }
     }
-    assert!(softer > 8, "of 12 pictures {softer} have a pixel of several colors");
+    assert!(softer > 8 && with_cubes > 2, "of 12 {softer} are softer, and {with_cubes} have cubes");
 }
 
 #[test]
@@ -766,9 +767,10 @@ fn a_leaf_refers_to_the_objects_in_it() {
 fn each_cell_is_handed_its_part_of_an_object() {
     const SIDE: f32 = 8.0;
     let mut dice = Dice::new(3);
+    let middles: Vec<_> = (0..20).map(|_| (dice.point(0.7) + 1.0) * 2.0).collect();
     let corners: Vec<_> = (0..600)
-        .flat_map(|_| {
-            let at = (dice.point(0.9) + 1.0) * 1.4;
+        .flat_map(|k| {
+            let at = middles[k / 30] + dice.point(0.4);
             [at, at + dice.point(0.1), at + dice.point(0.1)]
         })
         // No corner on a plane that halves a cell, and exact images.
@@ -782,9 +784,8 @@ fn each_cell_is_handed_its_part_of_an_object() {
     let points: Vec<_> = (0..8).flat_map(|o| corners.iter().map(move |at| image(o, *at))).collect();
     let prims: Vec<_> = (0..points.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
     let mut parts: Parts<Solid> = Parts::simple("eight images", points, prims);
-    parts.objects =
-        (0..8).map(|o| Object { name: format!("image {o}"), ..parts.objects[0].clone() }).collect();
-    parts.prim_object = (0..4800).map(|k| ObjectId(k / 600)).collect();
+    parts.objects = vec![parts.objects[0].clone(); 160];
+    parts.prim_object = (0..4800).map(|k| ObjectId(k / 30)).collect();
     let scene = Scene::new(parts).expect("a valid scene");
     let root = Aabb { min: glam::Vec3::ZERO, max: glam::Vec3::splat(SIDE) };
     let items = Items::objects(&scene);

@@ -270,7 +270,7 @@ impl SpaceLayer {
                             .map(|i| pack::segment(points[i], points[(i + 1) % points.len()], role)),
                     );
                 }
-                Subject::None | Subject::Plane(_) | Subject::Eye => {}
+                Subject::None | Subject::Plane(_) | Subject::Eye | Subject::Tried(_) => {}
             }
         }
         to.extend(sides);
