@@ -4,6 +4,8 @@
 mod cubes;
 #[path = "cli/motion.rs"]
 mod motion;
+#[path = "cli/sweep.rs"]
+mod sweep;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -8,8 +8,8 @@ use cullscope::geometry::{Aabb, Flat, NodeId, ObjectId, PrimId, Solid, Vector, V
 use cullscope::method::{self, DrawList, Film, Settings};
 use cullscope::raster::{Canvas, Drawable, pick, render};
 use cullscope::scene::{AnyScene, LoadOptions, Motion, Quiet, Scene, Surfaces, load, random_views};
-use cullscope::truth::{Judgement, Truth};
 use cullscope::truth::certificate::{Certificate, Checker, Claim, certificates, check_film};
+use cullscope::truth::{Judgement, Truth};
 use glam::DVec3;
 
 const WHITE: [f32; 3] = [1.0; 3];

@@ -66,6 +66,7 @@ impl State {
             Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
             Command::SaveTo(path) => self.save(&path),
             Command::Tables(asked) => self.tables(asked),
+            Command::Laboratory(asked) => self.laboratory(asked),
             Command::Dismiss(i) if i < self.notices.len() => {
                 self.notices.remove(i);
             }
@@ -126,6 +127,7 @@ impl State {
             | Action::ExportPdf
             | Action::ExportPng => open,
             Action::Report | Action::About | Action::FrameSelection | Action::Swap => open,
+            Action::Laboratory => open,
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
                 self.bookmarks.len() > action as usize - Action::Bookmark1 as usize
             }
@@ -320,6 +322,7 @@ impl State {
             Action::Report => self.dialog = Dialog::Report,
             Action::About => self.dialog = Dialog::About,
             Action::Tables => self.dialog = Dialog::Tables,
+            Action::Laboratory => self.dialog = Dialog::Laboratory,
             _ => return false,
         }
         true
@@ -353,7 +356,7 @@ impl State {
     }
 
     /// Changes something that culling depends on: undoable, and the film is recorded again.
-    fn change(&mut self, gesture: u64, change: impl FnOnce(&mut Self)) {
+    pub(super) fn change(&mut self, gesture: u64, change: impl FnOnce(&mut Self)) {
         let before = self.inputs();
         change(self);
         if before != self.inputs()
@@ -463,7 +466,8 @@ impl State {
     }
 
     fn take(&mut self, wait: bool) -> bool {
-        let Some(done) = self.worker.answer(wait) else { return false };
+        let Some(done) = self.worker.answer(wait) else { return self.take_news() };
+        self.take_news();
         match done {
             Done::Loaded(opened) => self.put_on_stage(opened),
             Done::LoadFailed(text) => {
@@ -473,6 +477,14 @@ impl State {
             Done::Recorded(recorded) => self.take_film(recorded),
             Done::Measured(measured) => {
                 self.take_table(*measured);
+                self.run_commands();
+            }
+            Done::Swept => {
+                self.record_if_missing();
+                self.run_commands();
+            }
+            Done::Advised(advice) => {
+                self.take_advice(*advice);
                 self.run_commands();
             }
             Done::Layered { layers, action } => self.take_layers(layers, action),

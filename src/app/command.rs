@@ -3,6 +3,7 @@
 
 use super::any::AnyView;
 use super::camera::ObserverCamera;
+use super::laboratory::Laboratory;
 use super::measured::Tables;
 use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;
@@ -133,6 +134,8 @@ actions! {
     Step NextLayer "next-layer" "Next layer" ["Z"] "To the first step that draws something of a deeper layer \
         than before. A thing is of layer 3 if, where it is least covered, two others lie before it.";
     Step PreviousLayer "previous-layer" "Previous layer" ["Shift+Z"] "Back to where a layer began.";
+    Step FirstWrong "first-wrong" "First wrong decision" [] "To the first step that left out something that \
+        is visible.";
     Step NextOnSelected "next-on-selected" "Next about the selection" ["K"] "To the next event about the \
         selected thing.";
     Step PreviousOnSelected "previous-on-selected" "Previous about the selection" ["Shift+K"] "To the event \
@@ -205,6 +208,8 @@ actions! {
     View ResetLayout "reset-layout" "Reset layout" ["Alt+0"] "Puts every panel back.";
     View Tables "paper-table" "Paper tables…" [] "Measures the tables of the method's paper, beside the \
                                                   paper's own figures.";
+    View Laboratory "laboratory" "Speed against error…" [] "Measures all methods on the Eye's path, and \
+        advises on the simplest one that is right enough.";
     View ScaleUp "scale-up" "Larger" ["Ctrl+Plus", "Ctrl+Equals"] "Everything larger.";
     View ScaleDown "scale-down" "Smaller" ["Ctrl+Minus"] "Everything smaller.";
     View ScaleReset "scale-reset" "Normal size" [] "Everything in its normal size.";
@@ -282,6 +287,8 @@ pub enum Command {
     SaveTo(String),
     /// Measures a paper's table, or writes it to a file.
     Tables(Tables),
+    /// Measures methods against each other, or asks for advice.
+    Laboratory(Laboratory),
     /// Removes a message.
     Dismiss(usize),
 }

@@ -31,6 +31,8 @@ pub enum Dialog {
     About,
     /// The papers' tables.
     Tables,
+    /// Speed against error, and advice.
+    Laboratory,
 }
 
 /// A set of panels.

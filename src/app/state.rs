@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
+use super::laboratory::Findings;
 use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};
@@ -90,6 +91,8 @@ pub struct State {
     pub outline: Outline,
     /// The table that was measured last.
     pub measured: Option<Arc<Measured>>,
+    /// What was found in the laboratory.
+    pub findings: Findings,
     /// Messages, the newest last.
     pub notices: Vec<Notice>,
     /// What the window has to do.
@@ -148,6 +151,7 @@ impl State {
             filter: String::new(),
             outline: Outline::default(),
             measured: None,
+            findings: Findings::default(),
             notices: vec![],
             effects: vec![],
             is_dirty: false,

@@ -168,6 +168,10 @@ impl State {
                     None => self.tell(format!("{}: there is none.", action.info().title)),
                 }
             }
+            Action::FirstWrong => {
+                self.is_playing = false;
+                self.go_first_wrong();
+            }
             Action::NextLayer | Action::PreviousLayer => {
                 self.is_playing = false;
                 self.go_layer(action);

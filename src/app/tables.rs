@@ -36,7 +36,7 @@ impl State {
     }
 
     /// Measuring takes the place of a film that was being recorded.
-    fn record_if_missing(&mut self) {
+    pub(super) fn record_if_missing(&mut self) {
         if self.stage.is_some() && self.film().is_none() {
             self.record();
         }

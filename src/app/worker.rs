@@ -16,8 +16,10 @@ use super::measured::{self, Measured};
 use super::open;
 use super::stage::Recorded;
 use crate::culling::Methods;
-use crate::geometry::{Either, Flat, Solid, View, each};
+use crate::geometry::{Either, Flat, Solid, View, ViewPath, each};
+use crate::measure::advise::{Advice, Wish, advise};
 use crate::measure::deadline::Paced;
+use crate::measure::sweep::{Line, Log, Spec, fly};
 use crate::method::Settings;
 use crate::raster::Drawable;
 use crate::scene::{AnyScene, Motion, Part, Progress, Scene};
@@ -45,6 +47,10 @@ pub struct Request<S: Methods> {
     pub cap: usize,
 }
 
+/// A scene, and the path that is flown through it or the views that it is looked at from.
+type Flown<S> = (Arc<Scene<S>>, ViewPath<S>);
+type Looked<S> = (Arc<Scene<S>>, Vec<View<S>>);
+
 pub(super) enum Job {
     Load {
         wanted: open::Wanted,
@@ -55,6 +61,16 @@ pub(super) enum Job {
         name: &'static str,
         scene: Option<AnyScene>,
         settings: Settings,
+    },
+    /// Measures configurations on a path, and tells each line as soon as it is known.
+    Sweep {
+        job: Either<Flown<Flat>, Flown<Solid>>,
+        spec: Box<Spec>,
+    },
+    /// Looks for the simplest configuration that is right enough.
+    Advise {
+        job: Either<Looked<Flat>, Looked<Solid>>,
+        wish: Wish,
     },
     /// Ranks what the film draws by layers, for someone who wants to go to one.
     Layer {
@@ -69,6 +85,8 @@ pub(super) enum Done {
     Recorded(AnyRecorded),
     RecordFailed(String),
     Measured(Box<Measured>),
+    Swept,
+    Advised(Box<Advice>),
     Layered { layers: Result<Layers, String>, action: Action },
     Cancelled,
 }
@@ -87,6 +105,8 @@ struct Shared {
     wanted: AtomicU64,
     fraction: AtomicU32,
     what: Mutex<&'static str>,
+    /// What a sweep found since it was last asked.
+    news: Mutex<Vec<Line>>,
     wake: Mutex<Option<Box<dyn Fn() + Send + Sync>>>,
 }
 
@@ -135,6 +155,7 @@ impl Worker {
             wanted: AtomicU64::new(0),
             fraction: AtomicU32::new(0),
             what: Mutex::new(""),
+            news: Mutex::default(),
             wake: Mutex::new(None),
         });
         let mine = shared.clone();
@@ -162,6 +183,7 @@ impl Worker {
         self.asked += 1;
         self.shared.wanted.store(self.asked, Ordering::Relaxed);
         self.shared.fraction.store(0, Ordering::Relaxed);
+        self.news();
         if let Ok(mut now) = self.shared.what.lock() {
             *now = "";
         }
@@ -169,6 +191,10 @@ impl Worker {
         if self.jobs.send((self.asked, job)).is_err() {
             self.open = None;
         }
+    }
+    /// What a sweep found since the last time.
+    pub(super) fn news(&self) -> Vec<Line> {
+        self.shared.news.lock().map(|mut news| std::mem::take(&mut *news)).unwrap_or_default()
     }
     /// Nothing is wanted any more.
     pub(super) fn cancel(&mut self) {
@@ -241,6 +267,15 @@ impl Bench {
                     Err(error) => Done::RecordFailed(error),
                 }
             }
+            Job::Sweep { job, spec } => each!(job, flown => sweep(&flown, &spec, ticket)),
+            Job::Advise { job, wish } => {
+                let advice = each!(job, looked => advise(&looked.0, &looked.1, wish, ticket));
+                match advice {
+                    Ok(advice) => Done::Advised(Box::new(advice)),
+                    Err(_) if ticket.cancelled() => Done::Cancelled,
+                    Err(error) => Done::RecordFailed(error.to_string()),
+                }
+            }
             Job::Layer { film, action } => match each!(film, f => layers::rank(&f, ticket)) {
                 _ if ticket.cancelled() => Done::Cancelled,
                 layers => Done::Layered { layers, action },
@@ -256,6 +291,24 @@ impl Bench {
                 record(&mut self.solid, request, self.serial, ticket, Either::Solid)
             }
         }
+    }
+}
+
+/// Measures what a spec says, and tells each line of the result to whoever asked.
+fn sweep<S: Methods + Drawable>((scene, path): &Flown<S>, spec: &Spec, ticket: &Ticket) -> Done {
+    let all: Vec<usize> = (0..spec.configurations.len()).collect();
+    let mut keep = |line: &Line| {
+        if !ticket.cancelled()
+            && let Ok(mut news) = ticket.shared.news.lock()
+        {
+            news.push(line.clone());
+        }
+        Ok(())
+    };
+    match fly((spec, 0), scene, path, &all, &mut Log::default(), &mut keep, ticket) {
+        Ok(()) => Done::Swept,
+        Err(_) if ticket.cancelled() => Done::Cancelled,
+        Err(error) => Done::RecordFailed(error.to_string()),
     }
 }
 

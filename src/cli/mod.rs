@@ -4,6 +4,7 @@
 //! 1 the work failed, 2 the words of the call are off. An error is one line, `error: WHAT: WHY`, and if it
 //! helps one line `help: …`.
 
+mod advise;
 mod bench;
 mod convert;
 mod cull;
@@ -66,6 +67,8 @@ enum Command {
     Paper(paper::Args),
     /// Chart speed against error, of methods with their parameters on scenes
     Sweep(sweep::Args),
+    /// Find the simplest configuration that is right enough at the least time
+    Advise(advise::Args),
     /// Measure on an input that other programs read too
     #[command(subcommand)]
     Bench(bench::Command),
@@ -96,6 +99,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Paper(args)) => paper::run(&args),
         Some(Command::Sweep(args)) => sweep::run(&args),
+        Some(Command::Advise(args)) => advise::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),

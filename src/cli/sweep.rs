@@ -125,15 +125,14 @@ fn sweep(args: &Args, file: &Path) -> Result<(), CliError> {
     for (number, scene) in scenes.iter().enumerate() {
         let part = Part::of(&bar, number, scenes.len());
         let ours = share(number, spec.configurations.len(), args.shard.unwrap_or([1, 1]));
-        let views = each!(scene, scene => {
-            let flown = path(scene, &spec.scenes[number], &spec).map_err(|e| failed(&place, e))?;
-            write_views(&flown, scene.origin())
-        });
-        let to = out.join(format!("views-{number}.json"));
-        output::write_file(&to, |to| to.write_all(views.as_bytes()).map(|()| true))?;
         forget_peak();
         let mut keep = |line: &Line| journal.keep(line);
-        let flown = each!(scene, scene => fly((&spec, number), scene, &ours, &mut log, &mut keep, &part));
+        let flown = each!(scene, scene => {
+            let views = path(scene, &spec.scenes[number], &spec).map_err(|e| failed(&place, e))?;
+            let (to, text) = (out.join(format!("views-{number}.json")), write_views(&views, scene.origin()));
+            output::write_file(&to, |to| to.write_all(text.as_bytes()).map(|()| true))?;
+            fly((&spec, number), scene, &views, &ours, &mut log, &mut keep, &part)
+        });
         flown.map_err(|e| failed(&place, e)).map_err(|e| still(e, &out))?;
         if let Some(peak_bytes) = peak_bytes().filter(|_| !ours.is_empty()) {
             let line = Line::Memory { scene: number as u32, peak_bytes };

@@ -117,6 +117,25 @@ impl Axis {
         Self { label, low, high: if up > low { up } else { low + span }, logarithmic }
     }
 
+    /// An axis of equal factors that takes in all positive values, its ends 1, 2 or 5 times a power of ten, and
+    /// at least a factor of 10 apart.
+    pub fn tight(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.into_iter().filter(|x| x.is_finite() && *x > 0.0).collect();
+        let mut axis = Self::of(label, values.iter().copied(), true);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(0.0, f64::max);
+        let steps: Vec<f64> = axis.steps();
+        axis.low = steps.iter().rev().copied().find(|s| *s <= least).unwrap_or(axis.low);
+        let far = most.max(axis.low * 10.0 / (1.0 + 1e-9));
+        axis.high = steps.iter().copied().find(|s| *s >= far).unwrap_or(axis.low * 10.0);
+        axis
+    }
+    /// 1, 2 and 5 times the powers of ten between the ends of an axis of equal factors, and one beyond.
+    fn steps(&self) -> Vec<f64> {
+        let (first, last) = (self.low.log10().floor() as i32, self.high.log10().ceil() as i32);
+        (first..=last).flat_map(|e| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(e))).collect()
+    }
+
     /// Where a value lies between the ends: 0 to 1; outside of that where it is not on the axis.
     pub fn place(&self, value: f64) -> f32 {
         let f = |x: f64| if self.logarithmic { x.max(1e-300).log10() } else { x };
@@ -129,6 +148,13 @@ impl Axis {
             let at = ticks(self.low, self.high, most);
             let step = if at.len() > 1 { at[1] - at[0] } else { self.high - self.low };
             return at.into_iter().map(|x| (x, tick_label(x, step))).collect();
+        }
+        let is_whole = |x: f64| (x.log10() - x.log10().round()).abs() < 1e-6;
+        if !(is_whole(self.low) && is_whole(self.high)) {
+            let inside = |x: &f64| *x >= self.low * (1.0 - 1e-9) && *x <= self.high * (1.0 + 1e-9);
+            let all: Vec<f64> = self.steps().into_iter().filter(inside).collect();
+            let every = all.len().div_ceil(most.max(1)).max(1);
+            return all.into_iter().step_by(every).map(|x| (x, tick_label(x, x))).collect();
         }
         let (first, last) = (self.low.log10().round() as i32, self.high.log10().round() as i32);
         let every = ((last - first) as usize / most.max(1) + 1) as i32;
@@ -249,6 +275,24 @@ mod tests {
                 && ticks(f64::NAN, 1.0, 5).is_empty()
                 && ticks(0.0, 1.0, 0).is_empty()
         );
+    }
+
+    /// The ends are near the values, and some values between them have labels.
+    #[test]
+    fn tight_axes_waste_no_room() {
+        for values in [vec![0.3, 0.8], vec![3.1, 47.0], vec![1.0, 10.0], vec![0.02, 900.0], vec![5.0], vec![]]
+        {
+            let axis = Axis::tight("t", values.iter().copied());
+            assert!(
+                values.iter().all(|v| (-1e-6..=1.0 + 1e-6).contains(&axis.place(*v))),
+                "{values:?} {axis:?}"
+            );
+            let marks = axis.marks(6);
+            assert!((2..=7).contains(&marks.len()), "{values:?} {marks:?}");
+            let (least, most) = (axis.low * 2.6, axis.high / 2.6);
+            let is_wide = axis.high > axis.low * 10.1;
+            assert!(!is_wide || values.iter().any(|v| *v <= least) && values.iter().any(|v| *v >= most));
+        }
     }
 
     #[test]

@@ -20,7 +20,7 @@ const FRAME_PT: f32 = 0.8;
 /// Radius of the ring about what is on the front.
 const RING_PT: f32 = 3.8;
 /// The share of the width that the line of what is exact has.
-const EXACT: f32 = 0.1;
+const EXACT: f32 = 0.16;
 
 /// Where the values of a chart are: the rectangle of its data, and its axes.
 struct Field {
@@ -103,7 +103,7 @@ pub fn tradeoff(to: &mut Drawing, chart: &Tradeoff, [mut min, max]: [Vec2; 2]) {
 fn field(to: &mut Drawing, chart: &Tradeoff, place: [Vec2; 2]) -> Field {
     let tried = || chart.curves.iter().flat_map(|curve| &curve.tried);
     let all = |one: &Tried| one.frames.iter().map(|f| f.1).chain(one.spread_ms).collect::<Vec<_>>();
-    let time = Axis::of("time of a frame, ms", tried().flat_map(all), true);
+    let time = Axis::tight("time of a frame, ms", tried().flat_map(all));
     let errors = tried().flat_map(|one| one.frames.iter().map(|f| f.0).chain([one.error]));
     let error = Axis::of(chart.error_label.clone(), errors, true);
     let mut field = Field { corners: [Vec2::ZERO; 2], error, time };
@@ -133,18 +133,18 @@ fn front(to: &mut Drawing, chart: &Tradeoff, field: &Field) {
     }
     if let Some(last) = steps.last().copied() {
         steps.push(vec2(field.corners[1].x, last.y));
-        to.line(Layer::Areas, Role::Selected, Subject::None, steps);
+        to.line(Layer::Areas, Role::Outside, Subject::None, steps);
     }
     for at in places {
-        to.push(Layer::Evidence, Role::Selected, Subject::None, Mark::Dot { at, radius_pt: RING_PT });
-        to.push(Layer::Evidence, Role::Paper, Subject::None, Mark::Dot { at, radius_pt: RING_PT - 0.8 });
+        to.push(Layer::Scene, Role::Ink, Subject::None, Mark::Dot { at, radius_pt: RING_PT });
+        to.push(Layer::Scene, Role::Paper, Subject::None, Mark::Dot { at, radius_pt: RING_PT - 0.7 });
     }
 }
 
 fn marks(to: &mut Drawing, curve: &Curve, field: &Field) {
     let places: Vec<Vec2> = curve.tried.iter().map(|one| field.at(one.error, one.time_ms)).collect();
     if places.len() > 1 {
-        to.line(Layer::Scene, curve.role, Subject::None, places.clone());
+        to.line(Layer::Evidence, curve.role, Subject::None, places.clone());
     }
     for (one, at) in curve.tried.iter().zip(places) {
         let bar = one.spread_ms.map(|ms| field.at(one.error, ms));

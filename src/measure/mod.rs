@@ -2,6 +2,7 @@
 //! clock, so that nothing below it can depend on time. And what an [`Experiment`] is, with the harness that
 //! all of them run in.
 
+pub mod advise;
 pub mod columns;
 pub mod deadline;
 pub mod experiment;

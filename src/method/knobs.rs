@@ -322,6 +322,11 @@ pub(crate) fn surface_knobs(knobs: &mut dyn Knobs, surfaces: &mut Surfaces) {
     surfaces.solid = at == 1;
 }
 
+/// Whether a parameter says how surfaces are taken: what is to be seen, not how it is found.
+pub fn is_of_surfaces(knob: &Knob) -> bool {
+    [BACKFACES, SEE_THROUGH].contains(&knob.name)
+}
+
 /// How a run takes the surfaces of its scene, from the values of its parameters.
 pub fn surfaces_of(knobs: &[(Knob, KnobValue)]) -> Surfaces {
     let words = knobs.iter().map(|(knob, value)| (knob.name.to_owned(), value.to_string()));

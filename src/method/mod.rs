@@ -20,7 +20,7 @@ pub use contract::{Derived, DrawList, Frame, Limit, Method, Moment, Shown, State
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use film::{Film, Reel, notes};
 pub(crate) use knobs::surface_knobs;
-pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings, surfaces_of};
+pub use knobs::{Budget, Knob, KnobValue, Knobs, SettingError, Settings, is_of_surfaces, surfaces_of};
 pub use note::{Claim, Compared, Context, Field, Note, Value};
 pub use run::{Entry, Recording, RestoreError, Run, settings_for};
 pub(crate) use run::{Of, params};

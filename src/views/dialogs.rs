@@ -16,6 +16,8 @@ pub struct Typing {
     text: String,
     /// Chosen row of the palette.
     row: usize,
+    /// Wrong pixels that advice may have, per cent.
+    most_wrong: f32,
     /// The system's dialog.
     pub chooser: Chooser,
 }
@@ -78,11 +80,14 @@ pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &m
             Dialog::Report => report(state, ui),
             Dialog::About => about(state, ui),
             Dialog::Tables => super::tables::show(state, ui, answers),
+            Dialog::Laboratory => super::laboratory::show(state, &mut typing.most_wrong, ui, answers),
             Dialog::None => {}
         }
-        if matches!(state.dialog, Dialog::Keys | Dialog::Report | Dialog::About | Dialog::Tables)
-            && ui.button("Close").clicked()
-        {
+        let has_own = matches!(
+            state.dialog,
+            Dialog::None | Dialog::Palette | Dialog::GoTo | Dialog::Open | Dialog::SaveAs
+        );
+        if !has_own && ui.button("Close").clicked() {
             answers.push(Command::Dialog(Dialog::None));
         }
     });

@@ -14,6 +14,7 @@ mod handles;
 mod icons;
 mod inspector;
 mod keys;
+mod laboratory;
 mod legend;
 mod menu;
 mod palette;

@@ -77,7 +77,8 @@ fn chart(state: &State, measured: &Measured, width: f32, ui: &mut egui::Ui) {
     screen::paint(&painter, &measured.chart, state.shown.theme, rect.min, scale);
 }
 
-fn table(ui: &mut egui::Ui, table: &Table) {
+/// A table as text in columns.
+pub fn table(ui: &mut egui::Ui, table: &Table) {
     Grid::new("table").striped(true).spacing([14.0, 3.0]).show(ui, |ui| {
         for column in &table.columns {
             let unit = if column.unit.is_empty() { String::new() } else { format!("\n{}", column.unit) };

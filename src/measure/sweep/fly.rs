@@ -41,7 +41,8 @@ pub enum SweepError {
 /// Keeps a line, such as in a file; an error says why it could not.
 pub type Keep<'a> = dyn FnMut(&Line) -> Result<(), String> + 'a;
 
-/// The views of a scene that a spec flies: as many as it has frames, evenly spaced along the path.
+/// The views of a scene that a spec flies: as many as it has frames, evenly spaced along the path; where
+/// objects move, the first ones.
 ///
 /// # Errors
 /// There is no such path.
@@ -60,7 +61,9 @@ pub fn path<S: World>(scene: &Scene<S>, place: &Place, spec: &Spec) -> Result<Vi
         }
     };
     let (n, count) = (path.views.len(), spec.frames as usize);
-    path.views = (0..count).map(|k| path.views[k * n / count]).collect();
+    // What moves is seen frame by frame; else the frames stand for the whole path.
+    let is_moving = !scene.moving().is_empty();
+    path.views = (0..count).map(|k| path.views[if is_moving { k % n } else { k * n / count }]).collect();
     if let Some([width, height]) = spec.size_px {
         let height = if S::Vector::AXES == 2 { 1 } else { height };
         path.views.iter_mut().for_each(|view| (view.width, view.height) = (width, height));
@@ -80,20 +83,21 @@ struct Flight<'a, S: World> {
     images: (Target, Canvas),
 }
 
-/// Runs what `log` lacks of some configurations (by number) on scene `number` of a spec, and adds it.
+/// Runs what `log` lacks of some configurations (by number) on scene `number` of a spec along a path with as
+/// many views as the spec has frames ([`path()`]), and adds it.
 ///
 /// # Errors
 /// A configuration does not fit, a line could not be kept, or it was cancelled: what was kept until then holds.
 pub fn fly<'a, S: World>(
     (spec, number): (&'a Spec, usize),
     scene: &'a Arc<Scene<S>>,
+    path: &ViewPath<S>,
     configurations: &[usize],
     log: &'a mut Log,
     keep: &'a mut Keep<'a>,
     progress: &dyn Progress,
 ) -> Result<(), SweepError> {
-    let path = path(scene, &spec.scenes[number], spec)?;
-    let number = number as u32;
+    let (path, number) = (path.clone(), number as u32);
     let mut flight =
         Flight { spec, number, scene, path, runs: Vec::new(), log, keep, images: Default::default() };
     let (frames, rounds) = (spec.frames, spec.repeats);

@@ -19,14 +19,19 @@ const ROLES: [Role; 10] = [
     Role::Ink,
     Role::Visible,
     Role::Hidden,
-    Role::Wrong,
-    Role::Occluder,
+    Role::Eye,
     Role::Approximated,
     Role::Evidence,
+    Role::FacesAway,
     Role::Partial,
-    Role::Outside,
+    Role::Scene,
     Role::Undecided,
 ];
+
+/// The role of the method that is named at a place.
+pub fn role(at: usize) -> Role {
+    ROLES[at % ROLES.len()]
+}
 
 /// Number of a configuration on a scene, among all of a spec.
 fn number(spec: &Spec, scene: u32, configuration: u32) -> u32 {
@@ -59,22 +64,29 @@ struct Known<'a> {
     timed: Vec<Vec<&'a Timed>>,
 }
 
-fn known<'a>(log: &'a Log, spec: &Spec) -> Vec<Known<'a>> {
+/// Of each configuration the frames that are judged and timed; `so_far`: if there is one, else if there are
+/// all of them.
+fn known<'a>(log: &'a Log, spec: &Spec, so_far: bool) -> Vec<Known<'a>> {
     let mut all = Vec::new();
     for scene in 0..spec.scenes.len() as u32 {
         for configuration in 0..spec.configurations.len() as u32 {
-            let judged: Vec<_> =
-                (0..spec.frames).filter_map(|f| log.judged.get(&(scene, configuration, f))).collect();
-            let flights = (0..spec.repeats).filter(|&r| log.is_timed(scene, configuration, spec.frames, r));
-            let flights: Vec<u32> = flights.collect();
-            let is_built = log.built.contains_key(&(scene, configuration));
-            if judged.len() < spec.frames as usize || flights.is_empty() || !is_built {
-                continue;
+            let key = |frame, round| (scene, configuration, frame, round);
+            let flights: Vec<u32> = (0..spec.repeats)
+                .filter(|&r| so_far || log.is_timed(scene, configuration, spec.frames, r))
+                .collect();
+            let (mut judged, mut timed) = (Vec::new(), Vec::new());
+            for frame in 0..spec.frames {
+                let times: Vec<_> = flights.iter().filter_map(|&r| log.timed.get(&key(frame, r))).collect();
+                let Some(one) = log.judged.get(&(scene, configuration, frame)) else { continue };
+                if !times.is_empty() {
+                    judged.push(one);
+                    timed.push(times);
+                }
             }
-            let of = |frame| {
-                flights.iter().filter_map(|r| log.timed.get(&(scene, configuration, frame, *r))).collect()
-            };
-            all.push(Known { scene, configuration, judged, timed: (0..spec.frames).map(of).collect() });
+            let least = if so_far { 1 } else { spec.frames as usize };
+            if judged.len() >= least && log.built.contains_key(&(scene, configuration)) {
+                all.push(Known { scene, configuration, judged, timed });
+            }
         }
     }
     all
@@ -116,7 +128,7 @@ impl Known<'_> {
     }
     /// The mean frame of the fastest flight, and of the slowest.
     fn spread(&self) -> [f64; 2] {
-        let flights = self.timed.first().map_or(0, Vec::len);
+        let flights = self.timed.iter().map(Vec::len).min().unwrap_or(0);
         let of_flight = |r: usize| mean(self.timed.iter().map(|frame| whole(frame[r])));
         let means = (0..flights).map(of_flight);
         means.fold([f64::INFINITY, 0.0], |[low, high], ms| [low.min(ms), high.max(ms)])
@@ -206,7 +218,7 @@ pub fn configurations(log: &Log, spec: &Spec) -> Table {
         column("peak_bytes", "peak memory of the scene", "bytes", 0),
     ]);
     let fronts: Vec<u32> = charts(log, spec).iter().flat_map(Tradeoff::front).collect();
-    for one in known(log, spec) {
+    for one in known(log, spec, false) {
         let [fastest, slowest] = one.spread();
         let (build_ms, bytes) = log.built[&(one.scene, one.configuration)];
         let mut row = one.name(log, spec).to_vec();
@@ -262,7 +274,7 @@ pub fn frames(log: &Log, spec: &Spec) -> Table {
         column("wrong_pixels_percent", "wrong pixels", "%", 4),
         column("flip_percent", "FLIP", "%", 4),
     ]);
-    for one in known(log, spec) {
+    for one in known(log, spec, false) {
         let times = [one.frames(|t| t.cull_ms), one.frames(|t| t.draw_ms), one.frames(whole)];
         for (at, judged) in one.judged.iter().enumerate() {
             let mut row = one.name(log, spec).to_vec();
@@ -293,7 +305,7 @@ pub fn stages(log: &Log, spec: &Spec) -> Table {
         column("ms_q1", "lower quartile", "ms", 4),
         column("ms_q3", "upper quartile", "ms", 4),
     ]);
-    for one in known(log, spec) {
+    for one in known(log, spec, false) {
         let mut stages: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
         for timed in one.timed.iter().flatten() {
             for (name, ms) in &timed.stages_ms {
@@ -321,7 +333,7 @@ pub fn counts(log: &Log, spec: &Spec) -> Table {
         column("total", "all frames", "", 0),
         column("most", "most of a frame", "", 0),
     ]);
-    for one in known(log, spec) {
+    for one in known(log, spec, false) {
         let mut all: BTreeMap<&str, [u64; 2]> = BTreeMap::new();
         for (name, n) in one.judged.iter().flat_map(|judged| &judged.counts) {
             let [sum, most] = all.entry(name).or_default();
@@ -338,7 +350,15 @@ pub fn counts(log: &Log, spec: &Spec) -> Table {
 
 /// A chart of speed against error for each scene.
 pub fn charts(log: &Log, spec: &Spec) -> Vec<Tradeoff> {
-    let known = known(log, spec);
+    charted(&known(log, spec, false), log, spec)
+}
+
+/// The same of the frames that are known so far, while it is measured.
+pub fn charts_so_far(log: &Log, spec: &Spec) -> Vec<Tradeoff> {
+    charted(&known(log, spec, true), log, spec)
+}
+
+fn charted(known: &[Known<'_>], log: &Log, spec: &Spec) -> Vec<Tradeoff> {
     let methods: Vec<&str> = spec.configurations.iter().fold(Vec::new(), |mut all, one| {
         if !all.contains(&one.method.as_str()) {
             all.push(&one.method);
@@ -349,11 +369,7 @@ pub fn charts(log: &Log, spec: &Spec) -> Vec<Tradeoff> {
         let mut curves: Vec<Curve> = methods
             .iter()
             .enumerate()
-            .map(|(k, &method)| Curve {
-                label: method.to_owned(),
-                role: ROLES[k % ROLES.len()],
-                tried: Vec::new(),
-            })
+            .map(|(k, &method)| Curve { label: method.to_owned(), role: role(k), tried: Vec::new() })
             .collect();
         for one in known.iter().filter(|one| one.scene == scene) {
             let method = &spec.configurations[one.configuration as usize].method;

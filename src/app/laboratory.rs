@@ -1,0 +1,275 @@
+//! The laboratory: what all methods take on the open scene's path and how wrong they are, live; the way from
+//! a point of that chart to the step at which it went wrong; and advice.
+
+use std::sync::Arc;
+
+use super::command::Command;
+use super::shown::Dialog;
+use super::stage::Stage;
+use super::state::State;
+use super::worker::Job;
+use crate::culling::Methods;
+use crate::drawing::Tradeoff;
+use crate::geometry::{Vector, View, ViewPath, each};
+use crate::measure::advise::{Advice, Wish, defaults, variations};
+use crate::measure::sweep::{Configuration, ErrorKind, Line, Log, Place, Spec, results};
+use crate::method::{Budget, KnobValue, Settings, Verdict, surfaces_of};
+use crate::raster::Drawable;
+use crate::scene::Surfaces;
+use crate::truth::Truth;
+
+/// Frames of the path that are measured, flights, and the longer side of the images: enough to tell methods
+/// apart, few enough to wait for.
+const FRAMES: usize = 12;
+const REPEATS: u32 = 3;
+const LONGEST_PX: u32 = 512;
+/// Views that advice looks at, at most.
+const MOST_VIEWS: usize = 64;
+
+/// What to do in the laboratory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Laboratory {
+    /// Measures all methods, and every parameter of the chosen one at other values, on the path.
+    Measure,
+    /// Looks for the simplest configuration that is right enough: wrong pixels at most, per cent.
+    Advise(f32),
+    /// Stops.
+    Stop,
+    /// Opens a configuration of the chart, by its number, in the frame that it did worst in.
+    Open(u32),
+    /// Uses what is advised.
+    Use,
+}
+
+/// What was found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// What is measured, once something was asked for.
+    pub spec: Option<Spec>,
+    /// What is known so far.
+    pub log: Log,
+    /// The chart of that.
+    pub chart: Option<Tradeoff>,
+    /// The number of the scene on stage that this is about.
+    pub(super) serial: u64,
+    /// Frames of the path that were measured, by their number in the path, which is this one.
+    frames: Vec<usize>,
+    path: usize,
+    /// Advice on that path.
+    pub advice: Option<Arc<Advice>>,
+}
+
+impl Findings {
+    /// Method, parameters, time and error of a configuration of the chart, in words.
+    pub fn about(&self, number: u32) -> Option<String> {
+        let (spec, chart) = (self.spec.as_ref()?, self.chart.as_ref()?);
+        let tried = chart.curves.iter().flat_map(|c| &c.tried).find(|t| t.number == number)?;
+        let [_, at] = results::of_number(spec, number);
+        let label = spec.configurations.get(at)?.label();
+        let error = format!("{:.4}", tried.error);
+        let error = error.trim_end_matches('0').trim_end_matches('.');
+        let frames = tried.frames.len();
+        Some(format!(
+            "{label}\n{:.3} ms a frame ({frames} frames)\n{}: {error}",
+            tried.time_ms, chart.error_label
+        ))
+    }
+}
+
+impl State {
+    /// Whether what was found is about the open scene.
+    pub fn is_found_here(&self) -> bool {
+        self.findings.serial == self.serial
+    }
+    pub(super) fn laboratory(&mut self, asked: Laboratory) {
+        match asked {
+            Laboratory::Measure => self.measure_methods(),
+            Laboratory::Advise(percent) => self.ask_advice(f64::from(percent)),
+            Laboratory::Stop => {
+                self.worker.cancel();
+                self.record_if_missing();
+            }
+            Laboratory::Open(number) => self.open_tried(number),
+            Laboratory::Use => {
+                let Some(advice) = self.findings.advice.clone() else { return };
+                let chosen = advice.configuration().clone();
+                self.dialog = Dialog::None;
+                self.change(0, |s| (s.method, s.settings) = (chosen.method, chosen.settings));
+            }
+        }
+    }
+
+    fn measure_methods(&mut self) {
+        let Some(stage) = &self.stage else { return };
+        let (place, chosen) = (stage.get().place(), (self.method.clone(), self.settings.clone()));
+        let (configurations, views) = each!(stage, s => (tried_on(s, &chosen), s.views().len()));
+        let count = FRAMES.min(views);
+        // What moves is seen frame by frame; else the frames stand for the whole path.
+        let is_moving = stage.get().frame_of_motion().is_some();
+        let frames: Vec<usize> = (0..count).map(|k| if is_moving { k } else { k * views / count }).collect();
+        let scene = stage.get().scene();
+        let spec = Spec {
+            name: scene.name().to_owned(),
+            frames: count as u32,
+            repeats: REPEATS,
+            size_px: None,
+            error: ErrorKind::WrongPixels,
+            scenes: vec![Place { source: scene.source().to_owned(), path: None }],
+            configurations,
+        };
+        let job = each!(stage, s => Either({
+            let name = s.paths[s.path].name.clone();
+            let views = frames.iter().map(|&k| smaller(&s.views()[k])).collect();
+            (s.scene.clone(), ViewPath { name, views })
+        }));
+        let (serial, advice) = (self.serial, self.findings.advice.take());
+        let advice = advice.filter(|_| self.findings.serial == serial && self.findings.path == place.0);
+        self.findings = Findings {
+            spec: Some(spec.clone()),
+            serial,
+            frames,
+            path: place.0,
+            advice,
+            ..Findings::default()
+        };
+        self.worker.ask("Measuring", Job::Sweep { job, spec: Box::new(spec) });
+    }
+
+    fn ask_advice(&mut self, most_wrong_percent: f64) {
+        let Some(stage) = &self.stage else { return };
+        let job = each!(stage, s => Either({
+            let views = s.views();
+            let count = MOST_VIEWS.min(views.len());
+            let views = (0..count).map(|k| smaller(&views[k * views.len() / count])).collect::<Vec<_>>();
+            (s.scene.clone(), views)
+        }));
+        let wish = Wish { most_wrong_percent, seed: 1 };
+        if self.findings.serial != self.serial {
+            self.findings = Findings { serial: self.serial, ..Findings::default() };
+        }
+        self.worker.ask("Looking for advice", Job::Advise { job, wish });
+    }
+
+    /// Takes in what was measured since the last time; returns whether there was anything.
+    pub(super) fn take_news(&mut self) -> bool {
+        let news: Vec<Line> = self.worker.news();
+        let has_some = !news.is_empty();
+        news.into_iter().for_each(|line| self.findings.log.add(line));
+        if let Some(spec) = self.findings.spec.as_ref().filter(|_| has_some) {
+            self.findings.chart = results::charts_so_far(&self.findings.log, spec).pop();
+        }
+        has_some
+    }
+
+    pub(super) fn take_advice(&mut self, advice: Advice) {
+        self.findings.advice = Some(Arc::new(advice));
+        self.record_if_missing();
+    }
+
+    /// Opens a configuration in the frame with the largest error, or the costliest one where none has any, and
+    /// goes to the first step that went wrong.
+    fn open_tried(&mut self, number: u32) {
+        let Findings { spec: Some(spec), log, frames, path, serial, .. } = &self.findings else { return };
+        let [scene, at] = results::of_number(spec, number);
+        let Some(one) = spec.configurations.get(at).filter(|_| *serial == self.serial) else { return };
+        let (scene, at) = (scene as u32, at as u32);
+        let judged = log.judged.range((scene, at, 0)..(scene, at + 1, 0)).map(|(_, judged)| judged);
+        let worst = judged.max_by(|a, b| {
+            let key = |j: &crate::measure::sweep::Judged| results::error_of(j, spec.error);
+            key(a).total_cmp(&key(b))
+        });
+        let is_wrong = worst.is_some_and(|judged| results::error_of(judged, spec.error) > 0.0);
+        let costliest = || {
+            let timed = log.timed.range((scene, at, 0, 0)..(scene, at + 1, 0, 0)).map(|(_, timed)| timed);
+            timed.max_by(|a, b| (a.cull_ms + a.draw_ms).total_cmp(&(b.cull_ms + b.draw_ms))).map(|t| t.frame)
+        };
+        let frame = if is_wrong { worst.map(|judged| judged.frame) } else { costliest() };
+        let frame = frame.and_then(|k| frames.get(k as usize)).copied().unwrap_or(0);
+        let (one, path): (Configuration, usize) = (one.clone(), *path);
+        self.dialog = Dialog::None;
+        let before = (self.film().is_some(), self.busy().is_some());
+        self.change(0, |s| {
+            (s.method, s.settings) = (one.method, one.settings);
+            if let Some(stage) = &mut s.stage {
+                stage.go(path, frame);
+            }
+        });
+        let then = if is_wrong { "first-wrong" } else { "first" };
+        self.commands.push(then.to_owned());
+        // Nothing changed, so the film is there already.
+        if before == (true, false) && self.busy().is_none() {
+            self.run_commands();
+        }
+    }
+
+    /// Goes to the first step that left out something that is visible.
+    pub(super) fn go_first_wrong(&mut self) {
+        let Some(stage) = &self.stage else { return };
+        match each!(stage, s => first_wrong(s)) {
+            Some((step, subject)) => {
+                self.go_to(step);
+                self.apply(Command::Select(subject));
+            }
+            None if self.film().is_some() => {
+                self.tell("Nothing went wrong here: all that is visible is drawn.");
+            }
+            None => {}
+        }
+    }
+}
+
+/// The step that first decided against a visible primitive, and that primitive; where each has something
+/// drawn in its place, the first of those.
+fn first_wrong<S: Drawable>(stage: &Stage<S>) -> Option<(usize, crate::drawing::Subject)> {
+    let recorded = stage.recorded.as_ref()?;
+    let film = &recorded.film;
+    let surfaces: Surfaces = surfaces_of(film.knobs());
+    let mut truth = Truth::new(film.scene(), surfaces, 1, [1.0; 3]);
+    let visible = truth.look(&**film.scene(), film.view());
+    let decided = visible.into_iter().map(|prim| {
+        // What was never decided was left out when the film ended.
+        let end = (film.events().len(), Verdict::OverBudget);
+        let (step, verdict) = recorded.stamps.prim_decision(prim).unwrap_or(end);
+        (verdict == Verdict::Approximated, step, prim, verdict)
+    });
+    let wrong = decided.filter(|(.., verdict)| *verdict != Verdict::Visible);
+    let first = wrong.min_by_key(|(is_stood_for, step, prim, _)| (*is_stood_for, *step, prim.0))?;
+    Some((first.1, crate::drawing::Subject::Prim(first.2)))
+}
+
+/// All methods with their defaults, those that have a budget with others, and the chosen one with each of its
+/// parameters at other values.
+fn tried_on<S: Methods + Drawable>(
+    _: &Stage<S>,
+    (method, settings): &(String, Settings),
+) -> Vec<Configuration> {
+    let mut all = Vec::new();
+    for entry in S::methods() {
+        all.push(defaults::<S>(*entry));
+        let is_chosen = entry.card().key == method;
+        let knobs = entry.knobs(&Settings::default()).unwrap_or_default();
+        let is_budget = |name: &str| {
+            knobs.iter().any(|(knob, value)| {
+                knob.name == name && matches!(value, KnobValue::Budget(Budget::Percent(_)))
+            })
+        };
+        let others = variations::<S>(*entry);
+        all.extend(others.into_iter().filter(|one| is_chosen || one.settings.0.keys().any(|k| is_budget(k))));
+        let now = Configuration { method: method.clone(), settings: settings.clone() };
+        if is_chosen && !all.contains(&now) {
+            all.push(now);
+        }
+    }
+    all
+}
+
+/// The view with a smaller image, if it is large.
+fn smaller<S: crate::geometry::Space>(view: &View<S>) -> View<S> {
+    let longest = view.width.max(view.height);
+    if longest <= LONGEST_PX {
+        return *view;
+    }
+    let side = |n: u32| (n * LONGEST_PX / longest).max(1);
+    let height = if S::Vector::AXES == 2 { 1 } else { side(view.height) };
+    View { width: side(view.width), height, ..*view }
+}
