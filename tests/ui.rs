@@ -436,6 +436,25 @@ fn layouts_and_sessions_keep_where_the_observer_stands() {
     assert_eq!(h.state().state.observer, looking, "{:?}", h.state().state.notices);
 }
 
+/// The chart of speed against error, and advice, from the window.
+#[test]
+fn methods_are_measured_and_advice_is_used() {
+    let mut h = window(FLAT);
+    h.state_mut().state.apply(Action::Laboratory);
+    settle(&mut h);
+    assert_eq!(h.state().state.dialog, Dialog::Laboratory);
+    click(&mut h, "Measure");
+    assert!(h.state().state.findings.chart.is_some());
+    h.get_by_label(&format!("Chart: speed against error on {FLAT}"));
+    click(&mut h, "Advise");
+    let advised = h.state().state.findings.advice.clone().expect("advice").configuration().clone();
+    h.get_by_label(&advised.label());
+    click(&mut h, "Use this");
+    let state = &h.state().state;
+    assert_eq!((&state.method, &state.settings), (&advised.method, &advised.settings));
+    assert_eq!(state.dialog, Dialog::None);
+}
+
 #[test]
 fn a_table_of_the_paper_is_measured_shown_and_stopped() {
     let mut h = window(FLAT);

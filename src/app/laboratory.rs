@@ -273,3 +273,80 @@ fn smaller<S: crate::geometry::Space>(view: &View<S>) -> View<S> {
     let height = if S::Vector::AXES == 2 { 1 } else { side(view.height) };
     View { width: side(view.width), height, ..*view }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Action;
+    use crate::drawing::Subject;
+
+    fn opened(source: &str) -> State {
+        let mut state = State::new();
+        state.apply(Command::Open(source.into()));
+        state.block_until_idle();
+        assert!(state.film().is_some(), "{:?}", state.notices);
+        state
+    }
+
+    /// The chart has every method; a point of it opens what it stands for, where it first went wrong.
+    #[test]
+    fn a_point_of_the_chart_opens_its_worst_step() {
+        let mut state = opened("street");
+        state.apply(Command::Laboratory(Laboratory::Measure));
+        state.block_until_idle();
+        let chart = state.findings.chart.clone().expect("a chart");
+        let methods: Vec<&str> = state.staged().expect("a stage").methods().iter().map(|m| m.key).collect();
+        assert_eq!(chart.curves.iter().map(|c| c.label.as_str()).collect::<Vec<_>>(), methods);
+        assert!(state.film().is_some(), "the film that was there is there again");
+        let tried = || chart.curves.iter().flat_map(|curve| curve.tried.iter().map(move |t| (curve, t)));
+        let (curve, worst) = tried().max_by(|a, b| a.1.error.total_cmp(&b.1.error)).expect("some");
+        assert!(worst.error > 1.0, "a small budget is seen");
+        let about = state.findings.about(worst.number).expect("words");
+        assert!(about.starts_with(&curve.label) && about.contains("wrong pixels"), "{about}");
+        state.apply(Command::Laboratory(Laboratory::Open(worst.number)));
+        state.block_until_idle();
+        assert_eq!((&state.method, state.dialog), (&curve.label, Dialog::None));
+        let Subject::Prim(prim) = state.selection else { panic!("{:?}", state.selection) };
+        let decided = state.film().and_then(|f| f.stamps.prim_decision(prim));
+        assert!(state.step > 0 && decided.is_none_or(|(step, _)| step == state.step), "{decided:?}");
+        assert!(decided.is_none_or(|(_, verdict)| verdict != Verdict::Visible));
+        // Of what is exact the costliest frame, and nothing is wrong in it.
+        let (curve, exact) = tried().find(|(c, t)| c.label == methods[1] && t.error == 0.0).expect("frustum");
+        state.apply(Command::Laboratory(Laboratory::Open(exact.number)));
+        state.block_until_idle();
+        assert_eq!((&state.method, state.step), (&curve.label, 0));
+        state.apply(Action::FirstWrong);
+        let said = state.notices.last().expect("a notice");
+        assert!(!said.is_error && said.text.starts_with("Nothing went wrong"), "{said:?}");
+        // What was found about another scene is not shown.
+        state.apply(Command::Open("tree".into()));
+        state.block_until_idle();
+        assert!(!state.is_found_here());
+    }
+
+    #[test]
+    fn advice_is_used() {
+        let mut state = opened("street");
+        state.apply(Command::Laboratory(Laboratory::Advise(0.0)));
+        state.block_until_idle();
+        let advice = state.findings.advice.clone().expect("advice");
+        assert!(advice.unseen.wrong_percent == 0.0 && advice.cost[0] < advice.cost[1]);
+        state.apply(Command::Laboratory(Laboratory::Use));
+        state.block_until_idle();
+        let chosen = advice.configuration();
+        assert_eq!((&state.method, &state.settings), (&chosen.method, &chosen.settings));
+        state.apply(Action::Undo);
+        state.block_until_idle();
+        assert!(state.settings.0.is_empty(), "using it can be taken back");
+    }
+
+    /// What was measured until a stop stays.
+    #[test]
+    fn measuring_can_be_stopped() {
+        let mut state = opened("street");
+        state.apply(Command::Laboratory(Laboratory::Measure));
+        state.apply(Command::Laboratory(Laboratory::Stop));
+        state.block_until_idle();
+        assert!(state.busy().is_none() && state.film().is_some());
+    }
+}

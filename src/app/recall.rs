@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::any::ViewRecord;
 use super::command::{Action, Command};
+use super::laboratory::Laboratory;
 use super::measured::{Tables, tables};
 use super::open::{Wanted, file_name, named_from};
 use super::session::{Picked, Session, Shown as Kept, Stop, VERSION};
@@ -236,6 +237,14 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
         "method" => Command::Method(value.to_owned()),
         "filter" => Command::Filter(value.to_owned()),
         "paper-table" => Command::Tables(Tables::Measure(tables().map(|t| t.0).find(|name| *name == value)?)),
+        "laboratory" => Command::Laboratory(match value.split_once('=') {
+            Some(("advise", percent)) => Laboratory::Advise(percent.parse().ok()?),
+            Some(("open", number)) => Laboratory::Open(number.parse().ok()?),
+            Some(_) => return None,
+            None if value == "measure" => Laboratory::Measure,
+            None if value == "use" => Laboratory::Use,
+            None => return None,
+        }),
         "scale" => Command::Scale(value.parse().ok()?),
         "set" => {
             let (name, value) = value.split_once('=')?;

@@ -21,6 +21,7 @@ mod suggest;
 mod sweep;
 mod task;
 mod trace;
+mod truth;
 mod view;
 mod words;
 
@@ -65,6 +66,8 @@ enum Command {
     Figure(figure::Args),
     /// Measure the tables of the papers, beside the papers' own figures
     Paper(paper::Args),
+    /// Compare our images with those of a graphics device
+    Truth(truth::Args),
     /// Chart speed against error, of methods with their parameters on scenes
     Sweep(sweep::Args),
     /// Find the simplest configuration that is right enough at the least time
@@ -98,6 +101,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Paper(args)) => paper::run(&args),
+        Some(Command::Truth(args)) => truth::run(&args),
         Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Advise(args)) => advise::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),

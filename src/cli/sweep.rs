@@ -14,7 +14,7 @@ use super::{CliError, World, output, scene, suggest};
 use crate::figure::tradeoffs;
 use crate::geometry::each;
 use crate::measure::sweep::{
-    Line, Log, LogError, Place, Spec, SpecError, SweepError, fly, path, results, share,
+    Line, Log, LogError, Place, Spec, SpecError, SweepError, fly, named, path, results, share,
 };
 use crate::measure::{ExperimentError, Table};
 use crate::render::{self, Theme};
@@ -120,6 +120,7 @@ fn sweep(args: &Args, file: &Path) -> Result<(), CliError> {
         read(&mut log, &journal, &spec)?;
     }
     let mut journal = Journal::open(journal, &spec, &log)?;
+    let text = named(&text, &spec);
     output::write_file(&out.join(SPEC), |to| to.write_all(text.as_bytes()).map(|()| true))?;
     let bar = Bar::new();
     for (number, scene) in scenes.iter().enumerate() {
@@ -260,14 +261,16 @@ fn finish(spec: &Spec, log: &Log, out: &Path) -> Result<(), CliError> {
     let charts = results::charts(log, spec);
     let recipe = "cullscope sweep spec.toml";
     let caption = caption(spec);
-    let drawing = tradeoffs(&format!("Speed against error: {}", spec.name), &charts, &caption);
+    let title = format!("Speed against error: {}", spec.name);
+    let drawing = tradeoffs(&title, &charts, &caption);
     for format in render::Format::ALL {
         let bytes = render::export(&drawing, format, Theme::Print, recipe)
             .map_err(|e| CliError::work("chart", e.to_string()))?;
         files.push((format!("chart.{}", format.name()), bytes));
     }
     let shown: Vec<(&str, &Table)> = tables.iter().map(|(_, title, table)| (*title, table)).collect();
-    let page = render::page(&spec.name, &caption, &drawing, &shown, Theme::Print);
+    // The page has title and caption of its own.
+    let page = render::page(&title, &caption, &tradeoffs("", &charts, ""), &shown, Theme::Print);
     files.push(("report.html".into(), page.into_bytes()));
     for (name, bytes) in &files {
         output::write_file(&out.join(name), |to| to.write_all(bytes).map(|()| true))?;

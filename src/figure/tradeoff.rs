@@ -1,5 +1,5 @@
-//! Charts of speed against error: time up, error to the right, both as powers of ten; what is exact stands on
-//! a line of its own at the left.
+//! Charts of speed against error: time up, error to the right, both as powers of ten; what is exact stands in
+//! a band of its own at the left, each method on its own line there, so that none hides another.
 //!
 //! Points in 1/72 inch, y down.
 
@@ -19,25 +19,31 @@ const DOT_PT: f32 = 2.2;
 const FRAME_PT: f32 = 0.8;
 /// Radius of the ring about what is on the front.
 const RING_PT: f32 = 3.8;
-/// The share of the width that the line of what is exact has.
-const EXACT: f32 = 0.16;
+/// The share of the width that the band of what is exact has.
+const EXACT: f32 = 0.24;
 
 /// Where the values of a chart are: the rectangle of its data, and its axes.
 struct Field {
     corners: [Vec2; 2],
     error: Axis,
     time: Axis,
+    /// Methods of the chart.
+    methods: usize,
 }
 
 impl Field {
-    /// Where an error lies along the width, 0 to 1.
-    fn across(&self, error: f64) -> f32 {
-        if error <= 0.0 { EXACT * 0.5 } else { EXACT + self.error.place(error) * (1.0 - EXACT) }
+    /// Where an error of a method lies along the width, 0 to 1.
+    fn across(&self, method: usize, error: f64) -> f32 {
+        if error <= 0.0 {
+            EXACT * (method as f32 + 1.0) / (self.methods as f32 + 1.0)
+        } else {
+            EXACT + self.error.place(error) * (1.0 - EXACT)
+        }
     }
-    fn at(&self, error: f64, time_ms: f64) -> Vec2 {
+    fn at(&self, method: usize, error: f64, time_ms: f64) -> Vec2 {
         let [low, high] = self.corners;
         let up = self.time.place(time_ms).clamp(0.0, 1.0);
-        vec2(low.x + self.across(error) * (high.x - low.x), high.y - up * (high.y - low.y))
+        vec2(low.x + self.across(method, error) * (high.x - low.x), high.y - up * (high.y - low.y))
     }
 }
 
@@ -86,15 +92,15 @@ pub fn tradeoff(to: &mut Drawing, chart: &Tradeoff, [mut min, max]: [Vec2; 2]) {
     );
     min.y += TITLE_PT * 1.6;
     let field = field(to, chart, [min, max]);
-    for curve in &chart.curves {
+    for (method, curve) in chart.curves.iter().enumerate() {
         for &(error, time) in curve.tried.iter().flat_map(|one| &one.frames) {
-            let at = field.at(error, time);
+            let at = field.at(method, error, time);
             to.push(Layer::Areas, Role::Faint, Subject::None, Mark::Dot { at, radius_pt: FRAME_PT });
         }
     }
     front(to, chart, &field);
-    for curve in &chart.curves {
-        marks(to, curve, &field);
+    for (method, curve) in chart.curves.iter().enumerate() {
+        marks(to, method, curve, &field);
     }
     names(to, chart, &field);
 }
@@ -106,9 +112,9 @@ fn field(to: &mut Drawing, chart: &Tradeoff, place: [Vec2; 2]) -> Field {
     let time = Axis::tight("time of a frame, ms", tried().flat_map(all));
     let errors = tried().flat_map(|one| one.frames.iter().map(|f| f.0).chain([one.error]));
     let error = Axis::of(chart.error_label.clone(), errors, true);
-    let mut field = Field { corners: [Vec2::ZERO; 2], error, time };
-    let powers = field.error.marks(6).into_iter().map(|(value, text)| (field.across(value), text));
-    let marks: Vec<_> = std::iter::once((field.across(0.0), "exact".to_owned())).chain(powers).collect();
+    let mut field = Field { corners: [Vec2::ZERO; 2], error, time, methods: chart.curves.len() };
+    let powers = field.error.marks(5).into_iter().map(|(value, text)| (field.across(0, value), text));
+    let marks: Vec<_> = std::iter::once((EXACT * 0.5, "exact".to_owned())).chain(powers).collect();
     field.corners = axes_with(to, &marks, &chart.error_label, true, &field.time, place);
     let [low, high] = field.corners;
     let x = low.x + EXACT * (high.x - low.x);
@@ -119,10 +125,12 @@ fn field(to: &mut Drawing, chart: &Tradeoff, place: [Vec2; 2]) -> Field {
 /// The front as steps: what is to the right of it and above is beaten.
 fn front(to: &mut Drawing, chart: &Tradeoff, field: &Field) {
     let front = chart.front();
-    let mut on: Vec<&Tried> =
-        chart.curves.iter().flat_map(|c| &c.tried).filter(|one| front.contains(&one.number)).collect();
-    on.sort_by(|a, b| a.error.total_cmp(&b.error));
-    let places: Vec<Vec2> = on.iter().map(|one| field.at(one.error, one.time_ms)).collect();
+    let curves = chart.curves.iter().enumerate();
+    let all = curves.flat_map(|(method, curve)| curve.tried.iter().map(move |one| (method, one)));
+    let mut on: Vec<(usize, &Tried)> = all.filter(|(_, one)| front.contains(&one.number)).collect();
+    on.sort_by(|a, b| a.1.error.total_cmp(&b.1.error));
+    let places: Vec<Vec2> =
+        on.iter().map(|&(method, one)| field.at(method, one.error, one.time_ms)).collect();
     let mut steps = Vec::new();
     for at in &places {
         if let Some(last) = steps.last().copied() {
@@ -141,13 +149,14 @@ fn front(to: &mut Drawing, chart: &Tradeoff, field: &Field) {
     }
 }
 
-fn marks(to: &mut Drawing, curve: &Curve, field: &Field) {
-    let places: Vec<Vec2> = curve.tried.iter().map(|one| field.at(one.error, one.time_ms)).collect();
+fn marks(to: &mut Drawing, method: usize, curve: &Curve, field: &Field) {
+    let place = |one: &Tried| field.at(method, one.error, one.time_ms);
+    let places: Vec<Vec2> = curve.tried.iter().map(place).collect();
     if places.len() > 1 {
         to.line(Layer::Evidence, curve.role, Subject::None, places.clone());
     }
     for (one, at) in curve.tried.iter().zip(places) {
-        let bar = one.spread_ms.map(|ms| field.at(one.error, ms));
+        let bar = one.spread_ms.map(|ms| field.at(method, one.error, ms));
         to.line(Layer::Evidence, curve.role, Subject::None, bar);
         let subject = Subject::Tried(one.number);
         to.push(Layer::Emphasis, curve.role, subject, Mark::Dot { at, radius_pt: DOT_PT });
@@ -157,9 +166,9 @@ fn marks(to: &mut Drawing, curve: &Curve, field: &Field) {
 /// Each method's name beside its fastest configuration, moved up or down where another name stands.
 fn names(to: &mut Drawing, chart: &Tradeoff, field: &Field) {
     let mut labels: Vec<(Vec2, &Curve)> = Vec::new();
-    for curve in &chart.curves {
+    for (method, curve) in chart.curves.iter().enumerate() {
         let fastest = curve.tried.iter().min_by(|a, b| a.time_ms.total_cmp(&b.time_ms));
-        labels.extend(fastest.map(|one| (field.at(one.error, one.time_ms), curve)));
+        labels.extend(fastest.map(|one| (field.at(method, one.error, one.time_ms), curve)));
     }
     labels.sort_by(|a, b| a.0.y.total_cmp(&b.0.y));
     let mut taken: Vec<[Vec2; 2]> = Vec::new();
@@ -222,14 +231,20 @@ mod tests {
         all
     }
 
-    /// What is exact stands on one line, left of all else; a factor of ten is the same length everywhere.
+    /// What is exact stands left of all else; a factor of ten is the same length everywhere.
     #[test]
-    fn exact_ones_stand_on_the_line_of_no_error() {
+    fn exact_ones_stand_in_the_band_of_no_error() {
         let (drawing, legend) = tradeoff_charts(&[sample()]);
         let at: Vec<Vec2> = places(&drawing).into_iter().map(|(_, at)| at).collect();
         assert_eq!(at.len(), 4);
-        assert_eq!(at[0].x, at[1].x);
-        assert!(at[1].x < at[2].x && at[2].x < at[3].x);
+        assert!(at[0].x < at[1].x && at[1].x < at[2].x && at[2].x < at[3].x);
+        let band = drawing.items.iter().find_map(|item| match &item.mark {
+            Mark::Line { points, closed: false } if item.role == Role::Ink && item.layer == Layer::Ground => {
+                Some(points[0].x)
+            }
+            _ => None,
+        });
+        assert!(band.is_some_and(|x| at[1].x < x && x < at[2].x), "{band:?}");
         assert!(at[0].y < at[1].y && at[1].y < at[2].y && at[2].y < at[3].y, "slower is higher");
         let per_power = (at[3].x - at[2].x) / 2.0;
         let field = drawing.size_pt.x * 0.9 / 4.0;

@@ -14,10 +14,12 @@
 pub mod certificate;
 mod hidden;
 mod layering;
+mod others;
 mod reference;
 
 pub use crate::raster::{Flip, SEEN, flip, flip_mean};
 pub use layering::{Unranked, layer_correlation, layering_numbers, layering_numbers_within};
+pub use others::{Disagreement, disagreement};
 pub use reference::Reference;
 
 use glam::DVec3;

@@ -16,7 +16,7 @@ mod spec;
 
 pub use fly::{SweepError, fly, path};
 pub use log::{Judged, Line, Log, LogError, Seen, Timed};
-pub use spec::{Configuration, ErrorKind, Place, Spec, SpecError};
+pub use spec::{Configuration, ErrorKind, Place, Spec, SpecError, named};
 
 /// The configurations that part `part[0]` (from 1) of `part[1]` runs on scene `scene`, of so many.
 pub fn share(scene: usize, configurations: usize, part: [u32; 2]) -> Vec<usize> {

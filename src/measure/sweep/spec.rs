@@ -138,6 +138,13 @@ const METHOD_KEYS: &[&str] = &["key", "set"];
 /// Configurations of a spec at most: more are a slip, such as a list too many.
 const MOST: usize = 10_000;
 
+/// The text of a spec with its name in it, as [`Spec::parse`] reads it whatever its file is called.
+pub fn named(text: &str, spec: &Spec) -> String {
+    let has_name = DeTable::parse(text).is_ok_and(|table| table.get_ref().contains_key("name"));
+    // What is quoted for JSON is quoted for TOML.
+    if has_name { text.to_owned() } else { format!("name = {}\n{text}", serde_json::json!(spec.name)) }
+}
+
 impl Spec {
     /// Reads a spec; `name` is what it is called where it does not say.
     ///
@@ -170,11 +177,11 @@ impl Spec {
         }
         Ok(spec)
     }
-    /// What tells it from another: everything that changes a result.
+    /// What tells it from another: everything that changes a result, so not what it is called.
     pub fn fingerprint(&self) -> String {
         let mut hash = sha2::Sha256::default();
         // What is printed is the whole value.
-        sha2::Digest::update(&mut hash, format!("{self:?}"));
+        sha2::Digest::update(&mut hash, format!("{:?}", Self { name: String::new(), ..self.clone() }));
         let digest = sha2::Digest::finalize(hash);
         digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect()
     }
@@ -373,6 +380,10 @@ mod tests {
                 "centroid budget=5%",
             ]
         );
+        // A copy under another name is the same spec.
+        let copy = Spec::parse(&named(text, &spec), "copy").expect("a spec");
+        assert_eq!((&copy.name, copy.fingerprint()), (&spec.name, spec.fingerprint()));
+        assert_eq!(named(&named(text, &spec), &spec), named(text, &spec));
         assert_ne!(spec.fingerprint(), parsed(&text.replace("5%", "6%")).expect("a spec").fingerprint());
     }
 

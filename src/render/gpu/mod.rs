@@ -12,6 +12,7 @@
 
 mod camera;
 mod headless;
+mod items;
 mod pack;
 mod pipelines;
 mod snapshot;
@@ -20,6 +21,7 @@ mod target;
 
 pub use camera::SpaceCamera;
 pub use headless::{GpuError, Headless, headless};
+pub use items::items;
 pub use snapshot::Picture;
 pub use style::{ColorBy, NodeBoxes, Paint, Palette, Shown, SpaceStyle, Surface};
 
