@@ -317,13 +317,10 @@ impl State {
             Action::ScaleDown => shown.scale = (shown.scale / 1.1).max(0.5),
             Action::ScaleReset => shown.scale = 1.0,
             Action::FullScreen => self.effects.push(Effect::FullScreen),
-            Action::Palette => self.dialog = Dialog::Palette,
-            Action::Keys => self.dialog = Dialog::Keys,
-            Action::Report => self.dialog = Dialog::Report,
-            Action::About => self.dialog = Dialog::About,
-            Action::Tables => self.dialog = Dialog::Tables,
-            Action::Laboratory => self.dialog = Dialog::Laboratory,
-            _ => return false,
+            _ => match dialog_of(action) {
+                Some(dialog) => self.dialog = dialog,
+                None => return false,
+            },
         }
         true
     }
@@ -546,4 +543,17 @@ impl State {
         self.step = if was_at_end { self.len() } else { self.step.min(self.len()) };
         self.run_commands();
     }
+}
+
+/// The dialog that an action opens.
+fn dialog_of(action: Action) -> Option<Dialog> {
+    Some(match action {
+        Action::Palette => Dialog::Palette,
+        Action::Keys => Dialog::Keys,
+        Action::Report => Dialog::Report,
+        Action::About => Dialog::About,
+        Action::Tables => Dialog::Tables,
+        Action::Laboratory => Dialog::Laboratory,
+        _ => return None,
+    })
 }

@@ -3,7 +3,7 @@
 
 use super::any::AnyView;
 use super::camera::ObserverCamera;
-use super::laboratory::Laboratory;
+use super::findings::Laboratory;
 use super::measured::Tables;
 use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;

@@ -1,18 +1,19 @@
-//! The laboratory: what all methods take on the open scene's path and how wrong they are, live; the way from
-//! a point of that chart to the step at which it went wrong; and advice.
+//! The laboratory at work: all methods are measured on the open scene's path, a point of the chart opens the
+//! step at which it went wrong, and advice is asked for and used.
 
 use std::sync::Arc;
 
 use super::command::Command;
+use super::findings::{Findings, Laboratory};
 use super::shown::Dialog;
 use super::stage::Stage;
 use super::state::State;
 use super::worker::Job;
 use crate::culling::Methods;
-use crate::drawing::Tradeoff;
-use crate::geometry::{Vector, View, ViewPath, each};
+use crate::drawing::Subject;
+use crate::geometry::{Space, Vector, View, ViewPath, each};
 use crate::measure::advise::{Advice, Wish, defaults, variations};
-use crate::measure::sweep::{Configuration, ErrorKind, Line, Log, Place, Spec, results};
+use crate::measure::sweep::{Configuration, ErrorKind, Line, Place, Spec, results};
 use crate::method::{Budget, KnobValue, Settings, Verdict, surfaces_of};
 use crate::raster::Drawable;
 use crate::scene::Surfaces;
@@ -25,56 +26,6 @@ const REPEATS: u32 = 3;
 const LONGEST_PX: u32 = 512;
 /// Views that advice looks at, at most.
 const MOST_VIEWS: usize = 64;
-
-/// What to do in the laboratory.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Laboratory {
-    /// Measures all methods, and every parameter of the chosen one at other values, on the path.
-    Measure,
-    /// Looks for the simplest configuration that is right enough: wrong pixels at most, per cent.
-    Advise(f32),
-    /// Stops.
-    Stop,
-    /// Opens a configuration of the chart, by its number, in the frame that it did worst in.
-    Open(u32),
-    /// Uses what is advised.
-    Use,
-}
-
-/// What was found.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Findings {
-    /// What is measured, once something was asked for.
-    pub spec: Option<Spec>,
-    /// What is known so far.
-    pub log: Log,
-    /// The chart of that.
-    pub chart: Option<Tradeoff>,
-    /// The number of the scene on stage that this is about.
-    pub(super) serial: u64,
-    /// Frames of the path that were measured, by their number in the path, which is this one.
-    frames: Vec<usize>,
-    path: usize,
-    /// Advice on that path.
-    pub advice: Option<Arc<Advice>>,
-}
-
-impl Findings {
-    /// Method, parameters, time and error of a configuration of the chart, in words.
-    pub fn about(&self, number: u32) -> Option<String> {
-        let (spec, chart) = (self.spec.as_ref()?, self.chart.as_ref()?);
-        let tried = chart.curves.iter().flat_map(|c| &c.tried).find(|t| t.number == number)?;
-        let [_, at] = results::of_number(spec, number);
-        let label = spec.configurations.get(at)?.label();
-        let error = format!("{:.4}", tried.error);
-        let error = error.trim_end_matches('0').trim_end_matches('.');
-        let frames = tried.frames.len();
-        Some(format!(
-            "{label}\n{:.3} ms a frame ({frames} frames)\n{}: {error}",
-            tried.time_ms, chart.error_label
-        ))
-    }
-}
 
 impl State {
     /// Whether what was found is about the open scene.
@@ -166,18 +117,16 @@ impl State {
         self.record_if_missing();
     }
 
-    /// Opens a configuration in the frame with the largest error, or the costliest one where none has any, and
-    /// goes to the first step that went wrong.
+    /// Opens a configuration in the frame with the largest error, or the costliest where none has any, and goes
+    /// to the first step that went wrong.
     fn open_tried(&mut self, number: u32) {
         let Findings { spec: Some(spec), log, frames, path, serial, .. } = &self.findings else { return };
         let [scene, at] = results::of_number(spec, number);
         let Some(one) = spec.configurations.get(at).filter(|_| *serial == self.serial) else { return };
         let (scene, at) = (scene as u32, at as u32);
         let judged = log.judged.range((scene, at, 0)..(scene, at + 1, 0)).map(|(_, judged)| judged);
-        let worst = judged.max_by(|a, b| {
-            let key = |j: &crate::measure::sweep::Judged| results::error_of(j, spec.error);
-            key(a).total_cmp(&key(b))
-        });
+        let worst = judged
+            .max_by(|a, b| results::error_of(a, spec.error).total_cmp(&results::error_of(b, spec.error)));
         let is_wrong = worst.is_some_and(|judged| results::error_of(judged, spec.error) > 0.0);
         let costliest = || {
             let timed = log.timed.range((scene, at, 0, 0)..(scene, at + 1, 0, 0)).map(|(_, timed)| timed);
@@ -220,7 +169,7 @@ impl State {
 
 /// The step that first decided against a visible primitive, and that primitive; where each has something
 /// drawn in its place, the first of those.
-fn first_wrong<S: Drawable>(stage: &Stage<S>) -> Option<(usize, crate::drawing::Subject)> {
+fn first_wrong<S: Drawable>(stage: &Stage<S>) -> Option<(usize, Subject)> {
     let recorded = stage.recorded.as_ref()?;
     let film = &recorded.film;
     let surfaces: Surfaces = surfaces_of(film.knobs());
@@ -234,7 +183,7 @@ fn first_wrong<S: Drawable>(stage: &Stage<S>) -> Option<(usize, crate::drawing::
     });
     let wrong = decided.filter(|(.., verdict)| *verdict != Verdict::Visible);
     let first = wrong.min_by_key(|(is_stood_for, step, prim, _)| (*is_stood_for, *step, prim.0))?;
-    Some((first.1, crate::drawing::Subject::Prim(first.2)))
+    Some((first.1, Subject::Prim(first.2)))
 }
 
 /// All methods with their defaults, those that have a budget with others, and the chosen one with each of its
@@ -264,7 +213,7 @@ fn tried_on<S: Methods + Drawable>(
 }
 
 /// The view with a smaller image, if it is large.
-fn smaller<S: crate::geometry::Space>(view: &View<S>) -> View<S> {
+fn smaller<S: Space>(view: &View<S>) -> View<S> {
     let longest = view.width.max(view.height);
     if longest <= LONGEST_PX {
         return *view;
@@ -278,7 +227,6 @@ fn smaller<S: crate::geometry::Space>(view: &View<S>) -> View<S> {
 mod tests {
     use super::*;
     use crate::app::Action;
-    use crate::drawing::Subject;
 
     fn opened(source: &str) -> State {
         let mut state = State::new();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::any::ViewRecord;
 use super::command::{Action, Command};
-use super::laboratory::Laboratory;
+use super::findings::Laboratory;
 use super::measured::{Tables, tables};
 use super::open::{Wanted, file_name, named_from};
 use super::session::{Picked, Session, Shown as Kept, Stop, VERSION};

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
-use super::laboratory::Findings;
+use super::findings::Findings;
 use super::measured::Measured;
 use super::outline::Outline;
 use super::session::{Bookmark, Session};

@@ -20,8 +20,8 @@ use crate::scene::{LoadOptions, Scene};
 #[derive(clap::Args)]
 #[command(after_help = "Examples:\n  cullscope advise generate:terrain --path flight\n  cullscope advise \
                   generate:building --path 'figure 8' --max-wrong-pixels 0.1 --out advice.json --chart \
-                  advice.svg\n\nOf the views every second one is kept back: what is advised was not chosen by \
-                  them, and is checked on them.")]
+                  advice.svg\n\nHalf of the views are kept back: what is advised was not chosen by them, \
+                  and is checked on them.")]
 pub(super) struct Args {
     /// A path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME[?key=value&…]
     #[arg(value_name = "SCENE")]
@@ -106,8 +106,9 @@ fn said(advice: &Advice) -> String {
     let [flown, grid] = advice.cost.map(|n| grouped(n as f64, 0));
     let wish = advice.wish.most_wrong_percent;
     text += &format!(
-        "\n{} configurations, {flown} frames; the full grid would have been {grid}. Wrong pixels at most: {wish} %. \
-         Times are the mean frame from the view to the image, on one thread; those of few frames are rough.\n\n",
+        "\n{} configurations, {flown} frames; the full grid would have been {grid}. Wrong pixels at most: \
+         {wish} %. Times are the mean frame from the view to the image, on one thread; those of few frames \
+         are rough.\n\n",
         advice.trials.len(),
     );
     text + &advice.table().text()
@@ -152,9 +153,9 @@ fn drawn(args: &Args, advice: &Advice, format: Format) -> Result<Vec<u8>, CliErr
         }));
     }
     let caption = format!(
-        "{}: {} is advised, of {} configurations that were tried. Times are mean frames from the view to the \
-         image; of those that fell out early, of few frames. Error: wrong pixels of all images together; what \
-         makes none stands at the left.",
+        "{}: {} is advised, of {} configurations that were tried. Times are mean frames from the view to \
+         the image; of those that fell out early, of few frames. Error: wrong pixels of all images \
+         together; what makes none stands at the left.",
         args.scene,
         advice.configuration().label(),
         advice.trials.len(),

@@ -201,16 +201,14 @@ fn frames<S: World>(args: &Args, scene: &Scene<S>, ready: &mut Ready<S>) -> Resu
         let ((list, stages_ms), cull_ms) = timed(|| ready.run.stages_ms(view));
         let ((), draw_ms) = timed(|| list.draw((&mut target, &mut canvas), scene, view, &options));
         let light = light(args).unwrap_or(list.light);
-        let stands_in = !list.stand_ins.is_empty();
-        let picture = (args.image.is_some() || (args.truth && stands_in))
-            .then(|| list.picture(scene, view, (&target, &canvas), (light, background)));
-        if let Some((path, rgba)) = args.image.as_ref().zip(picture.as_ref()) {
-            write_image(&output::numbered(path, i, count), view, rgba.clone())?;
+        let picture = || list.picture(scene, view, (&target, &canvas), (light, background));
+        if let Some(path) = &args.image {
+            write_image(&output::numbered(path, i, count), view, picture())?;
         }
         let truth = truth.as_mut().map(|t| {
             let judged = t.judge(scene, view, &list, (&target, &canvas));
-            let seen = |rgba| t.reference(scene, view, REFERENCE_SAMPLES, light).judge(rgba);
-            truth_report(args, judged, picture.as_deref().filter(|_| stands_in).map(seen))
+            let seen = || t.reference(scene, view, REFERENCE_SAMPLES, light).judge(&picture());
+            truth_report(args, judged, (!list.stand_ins.is_empty()).then(seen))
         });
         frames.push(Frame {
             truth,

@@ -26,8 +26,8 @@ use crate::scene::{AnyScene, LoadOptions, Part, Scene, write_views};
     subcommand_negates_reqs = true,
     after_help = "Examples:\n  cullscope sweep examples/sweeps/cross-method.toml --out cross\n  cullscope \
                   sweep spec.toml --shard 2/4 --out part-2\n  cullscope sweep merge part-1 part-2 part-3 \
-                  part-4 --out all\n\nA spec:\n  scenes = [\"generate:building\", { source = \"model.obj\", \
-                  path = \"walk\" }]\n  frames = 12\n  repeats = 3\n  size = [512, 512]\n  [[method]]\n  key = \
+                  part-4 --out all\n\nA spec:\n  scenes = [\"generate:building\", { source = \"a.obj\", path = \
+                  \"walk\" }]\n  frames = 12\n  repeats = 3\n  size = [512, 512]\n  [[method]]\n  key = \
                   \"frustum\"\n  [[method]]\n  key = \"layered-projection\"\n  set = { budget = [\"1%\", \
                   \"5%\"] }    # one configuration for each value"
 )]
@@ -57,6 +57,7 @@ struct To {
 #[derive(clap::Subcommand)]
 enum Command {
     /// Put together what parts of a sweep found; the same but for times as if one had run all
+    #[command(after_help = "Example:\n  cullscope sweep merge part-1 part-2 part-3 part-4 --out all")]
     Merge {
         /// Folders of the parts
         #[arg(value_name = "DIR", required = true)]
@@ -283,11 +284,11 @@ fn finish(spec: &Spec, log: &Log, out: &Path) -> Result<(), CliError> {
 /// What is to be known for reading the chart.
 fn caption(spec: &Spec) -> String {
     format!(
-        "{} frames of each scene's path. Wall-clock times on one thread from the view to the finished image; all \
-         configurations take turns at each frame. A dot is the mean frame of a configuration, of medians over \
-         {} flights; its bar goes from the fastest flight to the slowest. Gray: single frames. Error: {}, of \
-         the images together; what makes none stands at the left. Steps and rings: the Pareto front, \
-         configurations that nothing beats in both.",
+        "{} frames of each scene's path. Wall-clock times on one thread from the view to the finished \
+         image; all configurations take turns at each frame. A dot is the mean frame of a configuration, of \
+         medians over {} flights; its bar goes from the fastest flight to the slowest. Gray: single frames. \
+         Error: {}, of the images together; what makes none stands in the band at the left, a line for each \
+         method. Steps and rings: the Pareto front, configurations that nothing beats in both.",
         spec.frames,
         spec.repeats,
         spec.error.label(),

@@ -83,8 +83,9 @@ mod with_gpu {
             path.views.len(),
             on.adapter
         );
-        text += "Edges: one passes the pixel's center within 1/64 pixel, closer than the grids that both snap \
-                 it to.\nTies: both triangles lie at one depth there, as far as 32 bits go. Others: neither.\n";
+        text += "Edges: one passes the pixel's center within 1/64 pixel, closer than the grids that both \
+                 snap it to.\nTies: both triangles lie at one depth there, as far as 32 bits go. Others: \
+                 neither.\n";
         output::print(text.as_bytes())
     }
 

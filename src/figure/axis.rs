@@ -117,8 +117,8 @@ impl Axis {
         Self { label, low, high: if up > low { up } else { low + span }, logarithmic }
     }
 
-    /// An axis of equal factors that takes in all positive values, its ends 1, 2 or 5 times a power of ten, and
-    /// at least a factor of 10 apart.
+    /// An axis of equal factors that takes in all positive values, its ends 1, 2 or 5 times a power of ten
+    /// and at least a factor of 10 apart.
     pub fn tight(label: impl Into<String>, values: impl IntoIterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.into_iter().filter(|x| x.is_finite() && *x > 0.0).collect();
         let mut axis = Self::of(label, values.iter().copied(), true);

@@ -60,8 +60,8 @@ pub struct View<S: Space> {
 }
 
 impl<S: Space> View<S> {
-    /// The samples of its pixels as pixels of a larger image: so many along each side of a pixel, or as many as
-    /// such an image may have, but one at least.
+    /// The samples of its pixels as pixels of a larger image: so many along each side of a pixel, or as many
+    /// as such an image may have, but one at least.
     pub fn sampled(&self, samples: u32) -> Self {
         let samples = samples.min(MAX_SIDE_PX / self.width.max(self.height).max(1)).max(1);
         let down = if S::Vector::AXES == 2 { 1 } else { samples };

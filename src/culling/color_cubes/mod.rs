@@ -291,8 +291,8 @@ impl<S: Projected> Method<S> for ColorCubes {
             "occlusion",
             "",
             "cells that are left out because they do not show, with order=exact, primitives=triangles and \
-             samples=1: none; depth, those behind geometry that is drawn before them; depth-and-opacity, those behind color \
-             cubes as well that let less than 1/1024 of the light through",
+             samples=1: none; depth, those behind geometry that is drawn before them; depth-and-opacity, \
+             those behind color cubes as well that let less than 1/1024 of the light through",
             "Chamberlain et al. 1996, Section 6",
         );
         knobs.words(occlusion, &mut params.occlusion);

@@ -5,13 +5,16 @@
 //! Talwalkar 2016, AISTATS, "Non-stochastic best arm identification and hyperparameter optimization"):
 //!
 //! 1. every method with its defaults, on a few frames;
-//! 2. parameters of those methods that could still win: they were at most [`SLACK`] times as slow as the best
-//!    that is right enough, or are fast and not right enough;
+//! 2. parameters of those methods that could still win, method by method: it was at most [`SLACK`] times as slow
+//!    as the best that is right enough, or is fast and not right enough. What is still slower than that goes;
 //! 3. the better half of all goes on to twice as many frames, until few are left; those of the best method's
 //!    parameters that helped are also tried together;
 //! 4. those few, beside plain drawing and frustum culling, on all frames in turn;
 //! 5. the best of them is checked on the other half of the path's views, which none was chosen by. If it is
 //!    not right enough there, the next one is.
+//!
+//! Methods remember from frame to frame, so the path is parted into stretches of frames that follow each other:
+//! every second one is kept back, and the others are looked at in an order by lot.
 //!
 //! Of those within [`NOISE`] of the best the simplest is advised: the one with the fewest parameters set, and
 //! among those the one that is listed first. Cost: some tenth of the frames of the full grid.
@@ -44,8 +47,11 @@ pub const SLACK: f64 = 1.6;
 /// Times that differ by no more are the same.
 pub const NOISE: f64 = 1.05;
 /// Frames of the first round, and flights of the last.
-const FIRST: usize = 2;
+const FIRST: usize = 4;
 const FLIGHTS: usize = 3;
+/// Frames of a stretch at least, and stretches of either half at most.
+const STRETCH: usize = 4;
+const STRETCHES: usize = 4;
 /// So many go into the last round.
 const LAST: usize = 4;
 /// The methods that hide nothing, drawing all and frustum culling, are the first of the list, in this order.
@@ -124,8 +130,10 @@ struct Ready<S: World> {
 struct Course<'a, S: World> {
     scene: &'a Arc<Scene<S>>,
     motion: Motion<S>,
-    /// Views with their numbers, of which scenes that move have a frame each.
+    /// Views with their numbers, of which scenes that move have a frame each: those that are chosen by, and
+    /// then the others.
     views: Vec<(usize, View<S>)>,
+    seen: usize,
     /// What is visible, for each way to take surfaces.
     truths: Vec<(Surfaces, Truth)>,
     images: (Target, Canvas),
@@ -227,7 +235,7 @@ impl<S: World> Halving<'_, S> {
         flights: usize,
         progress: &dyn Progress,
     ) -> Result<(), ExperimentError> {
-        let frames = frames.min(self.course.views.len() / 2).max(1);
+        let frames = frames.min(self.course.seen).max(1);
         let chosen = self.ready.iter_mut().enumerate().filter(|(k, _)| some.contains(k));
         let (numbers, mut runs): (Vec<usize>, Vec<&mut Ready<S>>) =
             chosen.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip();
@@ -290,89 +298,103 @@ pub fn advise<S: World>(
     progress: &dyn Progress,
 ) -> Result<Advice, ExperimentError> {
     let mut halving = begin(scene, views, wish);
-    let frames = halving.course.views.len() / 2;
-    let entries = S::methods();
-    // 1. Every method with its defaults.
-    let mut all = Vec::new();
-    let some = part(progress, 0.0, 0.25);
-    for (k, entry) in entries.iter().enumerate() {
-        let some = Part::of(&some, k, entries.len());
-        checkpoint(&some, 0.0, "building")?;
-        all.extend(halving.add(defaults::<S>(*entry), &some)?);
-    }
-    halving.try_on(&all, FIRST, 1, &part(progress, 0.25, 0.3))?;
-    let grid: usize = entries.iter().map(|entry| 1 + variations::<S>(*entry).len()).sum();
-    // 2. Parameters of what could win.
-    let best = halving.best_ms(&all);
-    let mut some = Vec::new();
-    for (entry, &k) in entries.iter().zip(&all) {
-        let limit = if halving.is_right(k) { best * SLACK } else { best };
-        if halving.trials[k].time_ms <= limit {
-            some.extend(variations::<S>(*entry));
-        }
-    }
-    let (building, count) = (part(progress, 0.3, 0.6), some.len());
-    for (k, one) in some.into_iter().enumerate() {
-        let some = Part::of(&building, k, count);
-        checkpoint(&some, 0.0, "building")?;
-        all.extend(halving.add(one, &some)?);
-    }
-    // 3. The better half goes on to twice as many frames.
-    let plain: Vec<usize> = all[..entries.len()].to_vec();
-    let mut on = FIRST;
-    let mut left = all[entries.len()..].to_vec();
-    left.extend(plain.iter().filter(|&&k| halving.trials[k].time_ms <= best * SLACK));
-    let mut rung = 0.6;
-    while left.len() > LAST {
-        halving.try_on(&left, on, 1, &part(progress, rung, rung + 0.06))?;
-        rung = (rung + 0.06).min(0.84);
-        left = halving.sorted(left);
-        if on == FIRST {
-            let joined = left.first().and_then(|&best| halving.joined(best, &left));
-            left.truncate((left.len().div_ceil(2)).max(LAST));
-            if let Some(joined) = joined {
-                left.extend(halving.add(joined, progress)?);
-            }
-        } else {
-            left.truncate((left.len().div_ceil(2)).max(LAST));
-        }
-        on = (on * 2).min(frames);
-    }
+    let plain = halving.defaults(&part(progress, 0.0, 0.3))?;
+    let left = halving.widened(&plain, &part(progress, 0.3, 0.7))?;
+    let left = halving.narrowed(left, &part(progress, 0.7, 0.9))?;
     // 4. The last few beside the plain ones, on all frames.
-    let baselines: Vec<usize> = plain.iter().copied().take(PLAIN).collect();
-    left.extend(baselines.iter().copied().filter(|k| !left.contains(k)).collect::<Vec<_>>());
+    let others = plain.iter().copied().take(PLAIN).filter(|k| !left.contains(k)).collect::<Vec<_>>();
+    let left = [left, others].concat();
     halving.keep(&left);
     for &k in &left {
         if halving.ready[k].is_none() {
             halving.renew(k, progress)?;
         }
     }
-    halving.try_on(&left, frames, FLIGHTS, &part(progress, 0.9, 0.96))?;
+    halving.try_on(&left, halving.course.seen, FLIGHTS, &part(progress, 0.9, 0.96))?;
     // 5. The check.
-    halving.checked(left, grid, &part(progress, 0.96, 1.0))
+    halving.checked(left, &part(progress, 0.96, 1.0))
 }
 
 fn begin<'a, S: World>(scene: &'a Arc<Scene<S>>, views: &[View<S>], wish: Wish) -> Halving<'a, S> {
     // A single view is its own check.
     let views = if views.len() < 2 { [views, views].concat() } else { views.to_vec() };
+    let count = 2 * (views.len() / (2 * STRETCH)).clamp(1, STRETCHES);
     let numbered: Vec<_> = views.into_iter().enumerate().collect();
-    let mut seen: Vec<_> = numbered.iter().copied().step_by(2).collect();
-    let unseen: Vec<_> = numbered.iter().copied().skip(1).step_by(2).collect();
-    // Any few of them should stand for all: in an order by lot.
+    let stretch = |k: usize| &numbered[k * numbered.len() / count..(k + 1) * numbered.len() / count];
+    let mut order: Vec<usize> = (0..count).step_by(2).collect();
     let mut dice = Pcg32::new(wish.seed, 17);
-    for k in (1..seen.len()).rev() {
-        seen.swap(k, (dice.next_u32() as usize) % (k + 1));
+    for k in (1..order.len()).rev() {
+        order.swap(k, (dice.next_u32() as usize) % (k + 1));
     }
-    seen.truncate(unseen.len().max(1));
-    seen.extend(unseen);
+    let mut views: Vec<_> = order.into_iter().flat_map(|k| stretch(k).to_vec()).collect();
+    let seen = views.len();
+    views.extend((1..count).step_by(2).flat_map(|k| stretch(k).to_vec()));
     let mut motion = Motion::new(scene);
     let first = motion.at(0);
     let course =
-        Course { scene, motion, views: seen, truths: Vec::new(), images: Default::default(), flown: 0 };
+        Course { scene, motion, views, seen, truths: Vec::new(), images: Default::default(), flown: 0 };
     Halving { wish, course, first, trials: Vec::new(), ready: Vec::new() }
 }
 
 impl<S: World> Halving<'_, S> {
+    /// 1. Every method with its defaults; their numbers are those of the list of methods.
+    fn defaults(&mut self, progress: &dyn Progress) -> Result<Vec<usize>, ExperimentError> {
+        let mut all = Vec::new();
+        for (k, entry) in S::methods().iter().enumerate() {
+            let some = Part::of(progress, k, S::methods().len() + 1);
+            checkpoint(&some, 0.0, "building")?;
+            all.extend(self.add(defaults::<S>(*entry), &some)?);
+        }
+        self.try_on(&all, FIRST, 1, &part(progress, 0.9, 1.0))?;
+        Ok(all)
+    }
+
+    /// 2. Parameters of what could win; what still could.
+    fn widened(&mut self, plain: &[usize], progress: &dyn Progress) -> Result<Vec<usize>, ExperimentError> {
+        let best = self.best_ms(plain);
+        let could =
+            |of: &Self, k: usize| of.trials[k].time_ms <= if of.is_right(k) { best * SLACK } else { best };
+        let mut left: Vec<usize> = plain.iter().copied().filter(|&k| could(self, k)).collect();
+        self.keep(&left);
+        for (at, k) in left.clone().into_iter().enumerate() {
+            let some = Part::of(progress, at, plain.len());
+            let others = variations::<S>(S::methods()[k]);
+            let (building, mut added) = (part(&some, 0.0, 0.8), Vec::new());
+            for (n, one) in others.iter().enumerate() {
+                let some = Part::of(&building, n, others.len());
+                checkpoint(&some, 0.0, "building")?;
+                added.extend(self.add(one.clone(), &some)?);
+            }
+            self.try_on(&added, FIRST, 1, &part(&some, 0.8, 1.0))?;
+            left.extend(added.into_iter().filter(|&k| could(self, k)));
+            // An index of each would take too much memory.
+            self.keep(&left);
+        }
+        Ok(left)
+    }
+
+    /// 3. The better half goes on to twice as many frames, until few are left.
+    fn narrowed(
+        &mut self,
+        mut left: Vec<usize>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<usize>, ExperimentError> {
+        let best = self.sorted(left.clone()).first().copied();
+        if let Some(joined) = best.and_then(|best| self.joined(best, &left)) {
+            left.extend(self.add(joined, progress)?);
+        }
+        let (mut on, mut rung) = (FIRST, 0.0);
+        while left.len() > LAST {
+            on = (on * 2).min(self.course.seen);
+            self.try_on(&left, on, 1, &part(progress, rung, rung + 0.2))?;
+            rung = (rung + 0.2).min(0.8);
+            left = self.sorted(left);
+            left.truncate(left.len().div_ceil(2).max(LAST));
+            self.keep(&left);
+        }
+        Ok(left)
+    }
+
     /// Makes a candidate ready again.
     fn renew(&mut self, number: usize, progress: &dyn Progress) -> Result<(), ExperimentError> {
         let configuration = self.trials[number].configuration.clone();
@@ -386,13 +408,8 @@ impl<S: World> Halving<'_, S> {
     }
 
     /// The simplest of the best that is right enough on unseen views, too.
-    fn checked(
-        mut self,
-        left: Vec<usize>,
-        grid: usize,
-        progress: &dyn Progress,
-    ) -> Result<Advice, ExperimentError> {
-        let frames = self.course.views.len() / 2;
+    fn checked(mut self, left: Vec<usize>, progress: &dyn Progress) -> Result<Advice, ExperimentError> {
+        let frames = self.course.seen;
         let unseen = frames..self.course.views.len();
         let mut left = self.sorted(left);
         let mut refused = Vec::new();
@@ -413,6 +430,7 @@ impl<S: World> Halving<'_, S> {
             };
             let result = of(chosen);
             if result.wrong_percent <= self.wish.most_wrong_percent || left.len() == 1 {
+                let grid: usize = S::methods().iter().map(|m| 1 + variations::<S>(*m).len()).sum();
                 let cost = [self.course.flown, grid * frames * FLIGHTS];
                 let (wish, trials, frustum) = (self.wish, self.trials, of(FRUSTUM));
                 return Ok(Advice { wish, chosen, trials, unseen: result, frustum, refused, cost });

@@ -9,10 +9,10 @@ use crate::measure::deadline::Paced;
 use crate::measure::experiment::{ExperimentError, World};
 use crate::measure::harness::{checkpoint, part};
 use crate::measure::timing::timed;
-use crate::method::{DrawList, surfaces_of};
+use crate::method::{DrawList, Tally, surfaces_of};
 use crate::raster::{Canvas, Options, Target};
 use crate::scene::{Motion, Part, Progress, Scene, Surfaces, figure_eight_path, motion_path};
-use crate::truth::Truth;
+use crate::truth::{Judgement, Truth};
 
 /// What the images have behind the scene, linear.
 const BACKGROUND: [f32; 3] = [1.0; 3];
@@ -201,20 +201,8 @@ impl<S: World> Flight<'_, S> {
                 let (_, truth, visible) = known.expect("one for each way to take surfaces");
                 let images = (&self.images.0, &self.images.1);
                 let judged = truth.compare(&scene, &view, visible.clone(), &list, images);
-                let counts = tally.named().into_iter().map(|(name, n)| (name.to_owned(), n)).collect();
-                self.keep(Line::Judged(Judged {
-                    scene: self.number,
-                    configuration,
-                    frame,
-                    drawn: list.prims.len() as u64,
-                    stand_ins: list.stand_ins.len() as u64,
-                    visible: judged.visible.len() as u64,
-                    missed: judged.missed.len() as u64,
-                    pixels: judged.pixels as u64,
-                    wrong_pixels: judged.wrong_pixels as u64,
-                    flip: judged.flip_mean,
-                    counts,
-                }))?;
+                let at = (self.number, configuration, frame);
+                self.keep(Line::Judged(line_of(at, &list, &tally, &judged)))?;
             }
         }
         Ok(())
@@ -246,6 +234,28 @@ impl<S: World> Flight<'_, S> {
             }
         }
         Ok(())
+    }
+}
+
+/// A frame of a configuration on a scene, by their numbers.
+fn line_of<S: World>(
+    (scene, configuration, frame): (u32, u32, u32),
+    list: &DrawList<S>,
+    tally: &Tally,
+    judged: &Judgement,
+) -> Judged {
+    Judged {
+        scene,
+        configuration,
+        frame,
+        drawn: list.prims.len() as u64,
+        stand_ins: list.stand_ins.len() as u64,
+        visible: judged.visible.len() as u64,
+        missed: judged.missed.len() as u64,
+        pixels: judged.pixels as u64,
+        wrong_pixels: judged.wrong_pixels as u64,
+        flip: judged.flip_mean,
+        counts: tally.named().into_iter().map(|(name, n)| (name.to_owned(), n)).collect(),
     }
 }
 

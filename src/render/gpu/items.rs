@@ -49,28 +49,7 @@ pub fn items(
         let corners = upload(on, scene, view, some);
         let mut encoder = on.device.create_command_encoder(&Default::default());
         {
-            let (color_load, depth_load) = if first {
-                (wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), wgpu::LoadOp::Clear(0.0))
-            } else {
-                (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
-            };
-            let (color, depth) =
-                (color.create_view(&Default::default()), depth.create_view(&Default::default()));
-            let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                label: Some("items"),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &color,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: color_load, store: wgpu::StoreOp::Store },
-                })],
-                depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                    view: &depth,
-                    depth_ops: Some(wgpu::Operations { load: depth_load, store: wgpu::StoreOp::Store }),
-                    stencil_ops: None,
-                }),
-                ..Default::default()
-            });
+            let mut pass = begun(&mut encoder, [&color, &depth], first);
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.set_vertex_buffer(0, corners.slice(..));
@@ -85,6 +64,35 @@ pub fn items(
     let bytes = read(&on.device, &on.queue, &color)?;
     let item = |texel: &[u8; 4]| u32::from_le_bytes(*texel).checked_sub(1).unwrap_or(Target::NONE);
     Ok(bytes.as_chunks::<4>().0.iter().map(item).collect())
+}
+
+/// A pass over both textures, which the first one clears.
+fn begun<'a>(
+    encoder: &'a mut wgpu::CommandEncoder,
+    [color, depth]: [&wgpu::Texture; 2],
+    clears: bool,
+) -> wgpu::RenderPass<'a> {
+    let (color_load, depth_load) = if clears {
+        (wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), wgpu::LoadOp::Clear(0.0))
+    } else {
+        (wgpu::LoadOp::Load, wgpu::LoadOp::Load)
+    };
+    let [color, depth] = [color, depth].map(|texture| texture.create_view(&Default::default()));
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some("items"),
+        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+            view: &color,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations { load: color_load, store: wgpu::StoreOp::Store },
+        })],
+        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+            view: &depth,
+            depth_ops: Some(wgpu::Operations { load: depth_load, store: wgpu::StoreOp::Store }),
+            stencil_ops: None,
+        }),
+        ..Default::default()
+    })
 }
 
 /// Corners of triangles relative to the eye, as our own rasterizer takes them, each with the triangle's
