@@ -446,12 +446,15 @@ fn samples_are_averaged<S: Projected>() {
     let (white, options) = ([1.0; 3], Options::default());
     let (mut softer, mut with_cubes) = (0, 0);
     for order in ["exact", "paper"] {
-        for threshold in ["0", "6"] {
+        for threshold in ["0", "20"] {
             let scene = samples::soup::<S>(5, 400);
+            let mut far = framing_view(&scene.bounds(), 64, 64);
+            far.eye.position = far.eye.position * 2.0;
+            far.eye.far *= 2.0;
             let pairs = [("pixel-threshold", threshold), ("order", order)];
             let mut one = ready(&scene, &pairs);
             let mut two = ready(&scene, &[pairs[0], pairs[1], ("samples", "2")]);
-            for view in random_views(&scene, 3, 11) {
+            for view in random_views(&scene, 2, 11).into_iter().chain([far]) {
                 let [list, fine] = [&mut one, &mut two].map(|run| run.cull(&view));
                 assert_eq!((list.samples, fine.samples), (1, 2));
                 assert_eq!(DrawList { samples: 1, ..fine.clone() }, list);
@@ -467,7 +470,7 @@ fn samples_are_averaged<S: Projected>() {
             }
         }
     }
-    assert!(softer > 8 && with_cubes > 2, "of 12 {softer} are softer, and {with_cubes} have cubes");
+    assert!(softer > 3 && with_cubes > 1, "of 12 {softer} are softer, and {with_cubes} have cubes");
 }
 
 #[test]
