@@ -15,6 +15,7 @@ mod output;
 mod paper;
 mod progress;
 mod scene;
+mod stability;
 mod step;
 mod suggest;
 mod task;
@@ -63,6 +64,8 @@ enum Command {
     Figure(figure::Args),
     /// Measure the tables of the papers, beside the papers' own figures
     Paper(paper::Args),
+    /// Find where a small step of the eye changes what is drawn without cause, and which test decides there
+    Stability(stability::Args),
     /// Measure on an input that other programs read too
     #[command(subcommand)]
     Bench(bench::Command),
@@ -92,6 +95,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Step(args)) => step::run(&args),
         Some(Command::Figure(args)) => figure::run(&args),
         Some(Command::Paper(args)) => paper::run(&args),
+        Some(Command::Stability(args)) => stability::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),

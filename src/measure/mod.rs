@@ -7,6 +7,7 @@ pub mod deadline;
 pub mod experiment;
 pub mod harness;
 mod report;
+pub mod stability;
 mod table;
 pub mod timing;
 
