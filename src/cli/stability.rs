@@ -42,15 +42,16 @@ const PRINTED: [&str; 11] = [
 /// Lines of a floor plan that a map shows.
 const MOST_LINES: usize = 20_000;
 
+const HELP: &str = concat!(
+    "Example:\n  cullscope stability 'generate:failure?case=slivers' --method centroid --out found\n",
+    "\nWithout views: all of the scene's first path; without --size: images of at most 256 pixels a side. ",
+    "`popped` are primitives that are visible at two neighboring views and drawn at one of them only, and ",
+    "pixels that change in the method's image and not in the exact one; over the grid, from each place by ",
+    "a thousandth of the scene's diagonal along both axes of the floor."
+);
+
 #[derive(clap::Args)]
-#[command(
-    after_help = "Example:\n  cullscope stability 'generate:failure?case=pixel-holes' --method centroid \
-                        --grid 24 --out stability\n\nWithout views: all of the scene's first path; without \
-                        --size: images of at most 256 pixels a side. `popped` are primitives that are visible \
-                        at two neighboring views and drawn at one of them only, and pixels that change in the \
-                        method's image and not in the exact one; over the grid, from each place by a \
-                        thousandth of the scene's diagonal along both axes of the floor."
-)]
+#[command(after_help = HELP)]
 pub(super) struct Args {
     /// Paths to scenes, or generate:NAME[?key=value&…]
     #[arg(value_name = "SCENE", required = true)]
@@ -64,10 +65,20 @@ pub(super) struct Args {
     #[command(flatten)]
     view: ViewArgs,
     /// Cells along each axis of the floor; 0: no grid
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(0..=512))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        value_parser = clap::value_parser!(u32).range(0..=512)
+    )]
     grid: u32,
     /// Popping steps of the path that are narrowed to where the decision flips
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 3,
+        value_parser = clap::value_parser!(u32).range(0..=1000)
+    )]
     flips: u32,
     /// Folder for path.csv, grid.csv and a map of each grid as SVG; it is made if it is missing
     #[arg(long, value_name = "DIR")]
@@ -165,18 +176,18 @@ fn told<S: World>([scene, method]: [&str; 2], flip: &Flip, origin: DVec3, tolera
         axes.collect::<Vec<_>>().join(",")
     };
     let mut text = format!(
-        "\n{scene}, {method}, between views {} and {}: {} {} flips within {} units (asked for {tolerance}).\n",
+        "\n{scene}, {method}, between views {} and {}: {} {} flips within {} units (asked: {tolerance}).\n",
         flip.after_view,
         flip.after_view + 1,
         S::PRIM,
         flip.prim,
         flip.apart,
     );
-    for (what, eye, decided) in
-        [("drawn", &flip.eyes[0], &flip.decided[0]), ("left out", &flip.eyes[1], &flip.decided[1])]
-    {
+    for (side, what) in ["drawn", "left out"].into_iter().enumerate() {
+        let shows = if flip.shows[side] { "" } else { ", where it is out of sight" };
+        let (eye, decided) = (place(&flip.eyes[side]), decision(&flip.decided[side]));
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {what:<8} from {}: {}", place(eye), decision(decided));
+        let _ = writeln!(text, "  {what:<8} from {eye}{shows}: {decided}");
     }
     text
 }

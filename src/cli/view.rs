@@ -94,8 +94,8 @@ impl ViewArgs {
         Ok(path)
     }
 
-    /// The same, but where no views are asked for all of the scene's first path. Without a size the images are
-    /// no larger than `most_px` a side.
+    /// The same, but where no views are asked for all of the scene's first path. Without a size the images
+    /// are no larger than `most_px` a side.
     pub fn path<S: World>(&self, scene: &Scene<S>, most_px: u32) -> Result<ViewPath<S>, CliError> {
         let is_asked =
             self.view.is_some() || self.path.is_some() || self.random_views.is_some() || self.eye.is_some();

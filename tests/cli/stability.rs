@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use super::{cullscope, done, folder, refused};
+use super::{cullscope, done, folder, refused, shipped};
 
 const SLOTS: &str = "generate:failure?case=pixel-holes&dimensions=2";
 
@@ -35,22 +35,32 @@ fn a_method_that_draws_all_is_stable() {
 #[test]
 fn a_flip_is_narrowed_to_the_test_that_decides() {
     let here = folder("flip");
-    let call = ["stability", SLOTS, "--method", "centroid", "--set", "budget=60"];
-    let text = done(&here, &[&call[..], &["--grid", "0"]].concat());
-    assert!(text.contains("between views 0 and 1: segment"), "{text}");
+    let rooms = shipped("scenes2d/rooms.json");
+    let call = ["stability", &rooms, "--method", "centroid", "--grid", "0"];
+    let text = done(&here, &call);
+    let head = text.lines().find(|l| l.contains("between views 1 and 2: segment")).expect("a flip");
+    // As near together as was asked for.
+    let after = |word: &str| {
+        let rest = head.split_once(word).unwrap_or_else(|| panic!("no `{word}`: {head}")).1;
+        let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+        number.parse::<f64>().unwrap_or_else(|e| panic!("{e}: {head}"))
+    };
+    let (apart, asked) = (after("within "), after("asked: "));
+    assert!(0.0 < apart && apart <= asked && asked < 1e-4, "{head}");
     let line = |word: &str| {
         let found = text.lines().find(|line| line.trim_start().starts_with(word));
         found.unwrap_or_else(|| panic!("no line `{word}`: {text}"))
     };
     assert!(line("drawn").contains("visible at step"), "{text}");
-    assert!(line("left out").contains("over-budget at step"), "{text}");
-    assert_eq!(text, done(&here, &[&call[..], &["--grid", "0"]].concat()), "it repeats");
+    let left_out = line("left out");
+    assert!(left_out.contains("over-budget at step") && left_out.contains("Compared: rank "), "{text}");
+    assert_eq!(text, done(&here, &call), "it repeats");
 }
 
 #[test]
 fn stability_refuses_in_one_line() {
     let here = folder("unstable");
-    let clock = ["stability", SLOTS, "--method", "centroid", "--set", "budget=5ms"];
+    let clock = ["stability", SLOTS, "--method", "layered-projection", "--set", "budget=5ms"];
     assert!(refused(&here, &clock, 2).contains("differs from run to run"));
     assert!(refused(&here, &["stability", SLOTS, "--method", "centroit"], 2).contains("`centroid`"));
     assert!(refused(&here, &["stability"], 2).contains("SCENE"));

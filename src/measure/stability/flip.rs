@@ -23,6 +23,8 @@ pub struct Flip {
     pub after_view: usize,
     /// Where the eye stands on both sides of the flip, a number an axis: where it is drawn, where it is not.
     pub eyes: [Vec<f32>; 2],
+    /// Whether it shows there; on the way between two views at which it does it may be out of sight.
+    pub shows: [bool; 2],
     /// How far these are apart, world units.
     pub apart: f32,
     /// What decided on both sides, in the same order.
@@ -44,8 +46,9 @@ pub struct Decided {
     pub margin: Option<f64>,
 }
 
-/// Narrows the way between two neighboring views until a primitive's fate flips within `tolerance` world units,
-/// or within the spacing of the numbers. Answers are those without memory; `None` where these do not differ.
+/// Narrows the way between two neighboring views until a primitive's fate flips within `tolerance` world
+/// units, or within the spacing of the numbers. Answers are those without memory; `None` where these do not
+/// differ.
 ///
 /// # Errors
 /// It was cancelled.
@@ -80,15 +83,19 @@ pub fn narrowed<S: World>(
     if at_ends[1] {
         ends.swap(0, 1);
     }
-    let mut decided = |view: &View<S>| {
+    let mut decided = |view: &View<S>| -> Result<(bool, Decided), ExperimentError> {
+        watcher.run().forget();
+        let seen = watcher.look(after_view, view, progress).ok_or(ExperimentError::Cancelled)?;
         watcher.run().forget();
         let film = watcher.run().record(view, MOST_EVENTS).film;
-        told(&*film, Stamps::new(&*film).prim_decision(prim))
+        let shows = seen.visible.binary_search(&prim).is_ok();
+        Ok((shows, told(&*film, Stamps::new(&*film).prim_decision(prim))))
     };
-    let decided = [decided(&ends[0]), decided(&ends[1])];
+    let [(shows, drawn), (shows_too, left_out)] = [decided(&ends[0])?, decided(&ends[1])?];
     let numbers = |view: &View<S>| (0..S::Vector::AXES).map(|a| view.eye.position.get(a)).collect();
     let eyes = [numbers(&ends[0]), numbers(&ends[1])];
-    Ok(Some(Flip { prim, after_view, eyes, apart: apart(&ends), decided }))
+    let (shows, decided) = ([shows, shows_too], [drawn, left_out]);
+    Ok(Some(Flip { prim, after_view, eyes, shows, apart: apart(&ends), decided }))
 }
 
 /// The view halfway.

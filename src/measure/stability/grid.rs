@@ -28,8 +28,8 @@ pub fn floor_axes<V: Vector>() -> [usize; 2] {
 }
 
 /// Looks from the middles of `side` × `side` cells over a scene's bounds, at the height, in the direction and
-/// with the image of a view, and from a small step beside each along both axes of the floor. Each answer is one
-/// without memory. Rows first.
+/// with the image of a view, and from a small step beside each along both axes of the floor. Each answer is
+/// one without memory. Rows first.
 ///
 /// # Errors
 /// It was cancelled.

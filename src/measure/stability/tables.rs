@@ -18,7 +18,7 @@ const FOUND: [Column; 9] = [
     column("popped", "popped", "", 0),
     column("popped_pixels", "popped", "px", 0),
     column("work", "work", "counts", 0),
-    column("margin", "least margin", "", 9),
+    column("margin", "least margin", "", 6),
 ];
 
 /// Under the columns of `FOUND`.
@@ -56,8 +56,8 @@ pub fn path_table(to: &mut Table, names: [&str; 2], path: &[Station]) {
     to.rows.extend(path.iter().enumerate().map(row));
 }
 
-/// Appends a row for each place of a grid, in the file's own coordinates: `origin` is what was subtracted from
-/// them. As [`path_table`].
+/// Appends a row for each place of a grid, in the file's own coordinates: `origin` is what was subtracted
+/// from them. As [`path_table`].
 pub fn grid_table(to: &mut Table, names: [&str; 2], grid: &[Spot], origin: [f64; 3]) {
     if to.columns.is_empty() {
         *to = table(&[

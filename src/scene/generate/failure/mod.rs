@@ -76,35 +76,36 @@ failures! {
         "The eye stands at the end of an occluder's edge: every plane through that edge and the eye is \
          undefined, so it has to be left out, and hides nothing.";
     grazing_walls, "grazing-walls", Kept,
-        "The eye comes up to a tenth of a millimeter to a long wall: depths run from near to far within a few \
-         pixels, so boxes behind it cannot be told from the wall, and are drawn.";
+        "The eye comes up to a tenth of a millimeter to a long wall: depths run from near to far within a \
+         few pixels, so boxes behind it cannot be told from the wall, and are drawn.";
     slivers, "slivers", Kept,
         "A wall of slivers and T-junctions: no part of it is large enough to be chosen as an occluder, and \
          rounding may leave cracks of single pixels that show what is behind.";
     doubled_faces, "doubled-faces", Kept,
-        "Walls that lie in one plane, some of them twice: at equal depth none is behind another, so what shows \
-         nothing is drawn all the same, and a method that takes ties for hidden loses the one that shows.";
+        "Walls that lie in one plane, some of them twice: at equal depth none is behind another, so what \
+         shows nothing is drawn all the same, and a method that takes ties for hidden loses the one that \
+         shows.";
     interpenetration, "interpenetration", Kept,
-        "Walls that cross, and crates that stick out of them: there is no order from front to back, and a box \
-         that reaches before a wall is drawn though nearly all of it is hidden.";
+        "Walls that cross, and crates that stick out of them: there is no order from front to back, and a \
+         box that reaches before a wall is drawn though nearly all of it is hidden.";
     pixel_holes, "pixel-holes", Missed,
-        "Slots as wide as a pixel: what shows through each is small and there is much of it, so a method that \
-         rounds, samples or stops early loses it.";
+        "Slots as wide as a pixel: what shows through each is small and there is much of it, so a method \
+         that rounds, samples or stops early loses it.";
     far_off, "far-off", Kept,
-        "The scene lies 120,000 units from the origin, where 32-bit coordinates are 1/128 apart: crates lose \
-         their shape, and a bound on rounding that grows with the coordinates keeps what it could cull.";
+        "The scene lies 120,000 units from the origin, where 32-bit coordinates are 1/128 apart: crates \
+         lose their shape, and arithmetic that does not subtract the eye first loses what they still have.";
     tiny_scale, "tiny-scale", Kept,
-        "All is 8192 times smaller: a method with a fixed tolerance in world units decides otherwise than at \
-         its usual size.";
+        "All is 8192 times smaller: a method with a fixed tolerance in world units decides otherwise than \
+         at its usual size.";
     huge_scale, "huge-scale", Kept,
         "All is 8192 times larger: a method with a fixed size in world units decides otherwise than at its \
          usual size.";
     near_plane, "near-plane", Kept,
-        "A wall passes the eye through the near plane: it has no finite image, so it is clipped or left out as \
-         an occluder, and so is a box that reaches behind the eye.";
+        "A wall passes the eye through the near plane: it has no finite image, so it is clipped or left out \
+         as an occluder, and so is a box that reaches behind the eye.";
     not_convex, "not-convex", Kept,
-        "A folded wall hides crates that no single part of it hides: an occluder that is not convex has to be \
-         taken apart, and its parts have to be joined again.";
+        "A folded wall hides crates that no single part of it hides: an occluder that is not convex has to \
+         be taken apart, and its parts have to be joined again.";
     disconnected, "disconnected", Kept,
         "Two walls overlap in the image and do not touch: together they hide what neither hides, which \
          methods that join occluders by common edges cannot see.";
@@ -115,11 +116,11 @@ failures! {
         "Slabs narrower than a pixel, some at the same depth: an image takes them for solid or loses them, \
          and most show in no pixel at all, though nothing hides them.";
     leaves, "leaves", Kept,
-        "Light falls through leaves: many small holes and no large occluder, so an opacity map of few pixels \
-         is gray everywhere, and what is behind is drawn, or lost where gray counts as black.";
+        "Light falls through leaves: many small holes and no large occluder, so an opacity map of few \
+         pixels is gray everywhere, and what is behind is drawn, or lost where gray counts as black.";
     blind, "blind", Popped,
-        "A blind whose slats turn their edges to the eye and then their sides: a small step changes what they \
-         cover, which a color kept for a few directions cannot say.";
+        "A blind whose slats turn their edges to the eye and then their sides: a small step changes what \
+         they cover, which a color kept for a few directions cannot say.";
     see_through, "see-through", Kept,
         "Glass before crates, and a sheet that shows its back: glass hides nothing and has to be drawn, and \
          what has two sides has no back to cull.";
