@@ -228,8 +228,7 @@ fn map<S: World>(scene: &Scene<S>, method: &str, found: &Stability, side: usize)
     // In space z points toward the reader of a plan.
     let turn = if S::Vector::AXES == 2 { 1.0 } else { -1.0 };
     let flat = |p: S::Vector| Vec2::new(p.get(u), turn * p.get(v));
-    let bounds = scene.bounds();
-    let corners = [flat(bounds.min), flat(bounds.max)];
+    let corners = found.floor.each_ref().map(|corner| Vec2::new(corner[u], turn * corner[v]));
     let mut plan = Vec::new();
     for &prim in scene.live() {
         let points: Vec<Vec2> = scene.prim_points(prim).map(flat).collect();

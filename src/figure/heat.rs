@@ -59,7 +59,7 @@ pub fn heat_map(heat: &Heat<'_>) -> Drawing {
         let place = Vec2::new((k % columns) as f32 + 0.5, (k / columns) as f32 + 0.5);
         let radius_pt = (full * (value / most).sqrt() as f32).max(0.4);
         let dot = Mark::Dot { at: at(low + place * cell), radius_pt };
-        to.push(Layer::Emphasis, Role::Wrong, Subject::None, dot);
+        to.push(Layer::Emphasis, Role::Current, Subject::None, dot);
     }
     let foot = Vec2::new(EDGE_PT, top + size.y * scale + 1.6 * TEXT_PT);
     to.text(Layer::Caption, Role::Faint, foot, TEXT_PT, Anchor::Start, &*to.description.clone());

@@ -27,27 +27,26 @@ pub fn floor_axes<V: Vector>() -> [usize; 2] {
     [0, V::AXES - 1]
 }
 
-/// Looks from the middles of `side` × `side` cells over a scene's bounds, at the height, in the direction and
-/// with the image of a view, and from a small step beside each along both axes of the floor. Each answer is
-/// one without memory. Rows first.
+/// Looks from the middles of `side` × `side` cells over a floor, at the height, in the direction and with the
+/// image of a view, and from `step` world units beside each along both axes of the floor. Each answer is one
+/// without memory. Rows first.
 ///
 /// # Errors
 /// It was cancelled.
 pub fn over_floor<S: World>(
     watcher: &mut Watcher<'_, S>,
-    bounds: &Aabb<S::Vector>,
-    view: &View<S>,
-    side: usize,
+    floor: &Aabb<S::Vector>,
+    (view, side): (&View<S>, usize),
+    step: f32,
     progress: &dyn Progress,
 ) -> Result<Vec<Spot>, ExperimentError> {
     let axes = floor_axes::<S::Vector>();
-    let step = bounds.diagonal() * STEP_SHARE;
     let mut spots = Vec::with_capacity(side * side);
     for cell in (0..side * side).map(|k| [k % side, k / side]) {
         checkpoint(progress, spots.len() as f32 / (side * side) as f32, "looking over the floor plan")?;
         let middle = |k: usize| {
             let share = (cell[k] as f32 + 0.5) / side as f32;
-            bounds.min.get(axes[k]) + bounds.size().get(axes[k]) * share
+            floor.min.get(axes[k]) + floor.size().get(axes[k]) * share
         };
         let here = S::Vector::from_fn(|a| match axes.iter().position(|axis| *axis == a) {
             Some(k) => middle(k),

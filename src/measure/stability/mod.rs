@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use super::experiment::{ExperimentError, World};
 use super::harness::part;
-use crate::geometry::View;
+use crate::geometry::{Aabb, Vector, View};
 use crate::method::Run;
 use crate::scene::{Progress, Scene};
 
@@ -52,6 +52,8 @@ pub struct Stability {
     pub path: Vec<Station>,
     /// A row a place of the grid.
     pub grid: Vec<Spot>,
+    /// What the grid covers, the scene and the eyes of the path: least and greatest corner, a number an axis.
+    pub floor: [Vec<f32>; 2],
     /// Where decisions flip between views of the path.
     pub flips: Vec<Flip>,
     /// How near together the eyes on both sides of a flip were to be, world units.
@@ -75,7 +77,7 @@ fn joined<'a>(all: impl Iterator<Item = &'a Found>) -> Found {
     sum
 }
 
-/// Follows the views of a path and looks over the floor plan from the first one's height and direction. `run`
+/// Follows the views of a path and looks over the floor that scene and path take up, from the first one's height and direction. `run`
 /// was made ready for frame 0 of the scene; view i sees frame i where objects move, the grid frame 0.
 ///
 /// # Errors
@@ -98,9 +100,14 @@ pub fn stability<S: World>(
         let between = (at - 1, [&views[at - 1], &views[at]]);
         flips.extend(narrowed(&mut watcher, between, path[at].popped[0], tolerance, &here)?);
     }
+    let eyes = Aabb::of(views.iter().map(|view| view.eye.position));
+    let floor = scene.bounds().union(eyes);
     let mut grid = Vec::new();
     if let (Some(view), true) = (views.first(), ask.grid > 0) {
-        grid = over_floor(&mut watcher, &scene.bounds(), view, ask.grid, &part(progress, 0.4, 1.0))?;
+        let step = scene.bounds().diagonal() * STEP_SHARE;
+        grid = over_floor(&mut watcher, &floor, (view, ask.grid), step, &part(progress, 0.4, 1.0))?;
     }
-    Ok(Stability { path, grid, flips, tolerance })
+    let corner = |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a)).collect();
+    let floor = [corner(floor.min), corner(floor.max)];
+    Ok(Stability { path, grid, floor, flips, tolerance })
 }
