@@ -223,7 +223,7 @@ mod tests {
             let views = &scene.paths()[0].views;
             assert!((1..=8).contains(&views.len()), "{}", failure.name);
             assert!(views.iter().all(|v| v.eye.fault().is_none()), "{}", failure.name);
-            assert!((30..2000).contains(&scene.live().len()), "{}: {}", failure.name, scene.live().len());
+            assert!((20..2000).contains(&scene.live().len()), "{}: {}", failure.name, scene.live().len());
             assert_eq!(scene.live().len(), scene.prim_count(), "{}", failure.name);
             assert!(failure.meaning.ends_with('.'), "{}", failure.name);
         }
