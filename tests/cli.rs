@@ -4,6 +4,8 @@
 mod cubes;
 #[path = "cli/motion.rs"]
 mod motion;
+#[path = "cli/stability.rs"]
+mod stability;
 #[path = "cli/sweep.rs"]
 mod sweep;
 
@@ -99,12 +101,13 @@ fn with<'a>(words: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
 #[test]
 fn every_command_explains_itself_with_an_example() {
     let here = folder("help");
-    let commands: [&[&str]; 15] = [
+    let commands: [&[&str]; 16] = [
         &["explore"],
         &["cull"],
         &["step"],
         &["figure"],
         &["paper"],
+        &["stability"],
         &["bench", "occlusion"],
         &["methods"],
         &["scene", "info"],
@@ -122,10 +125,6 @@ fn every_command_explains_itself_with_an_example() {
             text.contains("Example") && text.contains(&format!("cullscope {}", words.join(" "))),
             "{words:?}: {text}"
         );
-    }
-    let all = done(&here, &["--help"]);
-    for later in ["stability"] {
-        assert!(!all.contains(later), "`{later}` does not exist yet and is not promised");
     }
     assert_eq!(done(&here, &["--version"]), format!("cullscope {}\n", env!("CARGO_PKG_VERSION")));
 }

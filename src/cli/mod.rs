@@ -16,6 +16,7 @@ mod output;
 mod paper;
 mod progress;
 mod scene;
+mod stability;
 mod step;
 mod suggest;
 mod sweep;
@@ -72,6 +73,8 @@ enum Command {
     Sweep(sweep::Args),
     /// Find the simplest configuration that is right enough at the least time
     Advise(advise::Args),
+    /// Find where a small step of the eye changes what is drawn without cause, and which test decides there
+    Stability(stability::Args),
     /// Measure on an input that other programs read too
     #[command(subcommand)]
     Bench(bench::Command),
@@ -104,6 +107,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Result<(), CliError> {
         Some(Command::Truth(args)) => truth::run(&args),
         Some(Command::Sweep(args)) => sweep::run(&args),
         Some(Command::Advise(args)) => advise::run(&args),
+        Some(Command::Stability(args)) => stability::run(&args),
         Some(Command::Bench(command)) => bench::run(&command),
         Some(Command::Methods(args)) => methods::run(&args),
         Some(Command::Scene(command)) => scene::run(&command),

@@ -113,10 +113,12 @@ fn explained(source: &str, error: SceneError) -> CliError {
         let text = error.to_string();
         let why = text.strip_prefix(source).and_then(|t| t.strip_prefix(": ")).unwrap_or(&text);
         let made = CliError::words(source, why);
-        return if names.contains(&name) {
-            made
-        } else {
-            made.with_help(suggest::help(name, &names, "generators"))
+        if !names.contains(&name) {
+            return made.with_help(suggest::help(name, &names, "generators"));
+        }
+        return match near_word(source) {
+            Some(near) => made.with_help(format!("did you mean `{near}`?")),
+            None => made,
         };
     }
     let missing = matches!(&error, SceneError::Io { why, .. } if why.kind() == std::io::ErrorKind::NotFound)
@@ -133,6 +135,17 @@ fn explained(source: &str, error: SceneError) -> CliError {
         ),
         None => error.into(),
     }
+}
+
+/// The word nearest to the first value in a generator's call that should be one and is none.
+fn near_word(call: &str) -> Option<&'static str> {
+    let (name, query) = call.strip_prefix("generate:")?.split_once('?')?;
+    let params = generators().iter().find(|g| g.name == name)?.params;
+    let near = |(key, value): (&str, &str)| {
+        let words = params.iter().find(|p| p.name == key)?.words();
+        if words.contains(&value) { None } else { suggest::nearest(value, words) }
+    };
+    query.split('&').filter_map(|pair| pair.split_once('=')).find_map(near)
 }
 
 /// The file in the same folder whose name is nearest.
@@ -286,7 +299,11 @@ fn list_generators() -> Result<(), CliError> {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "generate:{}: {}", g.name, g.meaning);
         for p in g.params {
-            let _ = writeln!(text, "    {}={}   {} to {}: {}", p.name, p.default, p.min, p.max, p.meaning);
+            let range = match p.words() {
+                [] => format!("{} to {}", p.min, p.max),
+                words => words.join(", "),
+            };
+            let _ = writeln!(text, "    {}={}   {range}: {}", p.name, p.written(p.default), p.meaning);
         }
     }
     output::print(text.as_bytes())

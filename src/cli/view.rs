@@ -94,6 +94,25 @@ impl ViewArgs {
         Ok(path)
     }
 
+    /// The same, but where no views are asked for all of the scene's first path. Without a size the images
+    /// are no larger than `most_px` a side.
+    pub fn path<S: World>(&self, scene: &Scene<S>, most_px: u32) -> Result<ViewPath<S>, CliError> {
+        let is_asked =
+            self.view.is_some() || self.path.is_some() || self.random_views.is_some() || self.eye.is_some();
+        let own = scene.paths().first().filter(|_| !is_asked);
+        let mut path = own.map_or_else(|| self.views(scene), |own| Ok(own.clone()))?;
+        for view in &mut path.views {
+            if let Some((width, height)) = self.size {
+                (view.width, view.height) = (width, if S::Vector::AXES == 2 { 1 } else { height });
+            } else if view.width.max(view.height) > most_px {
+                let longer = view.width.max(view.height);
+                let scaled = |side: u32| (u64::from(side) * u64::from(most_px) / u64::from(longer)) as u32;
+                (view.width, view.height) = (scaled(view.width).max(1), scaled(view.height).max(1));
+            }
+        }
+        Ok(path)
+    }
+
     fn chosen<S: World>(&self, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
         if let Some(file) = &self.view {
             return Ok(read_views(file, scene.origin())?);

@@ -6,6 +6,7 @@
 pub mod axis;
 mod chart;
 mod clip;
+mod heat;
 mod listing;
 mod look;
 pub mod page;
@@ -17,6 +18,7 @@ mod tradeoff;
 
 pub use chart::{chart, charts};
 pub use clip::clip;
+pub use heat::{Heat, heat_map};
 pub use listing::listing;
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};

@@ -8,6 +8,7 @@ pub mod deadline;
 pub mod experiment;
 pub mod harness;
 mod report;
+pub mod stability;
 pub mod sweep;
 mod table;
 pub mod timing;

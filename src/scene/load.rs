@@ -16,7 +16,7 @@ use super::{AnyScene, Progress, Scene, SceneError, flat, generate, gltf, obj, pd
 /// to stop.
 pub fn load(source: &str, options: &LoadOptions, progress: &dyn Progress) -> Result<AnyScene, SceneError> {
     if let Some(call) = source.strip_prefix("generate:") {
-        return Scene::new(generate::generate(call, options, progress)?).map(AnyScene::from);
+        return generate::scene(call, options, progress);
     }
     let path = Path::new(file_of(source));
     let Some(kind) = kind_of(source) else {

@@ -36,7 +36,7 @@ mod xyz;
 pub use about::{About, Expectation};
 pub use assemble::MAX_PRIMS;
 pub use example::example;
-pub use generate::{Generator, GeneratorParam, generators};
+pub use generate::{Failure, Generator, GeneratorParam, Symptom, failures, generators};
 pub use load::{file_of, load, load_bytes};
 pub use paths::{figure_eight_path, motion_path, random_views};
 pub use pose::Motion;

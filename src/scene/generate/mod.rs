@@ -12,6 +12,7 @@ mod cars;
 mod city;
 mod cottage;
 mod creatures;
+mod failure;
 mod forest;
 mod furniture;
 mod house;
@@ -36,8 +37,9 @@ mod tree;
 mod venetian_blind;
 mod walk;
 
+pub use self::failure::{Failure, Symptom, failures};
 use self::shapes::Sink;
-use super::{LoadOptions, Part, Parts, Progress, SceneError};
+use super::{AnyScene, LoadOptions, Part, Parts, Progress, Scene, SceneError};
 use crate::geometry::Solid;
 
 /// A parameter of a generator: a whole number.
@@ -53,6 +55,31 @@ pub struct GeneratorParam {
     pub max: u64,
     /// One line.
     pub meaning: &'static str,
+}
+
+impl GeneratorParam {
+    /// Words that stand for its numbers, from the least on; empty if it has none.
+    pub fn words(&self) -> &'static [&'static str] {
+        if self.name == failure::CASES.0 { failure::CASES.1 } else { &[] }
+    }
+    /// A value as it is written.
+    pub fn written(&self, value: u64) -> String {
+        let word = self.words().get((value - self.min) as usize);
+        word.map_or_else(|| value.to_string(), |word| (*word).to_owned())
+    }
+    /// The number that a text stands for, if it is one of its values.
+    fn read(&self, text: &str) -> Option<u64> {
+        let word = self.words().iter().position(|word| *word == text);
+        let number = word.map(|at| self.min + at as u64).or_else(|| text.replace('_', "").parse().ok());
+        number.filter(|n| (self.min..=self.max).contains(n))
+    }
+    /// What its value has to be, after `must be`.
+    fn wanted(&self) -> String {
+        match self.words() {
+            [] => format!("a whole number from {} to {}", self.min, self.max),
+            words => format!("one of {}", words.join(", ")),
+        }
+    }
 }
 
 /// A scene that is made by rule.
@@ -99,6 +126,7 @@ static GENERATORS: &[Generator] = &[
     venetian_blind::GENERATOR,
     bust::GENERATOR,
     suspension::GENERATOR,
+    failure::GENERATOR,
 ];
 
 /// All generators, by name.
@@ -106,12 +134,31 @@ pub fn generators() -> &'static [Generator] {
     GENERATORS
 }
 
-/// Makes the scene that `generate:NAME[?key=value&…]` describes. `call` is what follows `generate:`.
+/// The scene that `generate:NAME[?key=value&…]` describes. `call` is what follows `generate:`.
+pub(super) fn scene(
+    call: &str,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<AnyScene, SceneError> {
+    let (generator, values, source) = understood(call)?;
+    match failure::in_flatland(generator, &values, &source) {
+        Some(parts) => Scene::new(parts).map(AnyScene::from),
+        None => Scene::new(generate(call, options, progress)?).map(AnyScene::from),
+    }
+}
+
+/// Makes the scene in space that a call describes.
 pub(super) fn generate(
     call: &str,
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<Parts<Solid>, SceneError> {
+    let (generator, values, source) = understood(call)?;
+    (generator.make)(&values, &source, options, &Part { whole: progress, start: 0.0, length: 0.95 })
+}
+
+/// Which generator a call names, with which values, and the whole call as it may be given again.
+fn understood(call: &str) -> Result<(&'static Generator, Values, String), SceneError> {
     let fail = |why: String| SceneError::Format { path: format!("generate:{call}"), why };
     let (name, query) = call.split_once('?').unwrap_or((call, ""));
     let Some(generator) = GENERATORS.iter().find(|g| g.name == name) else {
@@ -129,21 +176,20 @@ pub(super) fn generate(
             return Err(fail(format!("`{name}` has no parameter `{key}`; it has: {}", known.join(", "))));
         };
         let param = &generator.params[i];
-        let number: Option<u64> = value.replace('_', "").parse().ok();
-        match number.filter(|n| (param.min..=param.max).contains(n)) {
-            Some(number) => values.values[i] = number,
-            None => {
-                return Err(fail(format!(
-                    "`{key}` must be a whole number from {} to {}, not `{value}` ({})",
-                    param.min, param.max, param.meaning
-                )));
-            }
-        }
+        let Some(number) = param.read(value) else {
+            let (wanted, meaning) = (param.wanted(), param.meaning);
+            return Err(fail(format!("`{key}` must be {wanted}, not `{value}` ({meaning})")));
+        };
+        values.values[i] = number;
     }
-    let given: Vec<String> =
-        generator.params.iter().zip(&values.values).map(|(p, v)| format!("{}={v}", p.name)).collect();
+    let given: Vec<String> = generator
+        .params
+        .iter()
+        .zip(&values.values)
+        .map(|(p, v)| format!("{}={}", p.name, p.written(*v)))
+        .collect();
     let source = format!("generate:{name}?{}", given.join("&"));
-    (generator.make)(&values, &source, options, &Part { whole: progress, start: 0.0, length: 0.95 })
+    Ok((generator, values, source))
 }
 
 /// Finest detail; a ball then has 131,072 triangles.
