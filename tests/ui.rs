@@ -446,6 +446,8 @@ fn methods_are_measured_and_advice_is_used() {
     click(&mut h, "Measure");
     assert!(h.state().state.findings.chart.is_some());
     h.get_by_label(&format!("Chart: speed against error on {FLAT}"));
+    click(&mut h, "Map");
+    h.get_by_label("Map: stability");
     click(&mut h, "Advise");
     let advised = h.state().state.findings.advice.clone().expect("advice").configuration().clone();
     h.get_by_label(&advised.label());

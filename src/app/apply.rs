@@ -484,6 +484,10 @@ impl State {
                 self.take_advice(*advice);
                 self.run_commands();
             }
+            Done::Mapped(map) => {
+                self.take_map(*map);
+                self.run_commands();
+            }
             Done::Layered { layers, action } => self.take_layers(layers, action),
             Done::RecordFailed(text) => self.fail(text),
             Done::Cancelled => {}

@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
-use crate::drawing::Tradeoff;
+use crate::drawing::{Drawing, Tradeoff};
 use crate::measure::advise::Advice;
-use crate::measure::sweep::{Log, Spec, results};
+use crate::measure::stability::Stability;
+use crate::measure::sweep::{Configuration, Log, Spec, results};
 
 /// What to do in the laboratory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,6 +15,12 @@ pub enum Laboratory {
     Measure,
     /// Looks for the simplest configuration that is right enough: wrong pixels at most, per cent.
     Advise(f32),
+    /// Looks over the floor plan and along the path for wrong culls and popping of the chosen method.
+    Map,
+    /// Puts the Eye on a place of the map, by its number.
+    Stand(u32),
+    /// Puts the Eye where a decision flips, by its number, on the side where the primitive is left out.
+    Flip(usize),
     /// Stops.
     Stop,
     /// Opens a configuration of the chart, by its number, in the frame that it did worst in.
@@ -38,6 +45,32 @@ pub struct Findings {
     pub(super) path: usize,
     /// Advice on that path.
     pub advice: Option<Arc<Advice>>,
+    /// How stable a method is.
+    pub map: Option<Arc<Map>>,
+}
+
+/// How stable a method is on a scene, over its floor plan.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// The method, with its parameters.
+    pub of: Configuration,
+    /// What was found.
+    pub found: Stability,
+    /// The picture, on paper; its dots are about places of the grid.
+    pub picture: Drawing,
+}
+
+impl Map {
+    /// What was found at a place, in words.
+    pub fn about(&self, number: u32) -> Option<String> {
+        let spot = self.found.grid.get(number as usize)?;
+        let (eye, found) = (&spot.eye, &spot.found);
+        let place = eye.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(", ");
+        Some(format!(
+            "Eye at {place}\n{} visible, {} of them missed\n{} wrong pixels\n{} pixels pop with a small step",
+            found.visible, found.missed, found.wrong_pixels, found.popped_pixels
+        ))
+    }
 }
 
 impl Findings {

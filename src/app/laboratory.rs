@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::command::Command;
-use super::findings::{Findings, Laboratory};
+use super::findings::{Findings, Laboratory, Map};
 use super::shown::Dialog;
 use super::stage::Stage;
 use super::state::State;
@@ -24,6 +24,8 @@ use crate::truth::Truth;
 const FRAMES: usize = 12;
 const REPEATS: u32 = 3;
 const LONGEST_PX: u32 = 512;
+/// Longer side of images over the floor plan.
+const TINY_PX: u32 = 192;
 /// Views that advice looks at, at most.
 const MOST_VIEWS: usize = 64;
 
@@ -41,6 +43,21 @@ impl State {
                 self.record_if_missing();
             }
             Laboratory::Open(number) => self.open_tried(number),
+            Laboratory::Map => self.ask_map(),
+            Laboratory::Stand(number) => {
+                let Some(map) = self.findings.map.clone().filter(|_| self.is_found_here()) else { return };
+                if let Some(spot) = map.found.grid.get(number as usize) {
+                    self.stand(&map.of, &spot.eye, 0);
+                }
+            }
+            Laboratory::Flip(number) => {
+                let Some(map) = self.findings.map.clone().filter(|_| self.is_found_here()) else { return };
+                if let Some(flip) = map.found.flips.get(number) {
+                    self.stand(&map.of, &flip.eyes[1], flip.after_view);
+                    self.commands.push(format!("select:prim:{}", flip.prim.0));
+                    self.commands.push("why".into());
+                }
+            }
             Laboratory::Use => {
                 let Some(advice) = self.findings.advice.clone() else { return };
                 let chosen = advice.configuration().clone();
@@ -99,6 +116,47 @@ impl State {
             self.findings = Findings { serial: self.serial, ..Findings::default() };
         }
         self.worker.ask("Looking for advice", Job::Advise { job, wish });
+    }
+
+    /// The views of the path in small images, so many at most, with the scene.
+    fn ask_map(&mut self) {
+        let Some(stage) = &self.stage else { return };
+        let of = Configuration { method: self.method.clone(), settings: self.settings.clone() };
+        let job = each!(stage, s => Either({
+            let views = s.views();
+            let count = MOST_VIEWS.min(views.len());
+            (s.scene.clone(), (0..count).map(|k| tiny(&views[k * views.len() / count])).collect::<Vec<_>>())
+        }));
+        if self.findings.serial != self.serial {
+            self.findings = Findings { serial: self.serial, ..Findings::default() };
+        }
+        self.worker.ask("Looking around", Job::Map { job, of });
+    }
+
+    /// Puts the Eye somewhere, looking as view `at` of the path does, with a method; and goes to the first step
+    /// that went wrong there.
+    fn stand(&mut self, of: &Configuration, eye: &[f32], at: usize) {
+        self.dialog = Dialog::None;
+        self.change(0, |s| {
+            (s.method, s.settings) = (of.method.clone(), of.settings.clone());
+            let Some(stage) = &mut s.stage else { return };
+            each!(stage, s => {
+                let mut view = s.views()[at.min(s.views().len() - 1)];
+                let to = Vector::from_fn(|a| eye.get(a).copied().unwrap_or_default());
+                view.eye.target = to + (view.eye.target - view.eye.position);
+                view.eye.position = to;
+                s.view = s.fitted(view);
+            });
+        });
+        self.commands.push("first-wrong".to_owned());
+        if self.busy().is_none() {
+            self.run_commands();
+        }
+    }
+
+    pub(super) fn take_map(&mut self, map: Map) {
+        self.findings.map = Some(Arc::new(map));
+        self.record_if_missing();
     }
 
     /// Takes in what was measured since the last time; returns whether there was anything.
@@ -214,11 +272,20 @@ fn tried_on<S: Methods + Drawable>(
 
 /// The view with a smaller image, if it is large.
 fn smaller<S: Space>(view: &View<S>) -> View<S> {
+    at_most(view, LONGEST_PX)
+}
+
+/// The view with an image that can be looked at from hundreds of places.
+fn tiny<S: Space>(view: &View<S>) -> View<S> {
+    at_most(view, TINY_PX)
+}
+
+fn at_most<S: Space>(view: &View<S>, most_px: u32) -> View<S> {
     let longest = view.width.max(view.height);
-    if longest <= LONGEST_PX {
+    if longest <= most_px {
         return *view;
     }
-    let side = |n: u32| (n * LONGEST_PX / longest).max(1);
+    let side = |n: u32| (n * most_px / longest).max(1);
     let height = if S::Vector::AXES == 2 { 1 } else { side(view.height) };
     View { width: side(view.width), height, ..*view }
 }
@@ -227,6 +294,7 @@ fn smaller<S: Space>(view: &View<S>) -> View<S> {
 mod tests {
     use super::*;
     use crate::app::Action;
+    use crate::geometry::Either;
 
     fn opened(source: &str) -> State {
         let mut state = State::new();
@@ -286,6 +354,33 @@ mod tests {
         state.apply(Action::Undo);
         state.block_until_idle();
         assert!(state.settings.0.is_empty(), "using it can be taken back");
+    }
+
+    /// A dot of the map, and a flip, put the Eye there.
+    #[test]
+    fn places_of_the_map_can_be_visited() {
+        let mut state = opened("street");
+        state.apply(Command::Method("centroid".into()));
+        state.block_until_idle();
+        state.apply(Command::Laboratory(Laboratory::Map));
+        state.block_until_idle();
+        let map = state.findings.map.clone().expect("a map");
+        assert!(map.found.grid.len() > 100 && map.of.method == "centroid");
+        let wrong = map.found.grid.iter().position(|spot| spot.found.missed > 0).expect("a wrong place");
+        let dots = map.picture.items.iter().filter(|i| i.subject == Subject::Tried(wrong as u32)).count();
+        assert_eq!(dots, 1, "it has a dot");
+        assert!(map.about(wrong as u32).is_some_and(|text| text.contains("missed")));
+        state.apply(Command::Laboratory(Laboratory::Stand(wrong as u32)));
+        state.block_until_idle();
+        let Some(Either::Flat(stage)) = &state.stage else { panic!("a flat stage") };
+        let at = stage.view.eye.position;
+        assert_eq!(vec![at.x, at.y], map.found.grid[wrong].eye);
+        assert!(matches!(state.selection, Subject::Prim(_)), "{:?}", state.notices);
+        if let Some(flip) = map.found.flips.first() {
+            state.apply(Command::Laboratory(Laboratory::Flip(0)));
+            state.block_until_idle();
+            assert_eq!(state.selection, Subject::Prim(flip.prim));
+        }
     }
 
     /// What was measured until a stop stays.

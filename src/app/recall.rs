@@ -240,9 +240,12 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
         "laboratory" => Command::Laboratory(match value.split_once('=') {
             Some(("advise", percent)) => Laboratory::Advise(percent.parse().ok()?),
             Some(("open", number)) => Laboratory::Open(number.parse().ok()?),
+            Some(("stand", number)) => Laboratory::Stand(number.parse().ok()?),
+            Some(("flip", number)) => Laboratory::Flip(number.parse().ok()?),
             Some(_) => return None,
             None if value == "measure" => Laboratory::Measure,
             None if value == "use" => Laboratory::Use,
+            None if value == "map" => Laboratory::Map,
             None => return None,
         }),
         "scale" => Command::Scale(value.parse().ok()?),

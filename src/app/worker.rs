@@ -11,6 +11,8 @@ use std::thread;
 
 use super::any::AnyRecorded;
 use super::command::Action;
+use super::findings::Map;
+use super::floor::floor_map;
 use super::layers::{self, Layers, ToLayer};
 use super::measured::{self, Measured};
 use super::open;
@@ -19,7 +21,8 @@ use crate::culling::Methods;
 use crate::geometry::{Either, Flat, Solid, View, ViewPath, each};
 use crate::measure::advise::{Advice, Wish, advise};
 use crate::measure::deadline::Paced;
-use crate::measure::sweep::{Line, Log, Spec, fly};
+use crate::measure::stability::{Ask, stability};
+use crate::measure::sweep::{Configuration, Line, Log, Spec, fly};
 use crate::method::Settings;
 use crate::raster::Drawable;
 use crate::scene::{AnyScene, Motion, Part, Progress, Scene};
@@ -72,6 +75,11 @@ pub(super) enum Job {
         job: Either<Looked<Flat>, Looked<Solid>>,
         wish: Wish,
     },
+    /// Looks over the floor plan for what a method does wrong.
+    Map {
+        job: Either<Looked<Flat>, Looked<Solid>>,
+        of: Configuration,
+    },
     /// Ranks what the film draws by layers, for someone who wants to go to one.
     Layer {
         film: Either<ToLayer<Flat>, ToLayer<Solid>>,
@@ -87,6 +95,7 @@ pub(super) enum Done {
     Measured(Box<Measured>),
     Swept,
     Advised(Box<Advice>),
+    Mapped(Box<Map>),
     Layered { layers: Result<Layers, String>, action: Action },
     Cancelled,
 }
@@ -276,6 +285,11 @@ impl Bench {
                     Err(error) => Done::RecordFailed(error.to_string()),
                 }
             }
+            Job::Map { job, of } => match each!(job, looked => mapped(&looked, &of, ticket)) {
+                Ok(map) => Done::Mapped(Box::new(map)),
+                Err(_) if ticket.cancelled() => Done::Cancelled,
+                Err(error) => Done::RecordFailed(error),
+            },
             Job::Layer { film, action } => match each!(film, f => layers::rank(&f, ticket)) {
                 _ if ticket.cancelled() => Done::Cancelled,
                 layers => Done::Layered { layers, action },
@@ -310,6 +324,31 @@ fn sweep<S: Methods + Drawable>((scene, path): &Flown<S>, spec: &Spec, ticket: &
         Err(_) if ticket.cancelled() => Done::Cancelled,
         Err(error) => Done::RecordFailed(error.to_string()),
     }
+}
+
+/// Cells of the grid over the floor plan along each axis, and flips that are looked into.
+const GRID: usize = 20;
+const FLIPS: usize = 3;
+
+/// Looks over the floor plan, and along the path for flips.
+fn mapped<S: Methods + Drawable>(
+    (scene, views): &Looked<S>,
+    of: &Configuration,
+    ticket: &Ticket,
+) -> Result<Map, String> {
+    let Some(method) = S::method(&of.method) else {
+        return Err(format!("there is no method `{}` in {}", of.method, S::NAME));
+    };
+    let first = Motion::new(scene).at(0);
+    let begun = Part { whole: ticket, start: 0.0, length: 0.2 };
+    let run = method.ready(&first, &of.settings, &begun).map_err(|e| e.to_string())?;
+    let mut run = run.ok_or("stopped as asked")?;
+    let ask = Ask { grid: GRID, flips: FLIPS, ..Ask::default() };
+    let rest = Part { whole: ticket, start: 0.2, length: 0.8 };
+    let found = stability(scene, &mut *run, views, &ask, &rest).map_err(|e| e.to_string())?;
+    let title = format!("{}: {}", scene.name(), of.label());
+    let picture = floor_map(scene, title, &found, GRID);
+    Ok(Map { of: of.clone(), found, picture })
 }
 
 /// A run that was stopped while it changed is of no use.

@@ -5,19 +5,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::{DVec3, Vec2};
+use glam::DVec3;
 
 use super::error::reason;
 use super::methods::{find, settings};
 use super::progress::Bar;
 use super::view::ViewArgs;
 use super::{CliError, World, output, scene};
-use crate::figure::{Heat, heat_map};
-use crate::geometry::{Vector, each};
+use crate::app::floor_map;
+use crate::geometry::each;
 use crate::measure::experiment::ExperimentError;
-use crate::measure::stability::{
-    Ask, Decided, Flip, Stability, floor_axes, grid_table, path_table, stability, summary,
-};
+use crate::measure::stability::{Ask, Decided, Flip, Stability, grid_table, path_table, stability, summary};
 use crate::measure::{Column, Table};
 use crate::method::{Budget, Entry, KnobValue, Settings};
 use crate::render::{SvgOptions, Theme, svg};
@@ -39,8 +37,6 @@ const PRINTED: [&str; 11] = [
     "popped_pixels",
     "margin",
 ];
-/// Lines of a floor plan that a map shows.
-const MOST_LINES: usize = 20_000;
 
 const HELP: &str = concat!(
     "Example:\n  cullscope stability 'generate:failure?case=slivers' --method centroid --out found\n",
@@ -222,34 +218,11 @@ fn file_name(taken: &[(String, String)], names: [&str; 2]) -> String {
     (0..=taken.len()).map(name).find(|n| taken.iter().all(|(t, _)| t != n)).unwrap_or_default()
 }
 
-/// The grid over the floor plan: where pixels pop or are wrong.
+/// The map of a grid as SVG.
 fn map<S: World>(scene: &Scene<S>, method: &str, found: &Stability, side: usize) -> String {
-    let [u, v] = floor_axes::<S::Vector>();
-    // In space z points toward the reader of a plan.
-    let turn = if S::Vector::AXES == 2 { 1.0 } else { -1.0 };
-    let flat = |p: S::Vector| Vec2::new(p.get(u), turn * p.get(v));
-    let corners = found.floor.each_ref().map(|corner| Vec2::new(corner[u], turn * corner[v]));
-    let mut plan = Vec::new();
-    for &prim in scene.live() {
-        let points: Vec<Vec2> = scene.prim_points(prim).map(flat).collect();
-        plan.extend((1..points.len()).map(|k| [points[k - 1], points[k]]).filter(|[a, b]| a != b));
-    }
-    plan.truncate(MOST_LINES);
-    let value = |k: usize| (found.grid[k].found.popped_pixels + found.grid[k].found.wrong_pixels) as f64;
-    // The map begins with the row of the least y.
-    let row = |k: usize| if turn > 0.0 { k / side } else { side - 1 - k / side };
-    let values: Vec<f64> = (0..side * side).map(|k| value(row(k) * side + k % side)).collect();
-    let heat = Heat {
-        title: format!("{}: {method}", scene.name()),
-        what: "pixels that are wrong or popped",
-        cells: [side, side],
-        values: &values,
-        bounds: [corners[0].min(corners[1]), corners[0].max(corners[1])],
-        plan: &plan,
-    };
     let recipe = format!("cullscope stability {} --method {method} --grid {side}", scene.source());
     let options = SvgOptions { outline_text: false, metadata: Some(&recipe) };
-    svg(&heat_map(&heat), Theme::Print, &options)
+    svg(&floor_map(scene, format!("{}: {method}", scene.name()), found, side), Theme::Print, &options)
 }
 
 fn write(folder: &Path, results: &Results) -> Result<(), CliError> {

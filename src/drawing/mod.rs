@@ -33,7 +33,7 @@ pub enum Subject {
     Plane(u8),
     /// The Eye.
     Eye,
-    /// A configuration of a chart, by its number.
+    /// A point of a chart or map, by its number: what was tried there, such as a configuration.
     Tried(u32),
 }
 

@@ -25,6 +25,8 @@ pub struct Heat<'a> {
     pub cells: [usize; 2],
     /// Value of each cell, the row of the least y first.
     pub values: &'a [f64],
+    /// Number of each cell, which its dot is about.
+    pub numbers: &'a [usize],
     /// Corners of the grid in the plan, y upward: least, greatest.
     pub bounds: [Vec2; 2],
     /// Lines of the plan.
@@ -59,7 +61,8 @@ pub fn heat_map(heat: &Heat<'_>) -> Drawing {
         let place = Vec2::new((k % columns) as f32 + 0.5, (k / columns) as f32 + 0.5);
         let radius_pt = (full * (value / most).sqrt() as f32).max(0.4);
         let dot = Mark::Dot { at: at(low + place * cell), radius_pt };
-        to.push(Layer::Emphasis, Role::Current, Subject::None, dot);
+        let subject = Subject::Tried(heat.numbers.get(k).map_or(k, |n| *n) as u32);
+        to.push(Layer::Emphasis, Role::Hidden, subject, dot);
     }
     let foot = Vec2::new(EDGE_PT, top + size.y * scale + 1.6 * TEXT_PT);
     to.text(Layer::Caption, Role::Faint, foot, TEXT_PT, Anchor::Start, &*to.description.clone());
@@ -77,6 +80,7 @@ mod tests {
             what: "pixels",
             cells: [2, 2],
             values: &[0.0, 1.0, 4.0, 0.0],
+            numbers: &[2, 3, 0, 1],
             bounds: [Vec2::ZERO, Vec2::ONE],
             plan: &[[Vec2::ZERO, Vec2::ONE]],
         };
@@ -89,6 +93,9 @@ mod tests {
                 _ => None,
             })
             .collect();
+        let about: Vec<Subject> =
+            map.items.iter().map(|i| i.subject).filter(|s| *s != Subject::None).collect();
+        assert_eq!(about, [Subject::Tried(3), Subject::Tried(0)]);
         // The second cell lies right of the first, the third above it.
         assert_eq!(dots.len(), 2);
         assert!(dots[0].0.x > dots[1].0.x && dots[0].0.y > dots[1].0.y, "{dots:?}");

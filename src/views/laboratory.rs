@@ -5,8 +5,8 @@ use eframe::egui::{self, DragValue, RichText, ScrollArea, Sense};
 use glam::vec2;
 
 use super::Answers;
-use crate::app::{Command, Laboratory, State};
-use crate::drawing::{Drawing, Mark, Subject, Tradeoff};
+use crate::app::{Command, Laboratory, Map, State};
+use crate::drawing::{Drawing, Mark, Subject};
 use crate::figure::tradeoff;
 use crate::measure::advise::Advice;
 use crate::render::screen;
@@ -29,18 +29,35 @@ pub fn show(state: &State, most_wrong: &mut f32, ui: &mut egui::Ui, answers: &mu
     ));
     asked(state, most_wrong, width, ui, answers);
     ScrollArea::vertical().max_height(size.y * 0.8 - 150.0).auto_shrink([false, true]).show(ui, |ui| {
+        if !state.is_found_here() {
+            return;
+        }
         let found = &state.findings;
-        if let Some(chart) = found.chart.as_ref().filter(|_| state.is_found_here()) {
-            paint(state, chart, width - 16.0, ui, answers);
+        if let Some(advice) = &found.advice {
+            advised(advice, ui, answers);
+            ui.separator();
+        }
+        if let Some(chart) = &found.chart {
+            let mut drawing = Drawing { size_pt: CHART_PT, ..Drawing::default() };
+            tradeoff(&mut drawing, chart, [vec2(4.0, 4.0), CHART_PT - 4.0]);
+            let name = format!("Chart: speed against error on {}", chart.title);
+            let scale = (width - 16.0) / CHART_PT.x;
+            if let Some((number, response)) = paint(state, &drawing, &name, scale, ui) {
+                if response.clicked() {
+                    answers.push(Command::Laboratory(Laboratory::Open(number)));
+                }
+                said(response, found.about(number));
+            }
             ui.weak(
                 "Up: slower. Right: more pixels of another color than the exact image's; what makes none \
-                 stands at the left. Steps and rings: what nothing beats in both. Small dots: single frames. \
-                 Click a point to go to the step at which it first went wrong, in its worst frame.",
+                 stands in the band at the left. Dotted steps and rings: what nothing beats in both. Small \
+                 dots: single frames. Click a point to go to the step at which it first went wrong, in its \
+                 worst frame.",
             );
-        }
-        if let Some(advice) = found.advice.as_ref().filter(|_| state.is_found_here()) {
             ui.separator();
-            advised(advice, ui, answers);
+        }
+        if let Some(map) = &found.map {
+            mapped(state, map, width, ui, answers);
         }
     });
 }
@@ -65,6 +82,14 @@ fn asked(state: &State, most_wrong: &mut f32, width: f32, ui: &mut egui::Ui, ans
             let label = ui.label("wrong pixels at most").id;
             ui.add(DragValue::new(most_wrong).range(0.0..=100.0).speed(0.02).max_decimals(3).suffix(" %"))
                 .labelled_by(label);
+            ui.separator();
+            let map = ui.button("Map").on_hover_text(
+                "Looks over the floor plan and along the path for what the chosen method does wrong, and for \
+                 what changes without cause",
+            );
+            if map.clicked() {
+                answers.push(Command::Laboratory(Laboratory::Map));
+            }
         });
     });
     let Some(busy) = busy else { return };
@@ -76,34 +101,82 @@ fn asked(state: &State, most_wrong: &mut f32, width: f32, ui: &mut egui::Ui, ans
     });
 }
 
-fn paint(state: &State, chart: &Tradeoff, width: f32, ui: &mut egui::Ui, answers: &mut Answers) {
-    let mut drawing = Drawing { size_pt: CHART_PT, ..Drawing::default() };
-    tradeoff(&mut drawing, chart, [vec2(4.0, 4.0), CHART_PT - 4.0]);
-    let scale = width / CHART_PT.x;
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(CHART_PT.x, CHART_PT.y) * scale, Sense::click());
-    response.widget_info(|| {
-        let text = format!("Chart: speed against error on {}", chart.title);
-        egui::WidgetInfo::labeled(egui::Role::Image, true, text)
-    });
+/// A picture; the point of it that is under the pointer, with what the pointer did.
+fn paint(
+    state: &State,
+    drawing: &Drawing,
+    name: &str,
+    scale: f32,
+    ui: &mut egui::Ui,
+) -> Option<(u32, egui::Response)> {
+    let size = drawing.size_pt;
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(size.x, size.y) * scale, Sense::click());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     let painter = ui.painter_at(rect);
-    screen::paint_paper(&painter, CHART_PT, state.shown.theme, rect.min, scale);
-    screen::paint(&painter, &drawing, state.shown.theme, rect.min, scale);
+    screen::paint_paper(&painter, size, state.shown.theme, rect.min, scale);
+    screen::paint(&painter, drawing, state.shown.theme, rect.min, scale);
     let place = |at: glam::Vec2| rect.min + egui::vec2(at.x, at.y) * scale;
-    let Some(pointer) = response.hover_pos() else { return };
+    let pointer = response.hover_pos()?;
     let points = drawing.items.iter().filter_map(|item| match (item.subject, &item.mark) {
-        (Subject::Tried(number), Mark::Dot { at, .. }) => Some((number, place(*at))),
+        (Subject::Tried(number), Mark::Dot { at, radius_pt }) => {
+            Some((number, place(*at), (radius_pt * scale).max(NEAR_PX)))
+        }
         _ => None,
     });
-    let near = points.map(|(number, at)| (number, at, at.distance(pointer)));
-    let nearest = near.filter(|n| n.2 < NEAR_PX).min_by(|a, b| a.2.total_cmp(&b.2));
-    let Some((number, at, _)) = nearest else { return };
-    let color = ui.visuals().strong_text_color();
-    painter.circle_stroke(at, NEAR_PX * 0.8, egui::Stroke::new(1.5, color));
-    if response.clicked() {
-        answers.push(Command::Laboratory(Laboratory::Open(number)));
-    }
-    if let Some(text) = state.findings.about(number) {
+    let near = points.map(|(number, at, reach)| (number, at, at.distance(pointer) / reach, reach));
+    let nearest = near.filter(|n| n.2 < 1.0).min_by(|a, b| a.2.total_cmp(&b.2));
+    let (number, at, _, reach) = nearest?;
+    painter.circle_stroke(at, reach, egui::Stroke::new(1.5, ui.visuals().strong_text_color()));
+    Some((number, response))
+}
+
+/// Says what is under the pointer.
+fn said(response: egui::Response, text: Option<String>) {
+    if let Some(text) = text {
         response.on_hover_cursor(egui::CursorIcon::PointingHand).on_hover_text_at_pointer(text);
+    }
+}
+
+/// The map of wrong culls and popping, and where decisions flip.
+fn mapped(state: &State, map: &Map, width: f32, ui: &mut egui::Ui, answers: &mut Answers) {
+    let (path, grid) = (map.found.on_path(), map.found.on_grid());
+    ui.label(format!(
+        "{}: of {} places {} are wrong somewhere; {} pixels pop with a small step. Along the path {} \
+         primitives that are visible were missed and {} popped.",
+        map.of.label(),
+        map.found.grid.len(),
+        map.found.grid.iter().filter(|spot| !spot.found.is_exact()).count(),
+        grid.popped_pixels,
+        path.missed,
+        path.popped,
+    ));
+    let scale = ((width - 16.0) / map.picture.size_pt.x).min(520.0 / map.picture.size_pt.y);
+    if let Some((number, response)) = paint(state, &map.picture, "Map: stability", scale, ui) {
+        if response.clicked() {
+            answers.push(Command::Laboratory(Laboratory::Stand(number)));
+        }
+        said(response, map.about(number));
+    }
+    ui.weak("Click a dot to put the Eye there and go to the first step that went wrong.");
+    for (number, flip) in map.found.flips.iter().enumerate() {
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("Go").on_hover_text("Puts the Eye where it is left out").clicked() {
+                answers.push(Command::Laboratory(Laboratory::Flip(number)));
+            }
+            let [drawn, left_out] = &flip.decided;
+            ui.label(format!(
+                "Between views {} and {} primitive {} flips within {:.2e} units: {} here, {} there.",
+                flip.after_view,
+                flip.after_view + 1,
+                flip.prim,
+                flip.apart,
+                drawn.verdict,
+                left_out.verdict,
+            ));
+        });
+        if let Some(compared) = &flip.decided[1].compared {
+            ui.weak(format!("{} Compared: {compared}.", flip.decided[1].sentence));
+        }
     }
 }
 

@@ -77,8 +77,9 @@ fn joined<'a>(all: impl Iterator<Item = &'a Found>) -> Found {
     sum
 }
 
-/// Follows the views of a path and looks over the floor that scene and path take up, from the first one's height and direction. `run`
-/// was made ready for frame 0 of the scene; view i sees frame i where objects move, the grid frame 0.
+/// Follows the views of a path and looks over the floor that scene and path take up, from the first one's
+/// height and direction. `run` was made ready for frame 0 of the scene; view i sees frame i where objects
+/// move, the grid frame 0.
 ///
 /// # Errors
 /// It was cancelled.

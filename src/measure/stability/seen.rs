@@ -104,17 +104,11 @@ impl<'a, S: World> Watcher<'a, S> {
         let options = Options { surfaces: self.surfaces.both_sides(), ..Options::default() };
         list.draw((&mut self.image, &mut self.canvas), &scene, view, &options);
         let picture = list.picture(&scene, view, (&self.image, &self.canvas), (LIGHT, BACKGROUND));
-        // Whether a primitive shows is asked at the centers of pixels, whatever the picture is made of.
-        if list.samples > 1 {
-            list.redraw(&mut self.image, &scene, view, &options);
-        }
-        let judged = self.truth.judge(&scene, view, &list.prims, &self.image);
+        let judged = self.truth.judge(&scene, view, &list, (&self.image, &self.canvas));
         let exact = self.exact(&scene, view, list.samples, &options);
-        let differ = || picture.chunks_exact(4).zip(exact.chunks_exact(4)).filter(|(a, b)| a != b).count();
-        let wrong_pixels = if list.stand_ins.is_empty() { judged.wrong_pixels } else { differ() };
         Some(Seen {
             drawn: judged.drawn,
-            wrong_pixels,
+            wrong_pixels: judged.wrong_pixels,
             work: tally.named().values().sum(),
             visible: judged.visible,
             missed: judged.missed,
