@@ -133,8 +133,8 @@ impl State {
         self.worker.ask("Looking around", Job::Map { job, of });
     }
 
-    /// Puts the Eye somewhere, looking as view `at` of the path does, with a method; and goes to the first step
-    /// that went wrong there.
+    /// Puts the Eye somewhere, looking as view `at` of the path does, with a method; and goes to the first
+    /// step that went wrong there.
     fn stand(&mut self, of: &Configuration, eye: &[f32], at: usize) {
         self.dialog = Dialog::None;
         self.change(0, |s| {
@@ -175,8 +175,8 @@ impl State {
         self.record_if_missing();
     }
 
-    /// Opens a configuration in the frame with the largest error, or the costliest where none has any, and goes
-    /// to the first step that went wrong.
+    /// Opens a configuration in the frame with the largest error, or the costliest where none has any, and
+    /// goes to the first step that went wrong.
     fn open_tried(&mut self, number: u32) {
         let Findings { spec: Some(spec), log, frames, path, serial, .. } = &self.findings else { return };
         let [scene, at] = results::of_number(spec, number);

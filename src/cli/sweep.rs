@@ -26,7 +26,7 @@ use crate::scene::{AnyScene, LoadOptions, Part, Scene, write_views};
     subcommand_negates_reqs = true,
     after_help = "Examples:\n  cullscope sweep examples/sweeps/cross-method.toml --out cross\n  cullscope \
                   sweep spec.toml --shard 2/4 --out part-2\n  cullscope sweep merge part-1 part-2 part-3 \
-                  part-4 --out all\n\nA spec:\n  scenes = [\"generate:building\", { source = \"a.obj\", path = \
+                  part-4 --out all\n\nA spec:\n  scenes = [\"generate:city\", { source = \"a.obj\", path = \
                   \"walk\" }]\n  frames = 12\n  repeats = 3\n  size = [512, 512]\n  [[method]]\n  key = \
                   \"frustum\"\n  [[method]]\n  key = \"layered-projection\"\n  set = { budget = [\"1%\", \
                   \"5%\"] }    # one configuration for each value"

@@ -49,7 +49,8 @@ fn written(number: usize, title: &str, table: &Table) -> String {
     for (column, class) in table.columns.iter().zip(&classes) {
         let (title, unit) = (escape(column.title), escape(column.unit));
         head += &format!(
-            "<th scope=\"col\"{class} data-title=\"{title}\" data-unit=\"{unit}\">{title}<small>{unit}</small></th>"
+            "<th scope=\"col\"{class} data-title=\"{title}\" data-unit=\"{unit}\">{title}\
+             <small>{unit}</small></th>"
         );
     }
     let mut rows = String::new();
@@ -69,7 +70,8 @@ fn written(number: usize, title: &str, table: &Table) -> String {
     }
     let (count, title) = (table.rows.len(), escape(title));
     let search = format!(
-        "<input type=\"search\" placeholder=\"only rows with …\" aria-label=\"search\" data-of=\"#table-{number}\">"
+        "<input type=\"search\" placeholder=\"only rows with …\" aria-label=\"search\" \
+         data-of=\"#table-{number}\">"
     );
     let body = format!(
         "{search}<div class=\"wide\"><table id=\"table-{number}\">\n<thead><tr>{head}</tr></thead>\n\

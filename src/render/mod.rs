@@ -1,4 +1,5 @@
-//! Readers of drawings: SVG, PDF, PNG, pages for browsers and the screen; and the theme, the only place with colors.
+//! Readers of drawings: SVG, PDF, PNG, pages for browsers and the screen; and the theme, the only place with
+//! colors.
 //!
 //! A reader adds no mark of its own. What a role needs beyond one stroke (halo, hatch, sign) is decided once,
 //! in `piece.rs`, so that all readers show the same picture. Every file format carries the recipe of the

@@ -113,8 +113,8 @@ impl Truth {
     }
 
     /// Compares an answer with the whole scene. `drawn`: the images of its two parts from that view
-    /// ([`DrawList::draw`]). Whether a primitive shows is asked at the centers of pixels, whatever the picture
-    /// is made of.
+    /// ([`DrawList::draw`]). Whether a primitive shows is asked at the centers of pixels, whatever the
+    /// picture is made of.
     pub fn judge<S: Drawable>(
         &mut self,
         scene: &Scene<S>,

@@ -5,16 +5,16 @@
 //! Talwalkar 2016, AISTATS, "Non-stochastic best arm identification and hyperparameter optimization"):
 //!
 //! 1. every method with its defaults, on a few frames;
-//! 2. parameters of those methods that could still win, method by method: it was at most [`SLACK`] times as slow
-//!    as the best that is right enough, or is fast and not right enough. What is still slower than that goes;
+//! 2. parameters of those methods that could still win, method by method: it was at most [`SLACK`] times as
+//!    slow as the best that is right enough, or is fast and not right enough. What is slower than that goes;
 //! 3. the better half of all goes on to twice as many frames, until few are left; those of the best method's
 //!    parameters that helped are also tried together;
 //! 4. those few, beside plain drawing and frustum culling, on all frames in turn;
 //! 5. the best of them is checked on the other half of the path's views, which none was chosen by. If it is
 //!    not right enough there, the next one is.
 //!
-//! Methods remember from frame to frame, so the path is parted into stretches of frames that follow each other:
-//! every second one is kept back, and the others are looked at in an order by lot.
+//! Methods remember from frame to frame, so the path is parted into stretches of frames that follow each
+//! other: every second one is kept back, and the others are looked at in an order by lot.
 //!
 //! Of those within [`NOISE`] of the best the simplest is advised: the one with the fewest parameters set, and
 //! among those the one that is listed first. Cost: some tenth of the frames of the full grid.

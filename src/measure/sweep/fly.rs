@@ -87,7 +87,7 @@ struct Flight<'a, S: World> {
 /// many views as the spec has frames ([`path()`]), and adds it.
 ///
 /// # Errors
-/// A configuration does not fit, a line could not be kept, or it was cancelled: what was kept until then holds.
+/// A configuration does not fit, a line could not be kept, or it was cancelled: what was kept holds.
 pub fn fly<'a, S: World>(
     (spec, number): (&'a Spec, usize),
     scene: &'a Arc<Scene<S>>,

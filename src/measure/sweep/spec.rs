@@ -363,7 +363,8 @@ mod tests {
     fn lists_are_one_configuration_for_each_value() {
         let text = "frames = 7\nsize = [64, 48]\nerror = \"flip\"\n\
                     scenes = [\"generate:building\", { source = \"a.obj\", path = \"walk\" }]\n\
-                    [[method]]\nkey = \"frustum\"\nset = { tree-height = [2, 4], backface-culling = [true, false] }\n\
+                    [[method]]\nkey = \"frustum\"\n\
+                    set = { tree-height = [2, 4], backface-culling = [true, false] }\n\
                     [[method]]\nkey = \"centroid\"\nset.budget = \"5%\"\n";
         let spec = parsed(text).expect("a spec");
         assert_eq!((spec.name.as_str(), spec.frames, spec.repeats), ("spec", 7, 3));
