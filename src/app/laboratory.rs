@@ -21,8 +21,8 @@ use crate::truth::Truth;
 
 /// Frames of the path that are measured, flights, and the longer side of the images: enough to tell methods
 /// apart, few enough to wait for.
-const FRAMES: usize = 12;
-const REPEATS: u32 = 3;
+const FRAMES: usize = 8;
+const REPEATS: u32 = 2;
 const LONGEST_PX: u32 = 512;
 /// Longer side of images over the floor plan.
 const TINY_PX: u32 = 192;

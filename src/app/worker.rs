@@ -19,6 +19,7 @@ use super::open;
 use super::stage::Recorded;
 use crate::culling::Methods;
 use crate::geometry::{Either, Flat, Solid, View, ViewPath, each};
+use crate::measure::Stopwatch;
 use crate::measure::advise::{Advice, Wish, advise};
 use crate::measure::deadline::Paced;
 use crate::measure::stability::{Ask, stability};
@@ -109,7 +110,12 @@ pub struct Busy {
     pub fraction: f32,
 }
 
+/// Between two times that progress is shown, at least.
+const REST_MS: u32 = 100;
+
 struct Shared {
+    watch: Stopwatch,
+    woken_ms: AtomicU32,
     /// The request that is wanted; all others are stale.
     wanted: AtomicU64,
     fraction: AtomicU32,
@@ -140,7 +146,12 @@ impl Progress for Ticket {
         if let Ok(mut now) = self.shared.what.lock() {
             *now = what;
         }
-        self.shared.wake();
+        // To draw the window takes time from the work.
+        let now = self.shared.watch.elapsed_ms() as u32;
+        if now.wrapping_sub(self.shared.woken_ms.load(Ordering::Relaxed)) >= REST_MS {
+            self.shared.woken_ms.store(now, Ordering::Relaxed);
+            self.shared.wake();
+        }
     }
     fn cancelled(&self) -> bool {
         self.shared.wanted.load(Ordering::Relaxed) != self.number
@@ -161,6 +172,8 @@ impl Worker {
         let (jobs, inbox) = channel::<(u64, Job)>();
         let (outbox, done) = channel();
         let shared = Arc::new(Shared {
+            watch: Stopwatch::start(),
+            woken_ms: AtomicU32::new(0),
             wanted: AtomicU64::new(0),
             fraction: AtomicU32::new(0),
             what: Mutex::new(""),

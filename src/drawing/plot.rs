@@ -81,6 +81,8 @@ pub struct Curve {
     pub role: Role,
     /// By ascending error.
     pub tried: Vec<Tried>,
+    /// Whether they are one row of values of a parameter, so that a line through them says something.
+    pub is_row: bool,
 }
 
 /// Speed against error: a curve for each method, and the configurations that nothing beats in both.
@@ -130,7 +132,7 @@ mod tests {
             spread_ms: [time_ms; 2],
             frames: Vec::new(),
         };
-        let curve = |tried| Curve { label: String::new(), role: Role::Visible, tried };
+        let curve = |tried| Curve { label: String::new(), role: Role::Visible, tried, is_row: true };
         let exact = curve(vec![tried(0, 0.0, 4.0), tried(1, 0.0, 9.0)]);
         let rough =
             curve(vec![tried(2, 0.1, 5.0), tried(3, 0.2, 2.0), tried(4, 0.2, 2.0), tried(5, 9.0, 1.0)]);

@@ -152,7 +152,10 @@ impl Axis {
         let is_whole = |x: f64| (x.log10() - x.log10().round()).abs() < 1e-6;
         if !(is_whole(self.low) && is_whole(self.high)) {
             let inside = |x: &f64| *x >= self.low * (1.0 - 1e-9) && *x <= self.high * (1.0 + 1e-9);
-            let all: Vec<f64> = self.steps().into_iter().filter(inside).collect();
+            // Over several powers these alone are even.
+            let is_far = self.high >= self.low * 99.0;
+            let fits = |x: &f64| inside(x) && (!is_far || is_whole(*x));
+            let all: Vec<f64> = self.steps().into_iter().filter(fits).collect();
             let every = all.len().div_ceil(most.max(1)).max(1);
             return all.into_iter().step_by(every).map(|x| (x, tick_label(x, x))).collect();
         }

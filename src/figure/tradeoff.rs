@@ -67,7 +67,7 @@ pub fn tradeoff_charts(charts: &[Tradeoff]) -> (Drawing, Vec<Entry>) {
             vec2((k % columns) as f32 * (width + GAP_PT), (k / columns) as f32 * (HEIGHT_PT + GAP_PT));
         tradeoff(&mut content, chart, [place, place + vec2(width, HEIGHT_PT)]);
         for curve in &chart.curves {
-            let swatch = if curve.tried.len() > 1 { Swatch::Line } else { Swatch::Dot };
+            let swatch = if curve.is_row && curve.tried.len() > 1 { Swatch::Line } else { Swatch::Dot };
             let entry = Entry { role: curve.role, label: curve.label.clone(), swatch };
             // A line says more than a dot.
             match legend.iter_mut().find(|known| known.label == entry.label) {
@@ -152,7 +152,7 @@ fn front(to: &mut Drawing, chart: &Tradeoff, field: &Field) {
 fn marks(to: &mut Drawing, method: usize, curve: &Curve, field: &Field) {
     let place = |one: &Tried| field.at(method, one.error, one.time_ms);
     let places: Vec<Vec2> = curve.tried.iter().map(place).collect();
-    if places.len() > 1 {
+    if curve.is_row {
         to.line(Layer::Evidence, curve.role, Subject::None, places.clone());
     }
     for (one, at) in curve.tried.iter().zip(places) {
@@ -209,7 +209,7 @@ mod tests {
     }
 
     fn sample() -> Tradeoff {
-        let curve = |label: &str, role, tried| Curve { label: label.into(), role, tried };
+        let curve = |label: &str, role, tried| Curve { label: label.into(), role, tried, is_row: true };
         Tradeoff {
             title: "a scene".into(),
             error_label: "wrong pixels, %".into(),
@@ -259,7 +259,8 @@ mod tests {
         let mut crowd = sample();
         for k in 0..6 {
             let tried = vec![tried(10 + k, 0.0, 5.0)];
-            crowd.curves.push(Curve { label: format!("another {k}"), role: Role::Wrong, tried });
+            let label = format!("another {k}");
+            crowd.curves.push(Curve { label, role: Role::Wrong, tried, is_row: false });
         }
         let empty = Tradeoff { curves: Vec::new(), ..sample() };
         let drawing = tradeoffs("t", &[crowd, sample(), empty], "A caption.");

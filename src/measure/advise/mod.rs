@@ -32,12 +32,12 @@ use super::columns::column;
 use super::deadline::Paced;
 use super::experiment::{ExperimentError, World};
 use super::harness::{checkpoint, part};
-use super::sweep::Configuration;
+use super::sweep::{Configuration, results};
 use super::table::{Cell, Table};
 use super::timing::{median, timed};
 use crate::drawing::{Curve, Plot, Role, Series, Shape, Tradeoff, Tried};
 use crate::geometry::View;
-use crate::method::{Settings, surfaces_of};
+use crate::method::{DrawList, Settings, surfaces_of};
 use crate::raster::{Canvas, Options, Target};
 use crate::scene::{Motion, Part, Progress, Scene, Surfaces};
 use crate::truth::Truth;
@@ -63,10 +63,18 @@ const BACKGROUND: [f32; 3] = [1.0; 3];
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wish {
-    /// Wrong pixels at most, per cent of all images together.
+    /// Wrong pixels at most, per cent of all images together; 0 asks for a promise, since what happens to be
+    /// right in some views need not be in others.
     pub most_wrong_percent: f64,
     /// Chooses the order in which frames are looked at.
     pub seed: u64,
+}
+
+impl Wish {
+    /// Whether a configuration is right enough, as far as it was tried.
+    fn is_met(&self, trial: &Trial) -> bool {
+        trial.wrong_percent <= self.most_wrong_percent && (trial.promises || self.most_wrong_percent > 0.0)
+    }
 }
 
 /// A configuration that was tried.
@@ -85,6 +93,8 @@ pub struct Trial {
     pub index_bytes: usize,
     /// What building it took, milliseconds.
     pub build_ms: f64,
+    /// Whether it promises to draw all that is visible.
+    pub promises: bool,
 }
 
 /// How something did on some frames.
@@ -153,7 +163,16 @@ impl<S: World> Course<'_, S> {
         let mut times = vec![vec![Vec::new(); frames]; count];
         let mut wrong = vec![vec![0.0; frames]; count];
         for flight in 0..flights {
-            runs.iter_mut().for_each(|ready| ready.run.forget());
+            // Methods that remember have seen the neighborhood before the first frame that counts.
+            let (number, view) = self.views[views.clone().nth(1).unwrap_or(views.start)];
+            let scene = self.motion.at(number);
+            for ready in runs.iter_mut() {
+                ready.run.forget();
+                if !ready.run.pose(&scene, progress) {
+                    return Err(ExperimentError::Cancelled);
+                }
+                ready.run.cull(&view);
+            }
             for (k, at) in views.clone().enumerate() {
                 let done = (flight * frames + k) as f32 / (flights * frames) as f32;
                 checkpoint(progress, done, "trying")?;
@@ -171,16 +190,7 @@ impl<S: World> Course<'_, S> {
                     times[which][k].push(cull_ms + draw_ms);
                     self.flown += 1;
                     if flight == 0 {
-                        let surfaces = ready.surfaces;
-                        let known = self.truths.iter().position(|(of, _)| *of == surfaces);
-                        let known = known.unwrap_or_else(|| {
-                            self.truths.push((surfaces, Truth::new(self.scene, surfaces, 1, BACKGROUND)));
-                            self.truths.len() - 1
-                        });
-                        let truth = &mut self.truths[known].1;
-                        let images = (&self.images.0, &self.images.1);
-                        let judged = truth.judge(&scene, &view, &list, images);
-                        wrong[which][k] = 100.0 * judged.wrong_pixel_ratio();
+                        wrong[which][k] = self.wrong_percent(ready.surfaces, &scene, &view, &list);
                     }
                 }
             }
@@ -193,6 +203,23 @@ impl<S: World> Course<'_, S> {
             worst_percent: wrong.iter().copied().fold(0.0, f64::max),
         };
         Ok(times.into_iter().zip(wrong).map(of).collect())
+    }
+
+    /// Wrong pixels of a list that was just drawn, per cent.
+    fn wrong_percent(
+        &mut self,
+        surfaces: Surfaces,
+        scene: &Scene<S>,
+        view: &View<S>,
+        list: &DrawList<S>,
+    ) -> f64 {
+        let known = self.truths.iter().position(|(of, _)| *of == surfaces);
+        let known = known.unwrap_or_else(|| {
+            self.truths.push((surfaces, Truth::new(self.scene, surfaces, 1, BACKGROUND)));
+            self.truths.len() - 1
+        });
+        let judged = self.truths[known].1.judge(scene, view, list, (&self.images.0, &self.images.1));
+        100.0 * judged.wrong_pixel_ratio()
     }
 }
 
@@ -219,11 +246,19 @@ impl<S: World> Halving<'_, S> {
         let (run, build_ms) = timed(|| entry.ready(&self.first, &configuration.settings, progress));
         let run = run?.ok_or(ExperimentError::Cancelled)?;
         let surfaces = surfaces_of(&run.knobs());
-        let index_bytes = run.hierarchy().bytes();
+        let (index_bytes, promises) = (run.hierarchy().bytes(), run.is_conservative());
         let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
         self.ready.push(Some(Ready { run: Paced::new(run, &self.first), options, surfaces }));
         let (frames, time_ms, wrong_percent) = (0, f64::INFINITY, 0.0);
-        self.trials.push(Trial { configuration, frames, time_ms, wrong_percent, index_bytes, build_ms });
+        self.trials.push(Trial {
+            configuration,
+            frames,
+            time_ms,
+            wrong_percent,
+            index_bytes,
+            build_ms,
+            promises,
+        });
         Ok(Some(self.trials.len() - 1))
     }
 
@@ -249,7 +284,7 @@ impl<S: World> Halving<'_, S> {
     }
 
     fn is_right(&self, number: usize) -> bool {
-        self.trials[number].wrong_percent <= self.wish.most_wrong_percent
+        self.wish.is_met(&self.trials[number])
     }
 
     /// Some by their times, those that are right enough first.
@@ -465,7 +500,7 @@ impl Advice {
             column("verdict", "", "", 0),
         ]);
         let mut order: Vec<usize> = (0..self.trials.len()).collect();
-        let is_right = |k: usize| self.trials[k].wrong_percent <= self.wish.most_wrong_percent;
+        let is_right = |k: usize| self.wish.is_met(&self.trials[k]);
         let key = |k: &usize| (!is_right(*k), self.trials[*k].time_ms);
         order.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
         // The advised one first, whatever the noise.
@@ -479,6 +514,8 @@ impl Advice {
                 "advised"
             } else if self.refused.contains(&k) {
                 "not right enough on unseen views"
+            } else if !is_right(k) && trial.wrong_percent <= self.wish.most_wrong_percent {
+                "promises nothing"
             } else if !is_right(k) {
                 "not right enough"
             } else {
@@ -508,7 +545,7 @@ impl Advice {
         };
         let plain = self.trials.iter().find(is_plain)?;
         let differs = !trial.configuration.settings.0.is_empty();
-        (differs && trial.frames > 0).then_some(plain.time_ms - trial.time_ms)
+        (differs && trial.frames == plain.frames).then_some(plain.time_ms - trial.time_ms)
     }
     /// All that was tried as speed against error, and what the parameters of the advised method gain.
     pub fn charts(&self) -> (Tradeoff, Option<Plot>) {
@@ -531,7 +568,9 @@ impl Advice {
                 .collect();
             tried.sort_by(|a, b| a.error.total_cmp(&b.error));
             let label = (*method).to_owned();
-            Curve { label, role: super::sweep::results::role(k), tried }
+            let all = self.trials.iter().map(|t| &t.configuration).filter(|c| c.method == label);
+            let is_row = results::is_row(all);
+            Curve { label, role: results::role(k), tried, is_row }
         };
         let tradeoff = Tradeoff {
             title: "All that was tried".into(),

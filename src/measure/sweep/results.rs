@@ -4,10 +4,10 @@
 //! mean of its frames, and the spread goes from the fastest flight to the slowest. A configuration of which
 //! a frame is missing is left out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::log::{Judged, Log, Timed};
-use super::spec::{ErrorKind, Spec};
+use super::spec::{Configuration, ErrorKind, Spec};
 use crate::drawing::words::grouped;
 use crate::drawing::{Curve, Role, Tradeoff, Tried};
 use crate::measure::columns::column;
@@ -348,6 +348,15 @@ pub fn counts(log: &Log, spec: &Spec) -> Table {
     table
 }
 
+/// Whether configurations of a method differ in one parameter alone.
+pub fn is_row<'a>(all: impl Iterator<Item = &'a Configuration>) -> bool {
+    let all: Vec<_> = all.collect();
+    let names: BTreeSet<&String> = all.iter().flat_map(|one| one.settings.0.keys()).collect();
+    let differs =
+        |name: &&&String| all.iter().any(|one| one.settings.0.get(**name) != all[0].settings.0.get(**name));
+    names.iter().filter(differs).count() <= 1
+}
+
 /// A chart of speed against error for each scene.
 pub fn charts(log: &Log, spec: &Spec) -> Vec<Tradeoff> {
     charted(&known(log, spec, false), log, spec)
@@ -369,7 +378,10 @@ fn charted(known: &[Known<'_>], log: &Log, spec: &Spec) -> Vec<Tradeoff> {
         let mut curves: Vec<Curve> = methods
             .iter()
             .enumerate()
-            .map(|(k, &method)| Curve { label: method.to_owned(), role: role(k), tried: Vec::new() })
+            .map(|(k, &method)| {
+                let is_row = is_row(spec.configurations.iter().filter(|one| one.method == method));
+                Curve { label: method.to_owned(), role: role(k), tried: Vec::new(), is_row }
+            })
             .collect();
         for one in known.iter().filter(|one| one.scene == scene) {
             let method = &spec.configurations[one.configuration as usize].method;
