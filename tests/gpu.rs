@@ -9,13 +9,15 @@ use cullscope::culling::Methods;
 use cullscope::drawing::{Drawing, Layer, Mark, Role, Subject};
 use cullscope::geometry::{Eye, Frustum, MaterialId, NodeId, ObjectId, PrimId, Solid, View};
 use cullscope::method::{Film, Settings, Verdict};
+use cullscope::raster::render;
 use cullscope::render::Theme;
 use cullscope::render::gpu::{
     ColorBy, GpuError, Headless, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, Surface,
-    ViewportId, headless,
+    ViewportId, headless, items,
 };
-use cullscope::scene::{Face, Material, Object, Parts, Quiet, Report, Scene};
+use cullscope::scene::{Face, Material, Object, Parts, Quiet, Report, Scene, random_views};
 use cullscope::trace::Stamps;
+use cullscope::truth::{Disagreement, disagreement};
 use eframe::wgpu;
 use glam::{DVec3, Vec3};
 
@@ -513,4 +515,30 @@ fn tiles_join_without_a_seam_and_sizes_are_checked() {
             Err(GpuError::Size { .. })
         ));
     }
+}
+
+/// An item buffer of the device shows what ours shows but for pixels on edges, whose centers both snap.
+#[test]
+fn the_device_sees_what_we_see() {
+    let Some(on) = device() else { return };
+    let box_at = |k: usize| {
+        let at = Vec3::new((k % 5) as f32 * 2.1 - 4.0, (k / 5 % 4) as f32 * 1.7 - 3.0, (k / 20) as f32 * 3.3);
+        (at, Vec3::new(0.7, 0.9, 0.5) + 0.05 * (k % 7) as f32, [0.5; 3])
+    };
+    let scene = boxes(&(0..80).map(box_at).collect::<Vec<_>>());
+    let mut compared = Disagreement::default();
+    for view in random_views(&scene, 4, 3).into_iter().map(|v| View { width: 300, height: 200, ..v }) {
+        let theirs = items(&on, &scene, &view, scene.live()).expect("an item buffer");
+        let ours = render(&*scene, &view, scene.live()).item;
+        assert!(ours.iter().filter(|i| **i != u32::MAX).count() > 1000, "the view shows something");
+        compared.join(disagreement(&scene, &view, &ours, &theirs));
+        // Without a triangle that shows the device sees others.
+        let shown = ours.iter().copied().find(|i| *i != u32::MAX);
+        let without: Vec<PrimId> = scene.live().iter().copied().filter(|p| Some(p.0) != shown).collect();
+        assert_ne!(items(&on, &scene, &view, &without).expect("an item buffer"), theirs);
+    }
+    assert!(compared.pixels == 240_000 && compared.total() < 240 && compared.others == 0, "{compared:?}");
+    assert!(
+        items(&on, &scene, &random_views(&scene, 1, 1)[0], &[]).expect("none").iter().all(|i| *i == u32::MAX)
+    );
 }

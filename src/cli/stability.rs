@@ -15,7 +15,9 @@ use super::{CliError, World, output, scene};
 use crate::app::floor_map;
 use crate::geometry::each;
 use crate::measure::experiment::ExperimentError;
-use crate::measure::stability::{Ask, Decided, Flip, Stability, grid_table, path_table, stability, summary};
+use crate::measure::stability::{
+    Ask, Decided, Flip, Proof, Stability, grid_table, path_table, stability, summary,
+};
 use crate::measure::{Column, Table};
 use crate::method::{Budget, Entry, KnobValue, Settings};
 use crate::render::{SvgOptions, Theme, svg};
@@ -76,6 +78,16 @@ pub(super) struct Args {
         value_parser = clap::value_parser!(u32).range(0..=1000)
     )]
     flips: u32,
+    /// Make the decisions of the path again, by an independent checker in f64 and exact predicates, and count
+    /// those within N units in the last place of flipping
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        hide_default_value = true,
+        value_parser = clap::value_parser!(u32).range(0..=1_000_000)
+    )]
+    prove: u32,
     /// Folder for path.csv, grid.csv and a map of each grid as SVG; it is made if it is missing
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -119,7 +131,8 @@ fn of<S: World>(
         None => S::methods().to_vec(),
     };
     let views = args.view.path(scene, SIDE_PX)?.views;
-    let ask = Ask { grid: args.grid as usize, flips: args.flips as usize, ..Ask::default() };
+    let ask =
+        Ask { grid: args.grid as usize, flips: args.flips as usize, ulps: args.prove, ..Ask::default() };
     let bar = Bar::new();
     let whole = Part::of(&bar, at, count);
     for (k, entry) in entries.iter().enumerate() {
@@ -136,6 +149,9 @@ fn of<S: World>(
         grid_table(&mut to.grid, names, &found.grid, scene.origin().to_array());
         for flip in &found.flips {
             to.flips += &told::<S>(names, flip, scene.origin(), found.tolerance);
+        }
+        if let Some(proof) = &found.proof {
+            to.flips += &again(names, proof, args.prove);
         }
         if !found.grid.is_empty() && args.out.is_some() {
             to.maps.push((file_name(&to.maps, names), map(scene, entry.card().key, &found, ask.grid)));
@@ -184,6 +200,24 @@ fn told<S: World>([scene, method]: [&str; 2], flip: &Flip, origin: DVec3, tolera
         let (eye, decided) = (place(&flip.eyes[side]), decision(&flip.decided[side]));
         // Writing to a string cannot fail.
         let _ = writeln!(text, "  {what:<8} from {eye}{shows}: {decided}");
+    }
+    text
+}
+
+/// What became of decisions that were made again.
+fn again([scene, method]: [&str; 2], proof: &Proof, ulps: u32) -> String {
+    let [frames, skipped] = proof.frames;
+    let mut text = format!(
+        "\n{scene}, {method}: {} claims of {frames} frames made again and accepted; of {} decisions that tell \
+         both numbers {} are within {ulps} ulp of flipping.\n",
+        proof.proven, proof.told, proof.near,
+    );
+    for (frame, why) in &proof.refused {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  not accepted in frame {frame}: {why}");
+    }
+    if skipped > 0 {
+        let _ = writeln!(text, "  {skipped} frames have too many events and were left out");
     }
     text
 }

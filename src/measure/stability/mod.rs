@@ -9,6 +9,7 @@ mod along;
 mod flip;
 mod grid;
 mod margin;
+mod proof;
 mod seen;
 mod tables;
 
@@ -16,6 +17,7 @@ pub use along::{Found, Station, along};
 pub use flip::{Decided, Flip, narrowed};
 pub use grid::{STEP_SHARE, Spot, floor_axes, over_floor};
 pub use margin::relative;
+pub use proof::{Proof, proof};
 pub use seen::{Change, Seen, Watcher};
 pub use tables::{grid_table, path_table, summary};
 
@@ -37,11 +39,14 @@ pub struct Ask {
     pub flips: usize,
     /// How near together the eyes on both sides of a flip are to be, as a share of the scene's diagonal.
     pub tolerance_share: f32,
+    /// If not 0, the decisions of the path are made again by the independent checker, and those are counted
+    /// that are within so many units in the last place of flipping.
+    pub ulps: u32,
 }
 
 impl Default for Ask {
     fn default() -> Self {
-        Self { grid: 16, flips: 3, tolerance_share: 1e-6 }
+        Self { grid: 16, flips: 3, tolerance_share: 1e-6, ulps: 0 }
     }
 }
 
@@ -58,6 +63,8 @@ pub struct Stability {
     pub flips: Vec<Flip>,
     /// How near together the eyes on both sides of a flip were to be, world units.
     pub tolerance: f32,
+    /// What became of the path's decisions when they were made again, if that was asked for.
+    pub proof: Option<Proof>,
 }
 
 impl Stability {
@@ -108,7 +115,9 @@ pub fn stability<S: World>(
         let step = scene.bounds().diagonal() * STEP_SHARE;
         grid = over_floor(&mut watcher, &floor, (view, ask.grid), step, &part(progress, 0.4, 1.0))?;
     }
+    let again = part(progress, 0.95, 1.0);
+    let proof = (ask.ulps > 0).then(|| proof(&mut watcher, views, ask.ulps, &again)).transpose()?;
     let corner = |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a)).collect();
     let floor = [corner(floor.min), corner(floor.max)];
-    Ok(Stability { path, grid, floor, flips, tolerance })
+    Ok(Stability { path, grid, floor, flips, tolerance, proof })
 }
