@@ -436,6 +436,19 @@ fn layouts_and_sessions_keep_where_the_observer_stands() {
     assert_eq!(h.state().state.observer, looking, "{:?}", h.state().state.notices);
 }
 
+/// The catalogue of failures opens its scenes, and the report says what fails.
+#[test]
+fn a_scene_where_methods_fail_is_opened_and_explained() {
+    let mut h = window(FLAT);
+    h.state_mut().state.apply(Action::Failures);
+    settle(&mut h);
+    click(&mut h, "Open slivers in 2D");
+    let state = &h.state().state;
+    let scene = state.staged().expect("a stage").scene();
+    assert_eq!((scene.name(), state.dialog), ("slivers", Dialog::None));
+    assert!(scene.report().notes.iter().any(|note| note.starts_with("What fails here: ")));
+}
+
 /// The chart of speed against error, and advice, from the window.
 #[test]
 fn methods_are_measured_and_advice_is_used() {

@@ -558,6 +558,7 @@ fn dialog_of(action: Action) -> Option<Dialog> {
         Action::About => Dialog::About,
         Action::Tables => Dialog::Tables,
         Action::Laboratory => Dialog::Laboratory,
+        Action::Failures => Dialog::Failures,
         _ => return None,
     })
 }

@@ -81,6 +81,8 @@ macro_rules! actions {
 actions! {
     File Open "open" "Open scene…" ["Ctrl+O"] "Choose a scene to open, or type its path.";
     File Start "start" "Start screen" [] "Shows the examples.";
+    File Failures "failures" "Scenes where methods fail…" [] "Small scenes, each with a way in which \
+        methods fail.";
     File Reload "reload" "Reload scene" ["Ctrl+R"] "Reads the scene again.";
     File Save "save" "Save session" ["Ctrl+S"] "Saves what is open, so that it can be opened again.";
     File SaveAs "save-as" "Save session as…" ["Ctrl+Shift+S"] "Saves what is open under another name.";

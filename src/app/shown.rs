@@ -33,6 +33,8 @@ pub enum Dialog {
     Tables,
     /// Speed against error, and advice.
     Laboratory,
+    /// Scenes where methods fail.
+    Failures,
 }
 
 /// A set of panels.

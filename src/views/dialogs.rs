@@ -7,6 +7,7 @@ use eframe::egui::{self, Grid, Key, Modal, RichText, ScrollArea, TextEdit};
 use super::Answers;
 use crate::app::{Action, Command, Dialog, Menu, State, fuzzy};
 use crate::drawing::words::count;
+use crate::geometry::{Flat, Solid};
 
 /// What is typed and chosen in the open dialog.
 #[derive(Default)]
@@ -80,6 +81,7 @@ pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &m
             Dialog::Report => report(state, ui),
             Dialog::About => about(state, ui),
             Dialog::Tables => super::tables::show(state, ui, answers),
+            Dialog::Failures => failures(ui, answers),
             Dialog::Laboratory => super::laboratory::show(state, &mut typing.most_wrong, ui, answers),
             Dialog::None => {}
         }
@@ -286,6 +288,32 @@ fn report(state: &State, ui: &mut egui::Ui) {
         }
         if report.unsaid > 0 {
             ui.weak(format!("… and {} more", count(report.unsaid)));
+        }
+    });
+}
+
+/// The catalogue of failures: what fails, why, and the scene in both spaces.
+fn failures(ui: &mut egui::Ui, answers: &mut Answers) {
+    ui.set_width((ui.ctx().content_rect().width() * 0.8).min(760.0));
+    ui.heading("Scenes where methods fail");
+    ui.label("Each opens at the view at which it happens. Tests hold every method to what is said here.");
+    ScrollArea::vertical().max_height(ui.ctx().content_rect().height() * 0.6).show(ui, |ui| {
+        for failure in crate::scene::failures() {
+            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                ui.strong(failure.name);
+                for (space, source) in [("2D", failure.source::<Flat>()), ("3D", failure.source::<Solid>())] {
+                    let button = ui.button(space).on_hover_text(&source);
+                    button.widget_info(|| {
+                        let text = format!("Open {} in {space}", failure.name);
+                        egui::WidgetInfo::labeled(egui::Role::Button, true, text)
+                    });
+                    if button.clicked() {
+                        answers.push(Command::Open(source));
+                    }
+                }
+            });
+            ui.add(egui::Label::new(failure.meaning).wrap());
         }
     });
 }

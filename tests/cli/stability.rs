@@ -32,6 +32,16 @@ fn a_method_that_draws_all_is_stable() {
     }
 }
 
+/// Decisions are made again by the checker, and near ones counted.
+#[test]
+fn decisions_are_made_again() {
+    let here = folder("prove");
+    let call = ["stability", SLOTS, "--method", "hierarchical-z", "--grid", "0", "--prove", "4"];
+    let text = done(&here, &call);
+    assert!(text.contains("claims of 2 frames made again and accepted"), "{text}");
+    assert!(text.contains("within 4 ulp of flipping") && !text.contains("not accepted"), "{text}");
+}
+
 #[test]
 fn a_flip_is_narrowed_to_the_test_that_decides() {
     let here = folder("flip");

@@ -162,7 +162,9 @@ impl Failure {
     fn parts<S: Space>(&self, source: &str) -> Parts<S> {
         let mut plan = Layout::new();
         (self.make)(&mut plan);
-        plan.parts(self.name, source)
+        let mut parts = plan.parts(self.name, source);
+        parts.report.notes.push(format!("What fails here: {}", self.meaning));
+        parts
     }
 }
 
