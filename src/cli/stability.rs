@@ -208,8 +208,8 @@ fn told<S: World>([scene, method]: [&str; 2], flip: &Flip, origin: DVec3, tolera
 fn again([scene, method]: [&str; 2], proof: &Proof, ulps: u32) -> String {
     let [frames, skipped] = proof.frames;
     let mut text = format!(
-        "\n{scene}, {method}: {} claims of {frames} frames made again and accepted; of {} decisions that tell \
-         both numbers {} are within {ulps} ulp of flipping.\n",
+        "\n{scene}, {method}: {} claims of {frames} frames made again and accepted; of {} decisions that \
+         tell both numbers {} are within {ulps} ulp of flipping.\n",
         proof.proven, proof.told, proof.near,
     );
     for (frame, why) in &proof.refused {

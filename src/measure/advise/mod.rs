@@ -49,8 +49,10 @@ pub const NOISE: f64 = 1.05;
 /// Frames of the first round, and flights of the last.
 const FIRST: usize = 4;
 const FLIGHTS: usize = 3;
-/// Frames of a stretch at least, and stretches of either half at most.
+/// Frames of a stretch at least and at most, and stretches of either half at most: of a long path parts are
+/// enough.
 const STRETCH: usize = 4;
+const LONGEST: usize = 12;
 const STRETCHES: usize = 4;
 /// So many go into the last round.
 const LAST: usize = 4;
@@ -355,7 +357,10 @@ fn begin<'a, S: World>(scene: &'a Arc<Scene<S>>, views: &[View<S>], wish: Wish) 
     let views = if views.len() < 2 { [views, views].concat() } else { views.to_vec() };
     let count = 2 * (views.len() / (2 * STRETCH)).clamp(1, STRETCHES);
     let numbered: Vec<_> = views.into_iter().enumerate().collect();
-    let stretch = |k: usize| &numbered[k * numbered.len() / count..(k + 1) * numbered.len() / count];
+    let stretch = |k: usize| {
+        let all = &numbered[k * numbered.len() / count..(k + 1) * numbered.len() / count];
+        &all[..all.len().min(LONGEST)]
+    };
     let mut order: Vec<usize> = (0..count).step_by(2).collect();
     let mut dice = Pcg32::new(wish.seed, 17);
     for k in (1..order.len()).rev() {

@@ -1,5 +1,5 @@
-//! The decisions of a path made again: by an independent checker, in f64 and exact predicates, and how many of
-//! them are so near that rounding could flip them.
+//! The decisions of a path made again: by an independent checker, in f64 and exact predicates, and how many
+//! of them are so near that rounding could flip them.
 
 use super::seen::Watcher;
 use crate::geometry::View;
