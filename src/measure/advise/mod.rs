@@ -14,7 +14,8 @@
 //!    not right enough there, the next one is.
 //!
 //! Methods remember from frame to frame, so the path is parted into stretches of frames that follow each
-//! other: every second one is kept back, and the others are looked at in an order by lot.
+//! other: every second one is kept back. Of each of the others some frames are looked at, after one that does
+//! not count: a few frames stand for all of the path.
 //!
 //! Of those within [`NOISE`] of the best the simplest is advised: the one with the fewest parameters set, and
 //! among those the one that is listed first. Cost: some tenth of the frames of the full grid.
@@ -43,11 +44,11 @@ use crate::scene::{Motion, Part, Progress, Scene, Surfaces};
 use crate::truth::Truth;
 
 /// A method whose defaults take longer than so many times the best is not looked into.
-pub const SLACK: f64 = 1.6;
+pub const SLACK: f64 = 2.0;
 /// Times that differ by no more are the same.
 pub const NOISE: f64 = 1.05;
-/// Frames of the first round, and flights of the last.
-const FIRST: usize = 4;
+/// Frames of each stretch in the first round, and flights of the last.
+const FIRST: usize = 2;
 const FLIGHTS: usize = 3;
 /// Frames of a stretch at least and at most, and stretches of either half at most: of a long path parts are
 /// enough.
@@ -68,7 +69,7 @@ pub struct Wish {
     /// Wrong pixels at most, per cent of all images together; 0 asks for a promise, since what happens to be
     /// right in some views need not be in others.
     pub most_wrong_percent: f64,
-    /// Chooses the order in which frames are looked at.
+    /// Decides which half of the views is kept back.
     pub seed: u64,
 }
 
@@ -138,14 +139,16 @@ struct Ready<S: World> {
     surfaces: Surfaces,
 }
 
-/// Frames of a scene, in the order in which they are looked at.
+/// Views that follow each other, with their numbers, of which scenes that move have a frame each.
+type Stretch<S> = Vec<(usize, View<S>)>;
+
+/// Frames of a scene.
 struct Course<'a, S: World> {
     scene: &'a Arc<Scene<S>>,
     motion: Motion<S>,
-    /// Views with their numbers, of which scenes that move have a frame each: those that are chosen by, and
-    /// then the others.
-    views: Vec<(usize, View<S>)>,
-    seen: usize,
+    /// What is chosen by, and what is kept back.
+    seen: Vec<Stretch<S>>,
+    unseen: Vec<Stretch<S>>,
     /// What is visible, for each way to take surfaces.
     truths: Vec<(Surfaces, Truth)>,
     images: (Target, Canvas),
@@ -153,58 +156,86 @@ struct Course<'a, S: World> {
 }
 
 impl<S: World> Course<'_, S> {
-    /// Runs candidates on some frames, in turn; for each the times of frames and their wrong pixels of all.
+    /// Runs candidates in turn on `most` frames of each stretch of one half, after one that does not count; for
+    /// each the times of frames and their wrong pixels.
     fn fly(
         &mut self,
         runs: &mut [&mut Ready<S>],
-        views: std::ops::Range<usize>,
+        (is_seen, most): (bool, usize),
         flights: usize,
         progress: &dyn Progress,
     ) -> Result<Vec<Flown>, ExperimentError> {
-        let (count, frames) = (runs.len(), views.len());
-        let mut times = vec![vec![Vec::new(); frames]; count];
-        let mut wrong = vec![vec![0.0; frames]; count];
+        let plan = if is_seen { self.seen.clone() } else { self.unseen.clone() };
+        let count = runs.len();
+        let mut times: Vec<Vec<Vec<f64>>> = vec![Vec::new(); count];
+        let mut wrong: Vec<Vec<f64>> = vec![Vec::new(); count];
         for flight in 0..flights {
-            // Methods that remember have seen the neighborhood before the first frame that counts.
-            let (number, view) = self.views[views.clone().nth(1).unwrap_or(views.start)];
-            let scene = self.motion.at(number);
-            for ready in runs.iter_mut() {
-                ready.run.forget();
-                if !ready.run.pose(&scene, progress) {
-                    return Err(ExperimentError::Cancelled);
-                }
-                ready.run.cull(&view);
-            }
-            for (k, at) in views.clone().enumerate() {
-                let done = (flight * frames + k) as f32 / (flights * frames) as f32;
+            let mut frame = 0;
+            for (at, stretch) in plan.iter().enumerate() {
+                let done = (flight * plan.len() + at) as f32 / (flights * plan.len()) as f32;
                 checkpoint(progress, done, "trying")?;
-                let (number, view) = self.views[at];
-                let scene = self.motion.at(number);
-                for turn in 0..count {
-                    let which = (turn + k + flight) % count;
-                    let ready = &mut *runs[which];
-                    if !ready.run.pose(&scene, progress) {
-                        return Err(ExperimentError::Cancelled);
+                self.warm(runs, &stretch[0], progress)?;
+                for &(number, view) in stretch.iter().skip(usize::from(stretch.len() > 1)).take(most) {
+                    let scene = self.motion.at(number);
+                    for turn in 0..count {
+                        let which = (turn + frame + flight) % count;
+                        let (ms, percent) =
+                            self.frame(&mut *runs[which], (&scene, &view), flight == 0, progress)?;
+                        if flight == 0 {
+                            times[which].push(Vec::new());
+                            wrong[which].push(percent);
+                        }
+                        times[which][frame].push(ms);
                     }
-                    let (list, cull_ms) = timed(|| ready.run.cull(&view));
-                    let images = (&mut self.images.0, &mut self.images.1);
-                    let ((), draw_ms) = timed(|| list.draw(images, &scene, &view, &ready.options));
-                    times[which][k].push(cull_ms + draw_ms);
-                    self.flown += 1;
-                    if flight == 0 {
-                        wrong[which][k] = self.wrong_percent(ready.surfaces, &scene, &view, &list);
-                    }
+                    frame += 1;
                 }
             }
         }
         let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
         let of = |(times, wrong): (Vec<Vec<f64>>, Vec<f64>)| Flown {
-            frames,
+            frames: wrong.len(),
             time_ms: mean(&times.into_iter().map(median).collect::<Vec<_>>()),
             wrong_percent: mean(&wrong),
             worst_percent: wrong.iter().copied().fold(0.0, f64::max),
         };
         Ok(times.into_iter().zip(wrong).map(of).collect())
+    }
+
+    /// Lets candidates see a frame that does not count, from no memory.
+    fn warm(
+        &mut self,
+        runs: &mut [&mut Ready<S>],
+        (number, view): &(usize, View<S>),
+        progress: &dyn Progress,
+    ) -> Result<(), ExperimentError> {
+        let scene = self.motion.at(*number);
+        for ready in runs.iter_mut() {
+            ready.run.forget();
+            if !ready.run.pose(&scene, progress) {
+                return Err(ExperimentError::Cancelled);
+            }
+            ready.run.cull(view);
+        }
+        Ok(())
+    }
+
+    /// Culls and draws a frame: milliseconds, and if it is judged its wrong pixels, per cent.
+    fn frame(
+        &mut self,
+        ready: &mut Ready<S>,
+        (scene, view): (&Arc<Scene<S>>, &View<S>),
+        is_judged: bool,
+        progress: &dyn Progress,
+    ) -> Result<(f64, f64), ExperimentError> {
+        if !ready.run.pose(scene, progress) {
+            return Err(ExperimentError::Cancelled);
+        }
+        let (list, cull_ms) = timed(|| ready.run.cull(view));
+        let images = (&mut self.images.0, &mut self.images.1);
+        let ((), draw_ms) = timed(|| list.draw(images, scene, view, &ready.options));
+        self.flown += 1;
+        let wrong = if is_judged { self.wrong_percent(ready.surfaces, scene, view, &list) } else { 0.0 };
+        Ok((cull_ms + draw_ms, wrong))
     }
 
     /// Wrong pixels of a list that was just drawn, per cent.
@@ -264,7 +295,7 @@ impl<S: World> Halving<'_, S> {
         Ok(Some(self.trials.len() - 1))
     }
 
-    /// Tries some on the first frames.
+    /// Tries some on so many frames of each stretch.
     fn try_on(
         &mut self,
         some: &[usize],
@@ -272,11 +303,10 @@ impl<S: World> Halving<'_, S> {
         flights: usize,
         progress: &dyn Progress,
     ) -> Result<(), ExperimentError> {
-        let frames = frames.min(self.course.seen).max(1);
         let chosen = self.ready.iter_mut().enumerate().filter(|(k, _)| some.contains(k));
         let (numbers, mut runs): (Vec<usize>, Vec<&mut Ready<S>>) =
             chosen.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip();
-        let results = self.course.fly(&mut runs, 0..frames, flights, progress)?;
+        let results = self.course.fly(&mut runs, (true, frames), flights, progress)?;
         for (number, result) in numbers.into_iter().zip(results) {
             let trial = &mut self.trials[number];
             (trial.frames, trial.time_ms) = (result.frames, result.time_ms);
@@ -347,7 +377,7 @@ pub fn advise<S: World>(
             halving.renew(k, progress)?;
         }
     }
-    halving.try_on(&left, halving.course.seen, FLIGHTS, &part(progress, 0.9, 0.96))?;
+    halving.try_on(&left, LONGEST, FLIGHTS, &part(progress, 0.9, 0.96))?;
     // 5. The check.
     halving.checked(left, &part(progress, 0.96, 1.0))
 }
@@ -357,22 +387,19 @@ fn begin<'a, S: World>(scene: &'a Arc<Scene<S>>, views: &[View<S>], wish: Wish) 
     let views = if views.len() < 2 { [views, views].concat() } else { views.to_vec() };
     let count = 2 * (views.len() / (2 * STRETCH)).clamp(1, STRETCHES);
     let numbered: Vec<_> = views.into_iter().enumerate().collect();
-    let stretch = |k: usize| {
-        let all = &numbered[k * numbered.len() / count..(k + 1) * numbered.len() / count];
-        &all[..all.len().min(LONGEST)]
-    };
-    let mut order: Vec<usize> = (0..count).step_by(2).collect();
-    let mut dice = Pcg32::new(wish.seed, 17);
-    for k in (1..order.len()).rev() {
-        order.swap(k, (dice.next_u32() as usize) % (k + 1));
-    }
-    let mut views: Vec<_> = order.into_iter().flat_map(|k| stretch(k).to_vec()).collect();
-    let seen = views.len();
-    views.extend((1..count).step_by(2).flat_map(|k| stretch(k).to_vec()));
+    let n = numbered.len();
+    // Which half is kept back is decided by lot.
+    let kept = 1 - (Pcg32::new(wish.seed, 17).next_u32() % 2) as usize;
+    let stretches = (0..count).map(|k| {
+        let all = &numbered[k * n / count..(k + 1) * n / count];
+        (k % 2 == kept, all[..all.len().min(LONGEST + 1)].to_vec())
+    });
+    let (unseen, seen): (Vec<_>, Vec<_>) = stretches.partition(|(is_kept, _)| *is_kept);
+    let [seen, unseen] = [seen, unseen].map(|half| half.into_iter().map(|(_, some)| some).collect());
     let mut motion = Motion::new(scene);
     let first = motion.at(0);
     let course =
-        Course { scene, motion, views, seen, truths: Vec::new(), images: Default::default(), flown: 0 };
+        Course { scene, motion, seen, unseen, truths: Vec::new(), images: Default::default(), flown: 0 };
     Halving { wish, course, first, trials: Vec::new(), ready: Vec::new() }
 }
 
@@ -425,7 +452,7 @@ impl<S: World> Halving<'_, S> {
         }
         let (mut on, mut rung) = (FIRST, 0.0);
         while left.len() > LAST {
-            on = (on * 2).min(self.course.seen);
+            on = (on * 2).min(LONGEST);
             self.try_on(&left, on, 1, &part(progress, rung, rung + 0.2))?;
             rung = (rung + 0.2).min(0.8);
             left = self.sorted(left);
@@ -449,8 +476,6 @@ impl<S: World> Halving<'_, S> {
 
     /// The simplest of the best that is right enough on unseen views, too.
     fn checked(mut self, left: Vec<usize>, progress: &dyn Progress) -> Result<Advice, ExperimentError> {
-        let frames = self.course.seen;
-        let unseen = frames..self.course.views.len();
         let mut left = self.sorted(left);
         let mut refused = Vec::new();
         loop {
@@ -464,13 +489,14 @@ impl<S: World> Halving<'_, S> {
             let numbered = self.ready.iter_mut().enumerate().filter(|(k, _)| wanted.contains(k));
             let (numbers, mut runs): (Vec<usize>, Vec<&mut Ready<S>>) =
                 numbered.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip();
-            let results = self.course.fly(&mut runs, unseen.clone(), FLIGHTS, progress)?;
+            let results = self.course.fly(&mut runs, (false, LONGEST), FLIGHTS, progress)?;
             let of = |number: usize| {
                 numbers.iter().position(|&k| k == number).map(|at| results[at]).unwrap_or_default()
             };
             let result = of(chosen);
             if result.wrong_percent <= self.wish.most_wrong_percent || left.len() == 1 {
                 let grid: usize = S::methods().iter().map(|m| 1 + variations::<S>(*m).len()).sum();
+                let frames: usize = self.course.seen.iter().map(|some| some.len().max(2) - 1).sum();
                 let cost = [self.course.flown, grid * frames * FLIGHTS];
                 let (wish, trials, frustum) = (self.wish, self.trials, of(FRUSTUM));
                 return Ok(Advice { wish, chosen, trials, unseen: result, frustum, refused, cost });
