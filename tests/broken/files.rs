@@ -190,7 +190,7 @@ fn generators_say_what_they_take() {
             "generate:castle",
             "generate:castle: there is no generator `castle`; there are: building, city, machine-room, \
              box-and-objects, thin-slabs, seminar-room, cars, forest, swarm, terrain, tree, \
-             tree-quadrupling, molecule, terrain-island, venetian-blind, bust, suspension",
+             tree-quadrupling, molecule, terrain-island, venetian-blind, bust, suspension, failure",
         ),
         (
             "generate:",

@@ -156,8 +156,8 @@ struct Course<'a, S: World> {
 }
 
 impl<S: World> Course<'_, S> {
-    /// Runs candidates in turn on `most` frames of each stretch of one half, after one that does not count; for
-    /// each the times of frames and their wrong pixels.
+    /// Runs candidates in turn on `most` frames of each stretch of one half, after one that does not count;
+    /// for each the times of frames and their wrong pixels.
     fn fly(
         &mut self,
         runs: &mut [&mut Ready<S>],
