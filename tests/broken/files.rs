@@ -196,7 +196,7 @@ fn generators_say_what_they_take() {
             "generate:",
             "generate:: there is no generator ``; there are: building, city, machine-room, box-and-objects, \
              thin-slabs, seminar-room, cars, forest, swarm, terrain, tree, tree-quadrupling, molecule, \
-             terrain-island, venetian-blind, bust, suspension",
+             terrain-island, venetian-blind, bust, suspension, failure",
         ),
         (
             "generate:building?storeys=3",
