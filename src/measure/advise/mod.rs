@@ -44,7 +44,7 @@ use crate::scene::{Motion, Part, Progress, Scene, Surfaces};
 use crate::truth::Truth;
 
 /// A method whose defaults take longer than so many times the best is not looked into.
-pub const SLACK: f64 = 2.0;
+pub const SLACK: f64 = 1.6;
 /// Times that differ by no more are the same.
 pub const NOISE: f64 = 1.05;
 /// Frames of each stretch in the first round, and flights of the last.
