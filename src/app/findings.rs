@@ -54,6 +54,8 @@ pub struct Findings {
 pub struct Map {
     /// The method, with its parameters.
     pub of: Configuration,
+    /// Numbers in the path of the views that were looked at.
+    pub frames: Vec<usize>,
     /// What was found.
     pub found: Stability,
     /// The picture, on paper; its dots are about places of the grid.

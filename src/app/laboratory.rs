@@ -47,15 +47,14 @@ impl State {
             Laboratory::Stand(number) => {
                 let Some(map) = self.findings.map.clone().filter(|_| self.is_found_here()) else { return };
                 if let Some(spot) = map.found.grid.get(number as usize) {
-                    self.stand(&map.of, &spot.eye, 0);
+                    self.stand(&map.of, &spot.eye, 0, vec!["first-wrong".into()]);
                 }
             }
             Laboratory::Flip(number) => {
                 let Some(map) = self.findings.map.clone().filter(|_| self.is_found_here()) else { return };
                 if let Some(flip) = map.found.flips.get(number) {
-                    self.stand(&map.of, &flip.eyes[1], flip.after_view);
-                    self.commands.push(format!("select:prim:{}", flip.prim.0));
-                    self.commands.push("why".into());
+                    let then = vec![format!("select:prim:{}", flip.prim.0), "why".into()];
+                    self.stand(&map.of, &flip.eyes[1], map.frames[flip.after_view], then);
                 }
             }
             Laboratory::Use => {
@@ -71,14 +70,11 @@ impl State {
         let Some(stage) = &self.stage else { return };
         let (place, chosen) = (stage.get().place(), (self.method.clone(), self.settings.clone()));
         let (configurations, views) = each!(stage, s => (tried_on(s, &chosen), s.views().len()));
-        let count = FRAMES.min(views);
-        // What moves is seen frame by frame; else the frames stand for the whole path.
-        let is_moving = stage.get().frame_of_motion().is_some();
-        let frames: Vec<usize> = (0..count).map(|k| if is_moving { k } else { k * views / count }).collect();
+        let frames = self.frames_of(views, FRAMES);
         let scene = stage.get().scene();
         let spec = Spec {
             name: scene.name().to_owned(),
-            frames: count as u32,
+            frames: frames.len() as u32,
             repeats: REPEATS,
             size_px: None,
             error: ErrorKind::WrongPixels,
@@ -90,52 +86,55 @@ impl State {
             let views = frames.iter().map(|&k| smaller(&s.views()[k])).collect();
             (s.scene.clone(), ViewPath { name, views })
         }));
-        let (serial, advice) = (self.serial, self.findings.advice.take());
-        let advice = advice.filter(|_| self.findings.serial == serial && self.findings.path == place.0);
-        self.findings = Findings {
-            spec: Some(spec.clone()),
-            serial,
-            frames,
-            path: place.0,
-            advice,
-            ..Findings::default()
-        };
+        self.forget_others();
+        let (advice, map) = (self.findings.advice.take(), self.findings.map.take());
+        let (serial, path) = (self.serial, place.0);
+        let spec_of_it = Some(spec.clone());
+        self.findings =
+            Findings { spec: spec_of_it, serial, frames, path, advice, map, ..Findings::default() };
         self.worker.ask("Measuring", Job::Sweep { job, spec: Box::new(spec) });
+    }
+
+    /// Numbers of the views of a path that stand for it, so many at most; where objects move, the first ones,
+    /// since each view sees a frame of its own.
+    fn frames_of(&self, views: usize, most: usize) -> Vec<usize> {
+        let is_moving = self.staged().is_some_and(|stage| stage.frame_of_motion().is_some());
+        let count = most.min(views);
+        (0..count).map(|k| if is_moving { k } else { k * views / count }).collect()
+    }
+
+    /// What was found about another scene is of no use.
+    fn forget_others(&mut self) {
+        if self.findings.serial != self.serial {
+            self.findings = Findings { serial: self.serial, ..Findings::default() };
+        }
     }
 
     fn ask_advice(&mut self, most_wrong_percent: f64) {
         let Some(stage) = &self.stage else { return };
+        let frames = self.frames_of(each!(stage, s => s.views().len()), MOST_VIEWS);
         let job = each!(stage, s => Either({
-            let views = s.views();
-            let count = MOST_VIEWS.min(views.len());
-            let views = (0..count).map(|k| smaller(&views[k * views.len() / count])).collect::<Vec<_>>();
-            (s.scene.clone(), views)
+            (s.scene.clone(), frames.iter().map(|&k| smaller(&s.views()[k])).collect::<Vec<_>>())
         }));
         let wish = Wish { most_wrong_percent, seed: 1 };
-        if self.findings.serial != self.serial {
-            self.findings = Findings { serial: self.serial, ..Findings::default() };
-        }
+        self.forget_others();
         self.worker.ask("Looking for advice", Job::Advise { job, wish });
     }
 
-    /// The views of the path in small images, so many at most, with the scene.
     fn ask_map(&mut self) {
         let Some(stage) = &self.stage else { return };
         let of = Configuration { method: self.method.clone(), settings: self.settings.clone() };
+        let frames = self.frames_of(each!(stage, s => s.views().len()), MOST_VIEWS);
         let job = each!(stage, s => Either({
-            let views = s.views();
-            let count = MOST_VIEWS.min(views.len());
-            (s.scene.clone(), (0..count).map(|k| tiny(&views[k * views.len() / count])).collect::<Vec<_>>())
+            (s.scene.clone(), frames.iter().map(|&k| tiny(&s.views()[k])).collect::<Vec<_>>())
         }));
-        if self.findings.serial != self.serial {
-            self.findings = Findings { serial: self.serial, ..Findings::default() };
-        }
-        self.worker.ask("Looking around", Job::Map { job, of });
+        self.forget_others();
+        self.worker.ask("Looking around", Job::Map { job, of, frames });
     }
 
-    /// Puts the Eye somewhere, looking as view `at` of the path does, with a method; and goes to the first
-    /// step that went wrong there.
-    fn stand(&mut self, of: &Configuration, eye: &[f32], at: usize) {
+    /// Puts the Eye somewhere, looking as view `at` of the path does, with a method; commands follow once the
+    /// film is there.
+    fn stand(&mut self, of: &Configuration, eye: &[f32], at: usize, then: Vec<String>) {
         self.dialog = Dialog::None;
         self.change(0, |s| {
             (s.method, s.settings) = (of.method.clone(), of.settings.clone());
@@ -148,7 +147,7 @@ impl State {
                 s.view = s.fitted(view);
             });
         });
-        self.commands.push("first-wrong".to_owned());
+        self.commands.extend(then);
         if self.busy().is_none() {
             self.run_commands();
         }
@@ -377,6 +376,11 @@ mod tests {
         assert_eq!(vec![at.x, at.y], map.found.grid[wrong].eye);
         assert!(matches!(state.selection, Subject::Prim(_)), "{:?}", state.notices);
         if let Some(flip) = map.found.flips.first() {
+            state.apply(Command::Laboratory(Laboratory::Flip(0)));
+            state.block_until_idle();
+            assert_eq!(state.selection, Subject::Prim(flip.prim));
+            // Again, where nothing has to be culled anew.
+            state.apply(Command::Select(Subject::None));
             state.apply(Command::Laboratory(Laboratory::Flip(0)));
             state.block_until_idle();
             assert_eq!(state.selection, Subject::Prim(flip.prim));

@@ -80,6 +80,7 @@ pub(super) enum Job {
     Map {
         job: Either<Looked<Flat>, Looked<Solid>>,
         of: Configuration,
+        frames: Vec<usize>,
     },
     /// Ranks what the film draws by layers, for someone who wants to go to one.
     Layer {
@@ -298,11 +299,13 @@ impl Bench {
                     Err(error) => Done::RecordFailed(error.to_string()),
                 }
             }
-            Job::Map { job, of } => match each!(job, looked => mapped(&looked, &of, ticket)) {
-                Ok(map) => Done::Mapped(Box::new(map)),
-                Err(_) if ticket.cancelled() => Done::Cancelled,
-                Err(error) => Done::RecordFailed(error),
-            },
+            Job::Map { job, of, frames } => {
+                match each!(job, looked => mapped(&looked, &of, frames, ticket)) {
+                    Ok(map) => Done::Mapped(Box::new(map)),
+                    Err(_) if ticket.cancelled() => Done::Cancelled,
+                    Err(error) => Done::RecordFailed(error),
+                }
+            }
             Job::Layer { film, action } => match each!(film, f => layers::rank(&f, ticket)) {
                 _ if ticket.cancelled() => Done::Cancelled,
                 layers => Done::Layered { layers, action },
@@ -347,6 +350,7 @@ const FLIPS: usize = 3;
 fn mapped<S: Methods + Drawable>(
     (scene, views): &Looked<S>,
     of: &Configuration,
+    frames: Vec<usize>,
     ticket: &Ticket,
 ) -> Result<Map, String> {
     let Some(method) = S::method(&of.method) else {
@@ -361,7 +365,7 @@ fn mapped<S: Methods + Drawable>(
     let found = stability(scene, &mut *run, views, &ask, &rest).map_err(|e| e.to_string())?;
     let title = format!("{}: {}", scene.name(), of.label());
     let picture = floor_map(scene, title, &found, GRID);
-    Ok(Map { of: of.clone(), found, picture })
+    Ok(Map { of: of.clone(), frames, found, picture })
 }
 
 /// A run that was stopped while it changed is of no use.

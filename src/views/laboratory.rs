@@ -166,8 +166,8 @@ fn mapped(state: &State, map: &Map, width: f32, ui: &mut egui::Ui, answers: &mut
             let [drawn, left_out] = &flip.decided;
             ui.label(format!(
                 "Between views {} and {} primitive {} flips within {:.2e} units: {} here, {} there.",
-                flip.after_view,
-                flip.after_view + 1,
+                map.frames[flip.after_view],
+                map.frames[flip.after_view + 1],
                 flip.prim,
                 flip.apart,
                 drawn.verdict,

@@ -87,8 +87,7 @@ pub struct Trial {
     pub configuration: Configuration,
     /// Frames on which it was.
     pub frames: usize,
-    /// From the view to the image, median over the frames' medians where flown more than once, else mean,
-    /// milliseconds.
+    /// From the view to the image, milliseconds: the mean of the frames, each the median of its flights.
     pub time_ms: f64,
     /// Wrong pixels, per cent.
     pub wrong_percent: f64,
@@ -353,8 +352,8 @@ impl<S: World> Halving<'_, S> {
     }
 }
 
-/// Advises on a scene that is seen from some views. Every second view is kept back for the check, of a single
-/// one there is no check.
+/// Advises on a scene that is seen from some views. Half of them are kept back for the check; of a single one
+/// there is no check.
 ///
 /// # Errors
 /// It was cancelled, or a method does not run.

@@ -403,3 +403,21 @@ fn charted(known: &[Known<'_>], log: &Log, spec: &Spec) -> Vec<Tradeoff> {
     let all = (0..spec.scenes.len() as u32).map(of_scene);
     all.filter(|chart| !chart.curves.is_empty()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::Settings;
+
+    /// A line through configurations says something where one parameter alone differs.
+    #[test]
+    fn a_row_differs_in_one_parameter() {
+        let of = |pairs: &[(&str, &str)]| Configuration { method: "m".into(), settings: Settings::of(pairs) };
+        let budgets = [of(&[]), of(&[("budget", "1%")]), of(&[("budget", "5%")])];
+        assert!(is_row(budgets.iter()), "the default is a value as well");
+        let fixed = [of(&[("cells", "a"), ("budget", "1%")]), of(&[("cells", "a"), ("budget", "5%")])];
+        assert!(is_row(fixed.iter()) && is_row(fixed[..1].iter()) && is_row([].iter()));
+        let star = [of(&[]), of(&[("budget", "1%")]), of(&[("cells", "a")])];
+        assert!(!is_row(star.iter()));
+    }
+}
