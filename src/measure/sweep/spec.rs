@@ -382,6 +382,7 @@ mod tests {
             ]
         );
         // A copy under another name is the same spec.
+        assert_eq!(Spec::parse(text, "other").expect("a spec").fingerprint(), spec.fingerprint());
         let copy = Spec::parse(&named(text, &spec), "copy").expect("a spec");
         assert_eq!((&copy.name, copy.fingerprint()), (&spec.name, spec.fingerprint()));
         assert_eq!(named(&named(text, &spec), &spec), named(text, &spec));
