@@ -67,7 +67,7 @@ fn rows() -> Vec<Row> {
 fn followed<S: World>(entry: &dyn Entry<S>, scene: &Arc<Scene<S>>, settings: &Settings) -> (Found, bool) {
     let run = entry.ready(&Motion::new(scene).at(0), settings, &Quiet).expect("settings fit");
     let mut run = run.expect("not cancelled");
-    let promises = run.is_conservative();
+    let promises = entry.is_conservative(settings).expect("settings fit");
     let mut watcher = Watcher::new(scene, &mut *run);
     let path = along(&mut watcher, &scene.paths()[0].views, false, &Quiet).expect("not cancelled");
     let mut sum = Found::default();

@@ -14,10 +14,8 @@ use crate::drawing::Subject;
 use crate::geometry::{Space, Vector, View, ViewPath, each};
 use crate::measure::advise::{Advice, Wish, defaults, variations};
 use crate::measure::sweep::{Configuration, ErrorKind, Line, Place, Spec, results};
-use crate::method::{Budget, KnobValue, Settings, Verdict, surfaces_of};
+use crate::method::{Budget, KnobValue, Settings, Verdict};
 use crate::raster::Drawable;
-use crate::scene::Surfaces;
-use crate::truth::Truth;
 
 /// Frames of the path that are measured, flights, and the longer side of the images: enough to tell methods
 /// apart, few enough to wait for.
@@ -229,10 +227,7 @@ impl State {
 fn first_wrong<S: Drawable>(stage: &Stage<S>) -> Option<(usize, Subject)> {
     let recorded = stage.recorded.as_ref()?;
     let film = &recorded.film;
-    let surfaces: Surfaces = surfaces_of(film.knobs());
-    let mut truth = Truth::new(film.scene(), surfaces, 1, [1.0; 3]);
-    let visible = truth.look(&**film.scene(), film.view());
-    let decided = visible.into_iter().map(|prim| {
+    let decided = recorded.truth.visible.iter().map(|&prim| {
         // What was never decided was left out when the film ended.
         let end = (film.events().len(), Verdict::OverBudget);
         let (step, verdict) = recorded.stamps.prim_decision(prim).unwrap_or(end);

@@ -13,6 +13,7 @@ mod file;
 mod filter;
 mod findings;
 mod floor;
+mod judged;
 mod laboratory;
 mod lanes;
 mod layer_steps;

@@ -80,7 +80,8 @@ mod tests {
         let recording = run.expect("not cancelled").record(&stage.view, usize::MAX);
         let film = recording.film;
         let (stamps, moves) = (Arc::new(Stamps::new(&*film)), Arc::new(Moves::new(film.events())));
-        stage.recorded = Some(super::super::Recorded { film, stamps, moves, serial: 1, layers: None });
+        let truth = Arc::new(super::super::judged::judge(&*film, &recording.list));
+        stage.recorded = Some(super::super::Recorded { film, stamps, moves, serial: 1, layers: None, truth });
         (stage, recording.list)
     }
 

@@ -14,6 +14,7 @@ use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel};
 use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
 use crate::trace::{Moves, Stamps};
+use crate::truth::Judgement;
 
 /// Image size of the Eye when the scene brings no view of its own, pixels.
 const DEFAULT_IMAGE_PX: [u32; 2] = [1024, 768];
@@ -30,6 +31,8 @@ pub struct Recorded<S: Space> {
     pub serial: u64,
     /// What it draws by layers, once someone has asked.
     pub layers: Option<Layers>,
+    /// How what its run drew compares with the truth.
+    pub truth: Arc<Judgement>,
 }
 
 /// A scene with everything that is looked at.
@@ -250,6 +253,8 @@ pub struct Reading<'a> {
     pub serial: u64,
     /// See [`Recorded::layers`].
     pub layers: Option<&'a Layers>,
+    /// See [`Recorded::truth`].
+    pub truth: &'a Judgement,
 }
 
 impl Reading<'_> {
@@ -297,8 +302,8 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn film(&self) -> Option<Reading<'_>> {
         let r = self.recorded.as_ref()?;
-        let layers = r.layers.as_ref();
-        Some(Reading { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial, layers })
+        let (layers, truth) = (r.layers.as_ref(), &*r.truth);
+        Some(Reading { reel: &*r.film, stamps: &r.stamps, moves: &r.moves, serial: r.serial, layers, truth })
     }
     fn evidence_roles(&self, step: usize) -> BTreeSet<Role> {
         let mut to = Drawing::default();

@@ -199,13 +199,18 @@ impl State {
     pub fn set_wake(&self, wake: impl Fn() + Send + Sync + 'static) {
         self.worker.set_wake(wake);
     }
-    /// What happened last, in one sentence: the status line, the caption, and what screen readers say.
+    /// What happened last, in one sentence, and at the end what came of it: the status line, the caption, and
+    /// what screen readers say.
     pub fn sentence(&self) -> String {
         let Some(stage) = self.staged() else { return "Nothing is open.".into() };
         match (stage.film(), self.current()) {
             (None, _) => format!("{} is open; nothing is recorded yet.", stage.scene().name()),
             (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
-            (Some(film), Some(at)) => film.reel.sentence(at),
+            (Some(film), Some(at)) => {
+                let end = self.result().filter(|_| self.step == self.len());
+                let end = end.map(|result| format!(" The end: {result}")).unwrap_or_default();
+                film.reel.sentence(at) + &end
+            }
         }
     }
     /// The line of pseudocode at this step.

@@ -13,6 +13,7 @@ use super::any::AnyRecorded;
 use super::command::Action;
 use super::findings::Map;
 use super::floor::floor_map;
+use super::judged::judge;
 use super::layers::{self, Layers, ToLayer};
 use super::measured::{self, Measured};
 use super::open;
@@ -441,5 +442,10 @@ fn record<S: Methods + Drawable>(
     ticket.report(0.8, "reading the film");
     let stamps = Arc::new(Stamps::new(&*recording.film));
     let moves = Arc::new(Moves::new(recording.film.events()));
-    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial, layers: None }))
+    ticket.report(0.9, "comparing with the truth");
+    let truth = Arc::new(judge(&*recording.film, &recording.list));
+    if ticket.cancelled() {
+        return Done::Cancelled;
+    }
+    Done::Recorded(wrap(Recorded { film: recording.film, stamps, moves, serial, layers: None, truth }))
 }

@@ -103,6 +103,11 @@ fn said(advice: &Advice) -> String {
     for &k in &advice.refused {
         text += &format!("Not right enough there: {}\n", advice.trials[k].configuration.label());
     }
+    if advice.left_out > 0 {
+        let n = advice.left_out;
+        text +=
+            &format!("Not tried: {n} configurations, which promise nothing, while nothing may be wrong.\n");
+    }
     let [flown, grid] = advice.cost.map(|n| grouped(n as f64, 0));
     let wish = advice.wish.most_wrong_percent;
     text += &format!(

@@ -22,6 +22,11 @@ pub trait Entry<S: Space>: Sync {
     /// # Errors
     /// A setting that names no parameter, or whose value does not fit.
     fn knobs(&self, settings: &Settings) -> Result<Vec<(Knob, KnobValue)>, SettingError>;
+    /// Whether with these settings its answer includes every visible primitive.
+    ///
+    /// # Errors
+    /// As [`Entry::knobs`].
+    fn is_conservative(&self, settings: &Settings) -> Result<bool, SettingError>;
     /// Builds the index; ready to run on the scene. `Ok(None)` when cancelled.
     ///
     /// # Errors
@@ -64,8 +69,6 @@ pub trait Run<S: Space>: Send {
     fn card(&self) -> &'static Card;
     /// Parameters with their values.
     fn knobs(&self) -> Vec<(Knob, KnobValue)>;
-    /// Whether with these parameters its answer includes every visible primitive.
-    fn is_conservative(&self) -> bool;
     /// Goes over to another frame of the scene that it was made ready for (see [`crate::scene::Motion`]);
     /// what it remembers stays as far as it is still true. False when cancelled; then the run is of no use.
     fn pose(&mut self, scene: &Arc<Scene<S>>, progress: &dyn Progress) -> bool;
@@ -160,6 +163,9 @@ impl<S: Space, M: Shown<S>> Entry<S> for Of<M> {
     fn knobs(&self, settings: &Settings) -> Result<Vec<(Knob, KnobValue)>, SettingError> {
         params::<S, M>(settings).map(|p| listed::<S, M>(&p))
     }
+    fn is_conservative(&self, settings: &Settings) -> Result<bool, SettingError> {
+        params::<S, M>(settings).map(|p| M::is_conservative(&p))
+    }
     fn ready(
         &self,
         scene: &Arc<Scene<S>>,
@@ -223,9 +229,6 @@ impl<S: Space, M: Shown<S>> Run<S> for Bound<S, M> {
     }
     fn knobs(&self) -> Vec<(Knob, KnobValue)> {
         listed::<S, M>(&self.params)
-    }
-    fn is_conservative(&self) -> bool {
-        M::is_conservative(&self.params)
     }
     fn pose(&mut self, scene: &Arc<Scene<S>>, progress: &dyn Progress) -> bool {
         // The same frame, or nothing moves.

@@ -4,9 +4,9 @@ use eframe::egui::{self, Grid, RichText, ScrollArea};
 
 use super::Answers;
 use super::why::subject_name;
-use crate::app::{Command, State};
+use crate::app::{Action, Command, State};
 use crate::drawing::Subject;
-use crate::drawing::words::{Room, capitalized, short, spaced};
+use crate::drawing::words::{Room, capitalized, count, short, spaced};
 use crate::method::Value;
 
 /// A value as a person reads it.
@@ -52,6 +52,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 }
             });
         }
+        truth(state, ui, answers);
         bookmarks(state, ui, answers);
         if state.selection != Subject::None {
             ui.add_space(6.0);
@@ -63,6 +64,35 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
             );
         }
     });
+}
+
+/// Missing primitives that are named, at most.
+const NAMED: usize = 8;
+
+/// The whole frame beside an image of everything.
+fn truth(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    let Some(judged) = state.judged() else { return };
+    ui.add_space(6.0);
+    ui.strong("The frame and the truth").on_hover_text("What the run draws, beside an image of everything");
+    rows(ui, "truth", state.judged_rows().into_iter());
+    if judged.missed.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("missing:");
+        for &prim in judged.missed.iter().take(NAMED) {
+            let subject = Subject::Prim(prim);
+            let is_selected = state.selection == subject;
+            let link = ui.selectable_label(is_selected, subject_name(state, subject));
+            if link.on_hover_text("Select it, and see why it was left out").clicked() {
+                answers.push(Command::Select(subject));
+            }
+        }
+        if judged.missed.len() > NAMED {
+            ui.weak(format!("and {} more", count(judged.missed.len() - NAMED)));
+        }
+    });
+    super::action_button(state, ui, Action::FirstWrong, "First wrong decision", answers);
 }
 
 /// Steps to come back to, with notes.

@@ -18,6 +18,10 @@ pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &m
                 derived(found, ui);
             }
         }
+        if let Some(result) = state.result() {
+            ui.add_space(4.0);
+            ui.label(result).on_hover_text("This frame with these parameters, beside an image of everything");
+        }
         if !state.settings.0.is_empty() {
             super::action_button(state, ui, Action::ResetSettings, "Reset", answers);
         }

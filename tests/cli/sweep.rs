@@ -215,6 +215,11 @@ fn advice_is_right_and_repeats() {
     assert!(advice["frames_flown"].as_u64() < advice["frames_of_the_grid"].as_u64());
     let tried = advice["tried"].as_array().expect("a list");
     assert!(tried.len() > 9 && tried[0]["verdict"] == "advised");
+    assert!(said.contains("which promise nothing"), "{said}");
+    let roughly = done(&folder, &[&call[..], &["--max-wrong-pixels", "5"]].concat());
+    assert!(!roughly.contains("which promise nothing"), "{roughly}");
+    let advice = json(&fs::read_to_string(folder.join("a.json")).expect("an advice"));
+    let tried = advice["tried"].as_array().expect("a list");
     assert!(tried.iter().any(|t| t["verdict"] == "not right enough"));
     assert!(fs::metadata(folder.join("a.svg")).expect("a chart").len() > 1000);
     let said = refused(&folder, &["advise", "boxes.obj", "--max-wrong-pixels", "101"], 2);

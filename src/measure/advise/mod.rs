@@ -5,13 +5,17 @@
 //! Talwalkar 2016, AISTATS, "Non-stochastic best arm identification and hyperparameter optimization"):
 //!
 //! 1. every method with its defaults, on a few frames;
-//! 2. parameters of those methods that could still win, method by method: it was at most [`SLACK`] times as
-//!    slow as the best that is right enough, or is fast and not right enough. What is slower than that goes;
+//! 2. parameters of those methods that could still win, the fastest method first: its defaults took at most
+//!    [`SLACK`] times as long as the best so far that is right enough, or it is fast and not right enough;
 //! 3. the better half of all goes on to twice as many frames, until few are left; those of the best method's
 //!    parameters that helped are also tried together;
 //! 4. those few, beside plain drawing and frustum culling, on all frames in turn;
 //! 5. the best of them is checked on the other half of the path's views, which none was chosen by. If it is
 //!    not right enough there, the next one is.
+//!
+//! Most of the time goes into indexes, so none is built that cannot be advised: where nothing may be wrong,
+//! none of what promises nothing; and none further than [`SLOW_INDEX`] times as long as that of the method's
+//! defaults. What promises to be right is compared with the truth in the last two steps only.
 //!
 //! Methods remember from frame to frame, so the path is parted into stretches of frames that follow each
 //! other: every second one is kept back. Of each of the others some frames are looked at, after one that does
@@ -21,6 +25,9 @@
 //! among those the one that is listed first. Cost: some tenth of the frames of the full grid.
 
 mod candidates;
+mod course;
+#[cfg(test)]
+mod tests;
 
 pub use candidates::{defaults, variations};
 
@@ -35,21 +42,26 @@ use super::experiment::{ExperimentError, World};
 use super::harness::{checkpoint, part};
 use super::sweep::{Configuration, results};
 use super::table::{Cell, Table};
-use super::timing::{median, timed};
+use super::timing::{Stopwatch, timed};
 use crate::drawing::{Curve, Plot, Role, Series, Shape, Tradeoff, Tried};
 use crate::geometry::View;
-use crate::method::{DrawList, Settings, surfaces_of};
-use crate::raster::{Canvas, Options, Target};
-use crate::scene::{Motion, Part, Progress, Scene, Surfaces};
-use crate::truth::Truth;
+use crate::method::{Run, Settings, surfaces_of};
+use crate::raster::Options;
+use crate::scene::{Part, Progress, Scene};
+use course::{Course, Frames, Ready};
 
 /// A method whose defaults take longer than so many times the best is not looked into.
 pub const SLACK: f64 = 1.6;
+/// An index is given up when it takes longer than so many times that of the method's defaults.
+pub const SLOW_INDEX: f64 = 3.0;
 /// Times that differ by no more are the same.
 pub const NOISE: f64 = 1.05;
-/// Frames of each stretch in the first round, and flights of the last.
+/// Frames of each stretch in the first round, and flights of the first rounds and the last.
 const FIRST: usize = 2;
+const ROUGHLY: usize = 2;
 const FLIGHTS: usize = 3;
+/// Milliseconds that any index may take.
+const ANY_INDEX: f64 = 100.0;
 /// Frames of a stretch at least and at most, and stretches of either half at most: of a long path parts are
 /// enough.
 const STRETCH: usize = 4;
@@ -57,8 +69,8 @@ const LONGEST: usize = 12;
 const STRETCHES: usize = 4;
 /// So many go into the last round.
 const LAST: usize = 4;
-/// The methods that hide nothing, drawing all and frustum culling, are the first of the list, in this order.
-const PLAIN: usize = 2;
+/// The methods that hide nothing, drawing all and frustum culling, are the first of the list, in this order,
+/// and so the first trials.
 const FRUSTUM: usize = 1;
 /// What the images have behind the scene, linear.
 const BACKGROUND: [f32; 3] = [1.0; 3];
@@ -76,7 +88,8 @@ pub struct Wish {
 impl Wish {
     /// Whether a configuration is right enough, as far as it was tried.
     fn is_met(&self, trial: &Trial) -> bool {
-        trial.wrong_percent <= self.most_wrong_percent && (trial.promises || self.most_wrong_percent > 0.0)
+        let is_right = trial.wrong_percent.map_or(trial.promises, |wrong| wrong <= self.most_wrong_percent);
+        is_right && (trial.promises || self.most_wrong_percent > 0.0)
     }
 }
 
@@ -88,12 +101,13 @@ pub struct Trial {
     /// Frames on which it was.
     pub frames: usize,
     /// From the view to the image, milliseconds: the mean of the frames, each the median of its flights.
+    /// Infinite while it was on none.
     pub time_ms: f64,
-    /// Wrong pixels, per cent.
-    pub wrong_percent: f64,
-    /// What its index takes.
-    pub index_bytes: usize,
-    /// What building it took, milliseconds.
+    /// Wrong pixels, per cent; `None` while they were not counted.
+    pub wrong_percent: Option<f64>,
+    /// What its index takes; `None` if that was given up.
+    pub index_bytes: Option<usize>,
+    /// What building it took, milliseconds, or until it was given up.
     pub build_ms: f64,
     /// Whether it promises to draw all that is visible.
     pub promises: bool,
@@ -127,131 +141,25 @@ pub struct Advice {
     pub frustum: Flown,
     /// Candidates that did well but were not right enough on unseen views.
     pub refused: Vec<usize>,
+    /// Configurations that promise nothing, where only what promises will do: they were not tried.
+    pub left_out: usize,
     /// Frames that were culled and drawn, and those that the full grid would have taken.
     pub cost: [usize; 2],
 }
 
-/// A candidate that is ready.
-struct Ready<S: World> {
-    run: Paced<S>,
-    options: Options,
-    surfaces: Surfaces,
+/// Stops a work that takes too long.
+struct Within<'a> {
+    whole: &'a dyn Progress,
+    watch: Stopwatch,
+    most_ms: f64,
 }
 
-/// Views that follow each other, with their numbers, of which scenes that move have a frame each.
-type Stretch<S> = Vec<(usize, View<S>)>;
-
-/// Frames of a scene.
-struct Course<'a, S: World> {
-    scene: &'a Arc<Scene<S>>,
-    motion: Motion<S>,
-    /// What is chosen by, and what is kept back.
-    seen: Vec<Stretch<S>>,
-    unseen: Vec<Stretch<S>>,
-    /// What is visible, for each way to take surfaces.
-    truths: Vec<(Surfaces, Truth)>,
-    images: (Target, Canvas),
-    flown: usize,
-}
-
-impl<S: World> Course<'_, S> {
-    /// Runs candidates in turn on `most` frames of each stretch of one half, after one that does not count;
-    /// for each the times of frames and their wrong pixels.
-    fn fly(
-        &mut self,
-        runs: &mut [&mut Ready<S>],
-        (is_seen, most): (bool, usize),
-        flights: usize,
-        progress: &dyn Progress,
-    ) -> Result<Vec<Flown>, ExperimentError> {
-        let plan = if is_seen { self.seen.clone() } else { self.unseen.clone() };
-        let count = runs.len();
-        let mut times: Vec<Vec<Vec<f64>>> = vec![Vec::new(); count];
-        let mut wrong: Vec<Vec<f64>> = vec![Vec::new(); count];
-        for flight in 0..flights {
-            let mut frame = 0;
-            for (at, stretch) in plan.iter().enumerate() {
-                let done = (flight * plan.len() + at) as f32 / (flights * plan.len()) as f32;
-                checkpoint(progress, done, "trying")?;
-                self.warm(runs, &stretch[0], progress)?;
-                for &(number, view) in stretch.iter().skip(usize::from(stretch.len() > 1)).take(most) {
-                    let scene = self.motion.at(number);
-                    for turn in 0..count {
-                        let which = (turn + frame + flight) % count;
-                        let (ms, percent) =
-                            self.frame(&mut *runs[which], (&scene, &view), flight == 0, progress)?;
-                        if flight == 0 {
-                            times[which].push(Vec::new());
-                            wrong[which].push(percent);
-                        }
-                        times[which][frame].push(ms);
-                    }
-                    frame += 1;
-                }
-            }
-        }
-        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len().max(1) as f64;
-        let of = |(times, wrong): (Vec<Vec<f64>>, Vec<f64>)| Flown {
-            frames: wrong.len(),
-            time_ms: mean(&times.into_iter().map(median).collect::<Vec<_>>()),
-            wrong_percent: mean(&wrong),
-            worst_percent: wrong.iter().copied().fold(0.0, f64::max),
-        };
-        Ok(times.into_iter().zip(wrong).map(of).collect())
+impl Progress for Within<'_> {
+    fn report(&self, fraction: f32, what: &'static str) {
+        self.whole.report(fraction, what);
     }
-
-    /// Lets candidates see a frame that does not count, from no memory.
-    fn warm(
-        &mut self,
-        runs: &mut [&mut Ready<S>],
-        (number, view): &(usize, View<S>),
-        progress: &dyn Progress,
-    ) -> Result<(), ExperimentError> {
-        let scene = self.motion.at(*number);
-        for ready in runs.iter_mut() {
-            ready.run.forget();
-            if !ready.run.pose(&scene, progress) {
-                return Err(ExperimentError::Cancelled);
-            }
-            ready.run.cull(view);
-        }
-        Ok(())
-    }
-
-    /// Culls and draws a frame: milliseconds, and if it is judged its wrong pixels, per cent.
-    fn frame(
-        &mut self,
-        ready: &mut Ready<S>,
-        (scene, view): (&Arc<Scene<S>>, &View<S>),
-        is_judged: bool,
-        progress: &dyn Progress,
-    ) -> Result<(f64, f64), ExperimentError> {
-        if !ready.run.pose(scene, progress) {
-            return Err(ExperimentError::Cancelled);
-        }
-        let (list, cull_ms) = timed(|| ready.run.cull(view));
-        let images = (&mut self.images.0, &mut self.images.1);
-        let ((), draw_ms) = timed(|| list.draw(images, scene, view, &ready.options));
-        self.flown += 1;
-        let wrong = if is_judged { self.wrong_percent(ready.surfaces, scene, view, &list) } else { 0.0 };
-        Ok((cull_ms + draw_ms, wrong))
-    }
-
-    /// Wrong pixels of a list that was just drawn, per cent.
-    fn wrong_percent(
-        &mut self,
-        surfaces: Surfaces,
-        scene: &Scene<S>,
-        view: &View<S>,
-        list: &DrawList<S>,
-    ) -> f64 {
-        let known = self.truths.iter().position(|(of, _)| *of == surfaces);
-        let known = known.unwrap_or_else(|| {
-            self.truths.push((surfaces, Truth::new(self.scene, surfaces, 1, BACKGROUND)));
-            self.truths.len() - 1
-        });
-        let judged = self.truths[known].1.judge(scene, view, list, (&self.images.0, &self.images.1));
-        100.0 * judged.wrong_pixel_ratio()
+    fn cancelled(&self) -> bool {
+        self.watch.elapsed_ms() > self.most_ms || self.whole.cancelled()
     }
 }
 
@@ -262,26 +170,36 @@ struct Halving<'a, S: World> {
     first: Arc<Scene<S>>,
     trials: Vec<Trial>,
     ready: Vec<Option<Ready<S>>>,
+    left_out: usize,
 }
 
 impl<S: World> Halving<'_, S> {
-    /// Adds a candidate; its number, or `None` if it is there already.
+    /// Adds a candidate whose index may take so long; its number, or `None` if it is there already, cannot be
+    /// advised or took too long.
     fn add(
         &mut self,
         configuration: Configuration,
+        most_ms: f64,
         progress: &dyn Progress,
     ) -> Result<Option<usize>, ExperimentError> {
         if self.trials.iter().any(|trial| trial.configuration == configuration) {
             return Ok(None);
         }
         let entry = super::experiment::method::<S>(&configuration.method)?;
-        let (run, build_ms) = timed(|| entry.ready(&self.first, &configuration.settings, progress));
-        let run = run?.ok_or(ExperimentError::Cancelled)?;
-        let surfaces = surfaces_of(&run.knobs());
-        let (index_bytes, promises) = (run.hierarchy().bytes(), run.is_conservative());
-        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-        self.ready.push(Some(Ready { run: Paced::new(run, &self.first), options, surfaces }));
-        let (frames, time_ms, wrong_percent) = (0, f64::INFINITY, 0.0);
+        let promises = entry.is_conservative(&configuration.settings)?;
+        if !promises && self.wish.most_wrong_percent == 0.0 {
+            self.left_out += 1;
+            return Ok(None);
+        }
+        let within = Within { whole: progress, watch: Stopwatch::start(), most_ms };
+        let (run, build_ms) = timed(|| entry.ready(&self.first, &configuration.settings, &within));
+        let run = run?;
+        if run.is_none() && progress.cancelled() {
+            return Err(ExperimentError::Cancelled);
+        }
+        let index_bytes = run.as_ref().map(|run| run.hierarchy().bytes());
+        self.ready.push(run.map(|run| self.bound(run)));
+        let (frames, time_ms, wrong_percent) = (0, f64::INFINITY, None);
         self.trials.push(Trial {
             configuration,
             frames,
@@ -291,25 +209,40 @@ impl<S: World> Halving<'_, S> {
             build_ms,
             promises,
         });
-        Ok(Some(self.trials.len() - 1))
+        Ok(index_bytes.map(|_| self.trials.len() - 1))
+    }
+    fn bound(&self, run: Box<dyn Run<S>>) -> Ready<S> {
+        let surfaces = surfaces_of(&run.knobs());
+        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
+        Ready { run: Paced::new(run, &self.first), options, surfaces }
     }
 
     /// Tries some on so many frames of each stretch.
     fn try_on(
         &mut self,
         some: &[usize],
-        frames: usize,
+        most: usize,
         flights: usize,
         progress: &dyn Progress,
     ) -> Result<(), ExperimentError> {
-        let chosen = self.ready.iter_mut().enumerate().filter(|(k, _)| some.contains(k));
-        let (numbers, mut runs): (Vec<usize>, Vec<&mut Ready<S>>) =
-            chosen.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip();
-        let results = self.course.fly(&mut runs, (true, frames), flights, progress)?;
-        for (number, result) in numbers.into_iter().zip(results) {
-            let trial = &mut self.trials[number];
-            (trial.frames, trial.time_ms) = (result.frames, result.time_ms);
-            trial.wrong_percent = result.wrong_percent;
+        let frames = Frames { are_seen: true, most };
+        let (numbers, mut runs) = chosen(&mut self.ready, some);
+        let times = self.course.fly(&mut runs, frames, flights, &part(progress, 0.0, 0.7))?;
+        for (number, time_ms) in numbers.into_iter().zip(times) {
+            (self.trials[number].frames, self.trials[number].time_ms) = (self.course.count(frames), time_ms);
+        }
+        let unsure: Vec<usize> = some.iter().copied().filter(|&k| !self.trials[k].promises).collect();
+        self.judge(&unsure, most, &part(progress, 0.7, 1.0))
+    }
+    /// Counts the wrong pixels of some on so many frames of each stretch.
+    fn judge(&mut self, some: &[usize], most: usize, progress: &dyn Progress) -> Result<(), ExperimentError> {
+        if some.is_empty() {
+            return Ok(());
+        }
+        let (numbers, mut runs) = chosen(&mut self.ready, some);
+        let wrong = self.course.judge(&mut runs, Frames { are_seen: true, most }, progress)?;
+        for (number, [percent, _]) in numbers.into_iter().zip(wrong) {
+            self.trials[number].wrong_percent = Some(percent);
         }
         Ok(())
     }
@@ -329,9 +262,9 @@ impl<S: World> Halving<'_, S> {
         let right = some.iter().filter(|&&k| self.is_right(k));
         right.map(|&k| self.trials[k].time_ms).fold(f64::INFINITY, f64::min)
     }
-    /// Lets go of what is not among some.
+    /// Lets go of what is not among some, but for the plain ones.
     fn keep(&mut self, some: &[usize]) {
-        let dropped = self.ready.iter_mut().enumerate().filter(|(k, _)| !some.contains(k));
+        let dropped = self.ready.iter_mut().enumerate().filter(|(k, _)| *k > FRUSTUM && !some.contains(k));
         dropped.for_each(|(_, ready)| *ready = None);
     }
     /// The settings of a method's candidates that were right enough and faster than its defaults, joined.
@@ -352,6 +285,15 @@ impl<S: World> Halving<'_, S> {
     }
 }
 
+/// Those of some that are ready, with their numbers.
+fn chosen<'r, S: World>(
+    ready: &'r mut [Option<Ready<S>>],
+    some: &[usize],
+) -> (Vec<usize>, Vec<&'r mut Ready<S>>) {
+    let wanted = ready.iter_mut().enumerate().filter(|(k, _)| some.contains(k));
+    wanted.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip()
+}
+
 /// Advises on a scene that is seen from some views. Half of them are kept back for the check; of a single one
 /// there is no check.
 ///
@@ -368,75 +310,75 @@ pub fn advise<S: World>(
     let left = halving.widened(&plain, &part(progress, 0.3, 0.7))?;
     let left = halving.narrowed(left, &part(progress, 0.7, 0.9))?;
     // 4. The last few beside the plain ones, on all frames.
-    let others = plain.iter().copied().take(PLAIN).filter(|k| !left.contains(k)).collect::<Vec<_>>();
+    let others = [0, FRUSTUM].into_iter().filter(|k| !left.contains(k)).collect::<Vec<_>>();
     let left = [left, others].concat();
     halving.keep(&left);
-    for &k in &left {
-        if halving.ready[k].is_none() {
-            halving.renew(k, progress)?;
-        }
-    }
-    halving.try_on(&left, LONGEST, FLIGHTS, &part(progress, 0.9, 0.96))?;
+    halving.try_on(&left, LONGEST, FLIGHTS, &part(progress, 0.9, 0.95))?;
+    halving.judge(&left, LONGEST, &part(progress, 0.95, 0.97))?;
     // 5. The check.
-    halving.checked(left, &part(progress, 0.96, 1.0))
+    halving.checked(left, &part(progress, 0.97, 1.0))
 }
 
 fn begin<'a, S: World>(scene: &'a Arc<Scene<S>>, views: &[View<S>], wish: Wish) -> Halving<'a, S> {
-    // A single view is its own check.
-    let views = if views.len() < 2 { [views, views].concat() } else { views.to_vec() };
-    let count = 2 * (views.len() / (2 * STRETCH)).clamp(1, STRETCHES);
-    let numbered: Vec<_> = views.into_iter().enumerate().collect();
-    let n = numbered.len();
     // Which half is kept back is decided by lot.
-    let kept = 1 - (Pcg32::new(wish.seed, 17).next_u32() % 2) as usize;
-    let stretches = (0..count).map(|k| {
-        let all = &numbered[k * n / count..(k + 1) * n / count];
-        (k % 2 == kept, all[..all.len().min(LONGEST + 1)].to_vec())
-    });
-    let (unseen, seen): (Vec<_>, Vec<_>) = stretches.partition(|(is_kept, _)| *is_kept);
-    let [seen, unseen] = [seen, unseen].map(|half| half.into_iter().map(|(_, some)| some).collect());
-    let mut motion = Motion::new(scene);
-    let first = motion.at(0);
-    let course =
-        Course { scene, motion, seen, unseen, truths: Vec::new(), images: Default::default(), flown: 0 };
-    Halving { wish, course, first, trials: Vec::new(), ready: Vec::new() }
+    let is_odd_kept = Pcg32::new(wish.seed, 17).next_u32().is_multiple_of(2);
+    let mut course = Course::new(scene, views, is_odd_kept);
+    let first = course.first();
+    Halving { wish, course, first, trials: Vec::new(), ready: Vec::new(), left_out: 0 }
 }
 
 impl<S: World> Halving<'_, S> {
-    /// 1. Every method with its defaults; their numbers are those of the list of methods.
+    /// 1. Every method with its defaults; where these cannot be advised, with what can.
     fn defaults(&mut self, progress: &dyn Progress) -> Result<Vec<usize>, ExperimentError> {
         let mut all = Vec::new();
         for (k, entry) in S::methods().iter().enumerate() {
             let some = Part::of(progress, k, S::methods().len() + 1);
             checkpoint(&some, 0.0, "building")?;
-            all.extend(self.add(defaults::<S>(*entry), &some)?);
+            let plain = self.add(defaults::<S>(*entry), f64::INFINITY, &some)?;
+            all.extend(plain);
+            if plain.is_none() {
+                for one in variations::<S>(*entry) {
+                    all.extend(self.add(one, f64::INFINITY, &some)?);
+                }
+            }
         }
-        self.try_on(&all, FIRST, 1, &part(progress, 0.9, 1.0))?;
+        self.try_on(&all, FIRST, ROUGHLY, &part(progress, 0.9, 1.0))?;
         Ok(all)
     }
 
     /// 2. Parameters of what could win; what still could.
     fn widened(&mut self, plain: &[usize], progress: &dyn Progress) -> Result<Vec<usize>, ExperimentError> {
-        let best = self.best_ms(plain);
-        let could =
-            |of: &Self, k: usize| of.trials[k].time_ms <= if of.is_right(k) { best * SLACK } else { best };
-        let mut left: Vec<usize> = plain.iter().copied().filter(|&k| could(self, k)).collect();
-        self.keep(&left);
+        let mut left = self.sorted(plain.to_vec());
         for (at, k) in left.clone().into_iter().enumerate() {
             let some = Part::of(progress, at, plain.len());
-            let others = variations::<S>(S::methods()[k]);
+            // The best so far: others of this method's parameters may have made it better.
+            if !self.could_win(k, &left) {
+                left.retain(|&other| other != k);
+                continue;
+            }
+            if !self.trials[k].configuration.settings.0.is_empty() {
+                continue;
+            }
+            let entry = super::experiment::method::<S>(&self.trials[k].configuration.method)?;
+            let (others, most_ms) = (variations::<S>(entry), self.trials[k].build_ms * SLOW_INDEX);
             let (building, mut added) = (part(&some, 0.0, 0.8), Vec::new());
             for (n, one) in others.iter().enumerate() {
                 let some = Part::of(&building, n, others.len());
                 checkpoint(&some, 0.0, "building")?;
-                added.extend(self.add(one.clone(), &some)?);
+                added.extend(self.add(one.clone(), most_ms.max(ANY_INDEX), &some)?);
             }
-            self.try_on(&added, FIRST, 1, &part(&some, 0.8, 1.0))?;
-            left.extend(added.into_iter().filter(|&k| could(self, k)));
-            // An index of each would take too much memory.
+            self.try_on(&added, FIRST, ROUGHLY, &part(&some, 0.8, 1.0))?;
+            left.extend(added);
+            left = left.iter().copied().filter(|&k| self.could_win(k, &left)).collect();
+            // An index of each would take too much memory; the plain ones take none.
             self.keep(&left);
         }
         Ok(left)
+    }
+    /// Whether a candidate may yet be the best of some.
+    fn could_win(&self, number: usize, some: &[usize]) -> bool {
+        let slack = if self.is_right(number) { SLACK } else { 1.0 };
+        self.trials[number].time_ms <= self.best_ms(some) * slack
     }
 
     /// 3. The better half goes on to twice as many frames, until few are left.
@@ -447,30 +389,18 @@ impl<S: World> Halving<'_, S> {
     ) -> Result<Vec<usize>, ExperimentError> {
         let best = self.sorted(left.clone()).first().copied();
         if let Some(joined) = best.and_then(|best| self.joined(best, &left)) {
-            left.extend(self.add(joined, progress)?);
+            left.extend(self.add(joined, f64::INFINITY, progress)?);
         }
         let (mut on, mut rung) = (FIRST, 0.0);
         while left.len() > LAST {
             on = (on * 2).min(LONGEST);
-            self.try_on(&left, on, 1, &part(progress, rung, rung + 0.2))?;
+            self.try_on(&left, on, ROUGHLY, &part(progress, rung, rung + 0.2))?;
             rung = (rung + 0.2).min(0.8);
             left = self.sorted(left);
             left.truncate(left.len().div_ceil(2).max(LAST));
             self.keep(&left);
         }
         Ok(left)
-    }
-
-    /// Makes a candidate ready again.
-    fn renew(&mut self, number: usize, progress: &dyn Progress) -> Result<(), ExperimentError> {
-        let configuration = self.trials[number].configuration.clone();
-        let entry = super::experiment::method::<S>(&configuration.method)?;
-        let run = entry.ready(&self.first, &configuration.settings, progress)?;
-        let run = run.ok_or(ExperimentError::Cancelled)?;
-        let surfaces = surfaces_of(&run.knobs());
-        let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-        self.ready[number] = Some(Ready { run: Paced::new(run, &self.first), options, surfaces });
-        Ok(())
     }
 
     /// The simplest of the best that is right enough on unseen views, too.
@@ -483,33 +413,42 @@ impl<S: World> Halving<'_, S> {
             let near = left.iter().copied().filter(|&k| self.is_right(k) && self.trials[k].time_ms <= limit);
             // What draws all is always right.
             let Some(chosen) = near.min_by_key(simple) else { return Err(ExperimentError::Cancelled) };
-            let mut wanted: Vec<usize> = vec![chosen, FRUSTUM];
-            wanted.dedup();
-            let numbered = self.ready.iter_mut().enumerate().filter(|(k, _)| wanted.contains(k));
-            let (numbers, mut runs): (Vec<usize>, Vec<&mut Ready<S>>) =
-                numbered.filter_map(|(k, ready)| Some((k, ready.as_mut()?))).unzip();
-            let results = self.course.fly(&mut runs, (false, LONGEST), FLIGHTS, progress)?;
-            let of = |number: usize| {
-                numbers.iter().position(|&k| k == number).map(|at| results[at]).unwrap_or_default()
-            };
-            let result = of(chosen);
-            if result.wrong_percent <= self.wish.most_wrong_percent || left.len() == 1 {
+            let flown = self.unseen(&[chosen, FRUSTUM], progress)?;
+            // The numbers of those that were flown ascend.
+            let [unseen, frustum] =
+                if chosen < FRUSTUM { [flown[0], flown[1]] } else { [flown[flown.len() - 1], flown[0]] };
+            if unseen.wrong_percent <= self.wish.most_wrong_percent || left.len() == 1 {
                 let grid: usize = S::methods().iter().map(|m| 1 + variations::<S>(*m).len()).sum();
-                let frames: usize = self.course.seen.iter().map(|some| some.len().max(2) - 1).sum();
-                let cost = [self.course.flown, grid * frames * FLIGHTS];
-                let (wish, trials, frustum) = (self.wish, self.trials, of(FRUSTUM));
-                return Ok(Advice { wish, chosen, trials, unseen: result, frustum, refused, cost });
+                let all = Frames { are_seen: true, most: LONGEST };
+                let cost = [self.course.flown, grid * self.course.count(all) * FLIGHTS];
+                let (wish, trials, left_out) = (self.wish, self.trials, self.left_out);
+                return Ok(Advice { wish, chosen, trials, unseen, frustum, refused, left_out, cost });
             }
             refused.push(chosen);
             left.retain(|k| *k != chosen);
         }
+    }
+    /// How some did on the views that were kept back, in the order of their numbers.
+    fn unseen(&mut self, some: &[usize], progress: &dyn Progress) -> Result<Vec<Flown>, ExperimentError> {
+        let all = Frames { are_seen: false, most: LONGEST };
+        let (_, mut runs) = chosen(&mut self.ready, some);
+        let times = self.course.fly(&mut runs, all, FLIGHTS, &part(progress, 0.0, 0.5))?;
+        let wrong = self.course.judge(&mut runs, all, &part(progress, 0.5, 1.0))?;
+        let frames = self.course.count(all);
+        let flown = |(time_ms, [wrong_percent, worst_percent]): (f64, [f64; 2])| Flown {
+            frames,
+            time_ms,
+            wrong_percent,
+            worst_percent,
+        };
+        Ok(times.into_iter().zip(wrong).map(flown).collect())
     }
 }
 
 impl Advice {
     /// Whether what is advised culls nothing but what is out of view.
     pub fn is_plain(&self) -> bool {
-        self.chosen < PLAIN
+        self.chosen <= FRUSTUM
     }
     /// What is advised.
     pub fn configuration(&self) -> &Configuration {
@@ -544,8 +483,8 @@ impl Advice {
                 "advised"
             } else if self.refused.contains(&k) {
                 "not right enough on unseen views"
-            } else if !is_right(k) && trial.wrong_percent <= self.wish.most_wrong_percent {
-                "promises nothing"
+            } else if trial.index_bytes.is_none() {
+                "its index takes too long"
             } else if !is_right(k) {
                 "not right enough"
             } else {
@@ -556,7 +495,7 @@ impl Advice {
                 trial.configuration.method.as_str().into(),
                 params.into(),
                 trial.frames.into(),
-                trial.time_ms.into(),
+                trial.time_ms.is_finite().then_some(trial.time_ms).into(),
                 self.gain_ms(k).into(),
                 trial.wrong_percent.into(),
                 trial.index_bytes.into(),
@@ -575,7 +514,7 @@ impl Advice {
         };
         let plain = self.trials.iter().find(is_plain)?;
         let differs = !trial.configuration.settings.0.is_empty();
-        (differs && trial.frames == plain.frames).then_some(plain.time_ms - trial.time_ms)
+        (differs && trial.frames == plain.frames && trial.frames > 0).then_some(plain.time_ms - trial.time_ms)
     }
     /// All that was tried as speed against error, and what the parameters of the advised method gain.
     pub fn charts(&self) -> (Tradeoff, Option<Plot>) {
@@ -586,11 +525,15 @@ impl Advice {
             }
         }
         let curve = |(k, method): (usize, &&str)| {
-            let of = self.trials.iter().enumerate().filter(|(_, t)| t.configuration.method == **method);
+            let of = self
+                .trials
+                .iter()
+                .enumerate()
+                .filter(|(_, t)| t.configuration.method == **method && t.frames > 0);
             let mut tried: Vec<Tried> = of
                 .map(|(number, trial)| Tried {
                     number: number as u32,
-                    error: trial.wrong_percent,
+                    error: trial.wrong_percent.unwrap_or(0.0),
                     time_ms: trial.time_ms,
                     spread_ms: [trial.time_ms; 2],
                     frames: Vec::new(),

@@ -16,6 +16,9 @@ use crate::truth::{Judgement, Truth};
 
 /// What the images have behind the scene, linear.
 const BACKGROUND: [f32; 3] = [1.0; 3];
+/// Frames that a configuration flies before the next one has its turn: what it needs is in the caches but for
+/// the first of them, and a slow moment of the machine still meets all.
+const LEG: u32 = 8;
 /// Frames at the least from which an invented path is made.
 const KEYS: u32 = 8;
 
@@ -208,32 +211,46 @@ impl<S: World> Flight<'_, S> {
         Ok(())
     }
 
-    /// A flight in which all configurations take turns at each frame, and are timed.
+    /// A flight in which all configurations take turns and are timed.
     fn time(&mut self, round: u32, progress: &dyn Progress) -> Result<(), SweepError> {
         let (frames, count) = (self.spec.frames, self.runs.len());
         let mut motion = Motion::new(self.scene);
         self.runs.iter_mut().for_each(|(_, run)| run.forget());
-        for frame in 0..frames {
-            checkpoint(progress, frame as f32 / frames as f32, "timing")?;
-            let (scene, view) = (motion.at(frame as usize), self.path.views[frame as usize]);
+        // Legs of other rounds begin at other frames, so that no frame is the first of one in all of them.
+        let (mut at, mut end) = (0, LEG - 3 * round % LEG);
+        while at < frames {
+            let leg: Vec<_> = (at..end.min(frames)).map(|frame| (frame, motion.at(frame as usize))).collect();
             for turn in 0..count {
-                // Another one begins at each frame and in each flight.
-                let (configuration, run) = &mut self.runs[(turn + (frame + round) as usize) % count];
-                if !run.pose(&scene, progress) {
-                    return Err(ExperimentError::Cancelled.into());
+                checkpoint(progress, at as f32 / frames as f32, "timing")?;
+                // Another one begins at each leg and in each flight.
+                let which = (turn + (at + round) as usize) % count;
+                for (frame, scene) in &leg {
+                    self.timed_frame((which, *frame, round), scene, progress)?;
                 }
-                let configuration = *configuration;
-                let ((list, stages), cull_ms): ((DrawList<S>, _), _) = timed(|| run.stages_ms(&view));
-                let options = options(run);
-                let images = (&mut self.images.0, &mut self.images.1);
-                let ((), draw_ms) = timed(|| list.draw(images, &scene, &view, &options));
-                let stages_ms = stages.into_iter().map(|(name, ms)| (name.to_owned(), ms)).collect();
-                let scene = self.number;
-                let line = TimedFrame { scene, configuration, frame, round, cull_ms, draw_ms, stages_ms };
-                self.keep(Line::Timed(line))?;
             }
+            (at, end) = (end, end + LEG);
         }
         Ok(())
+    }
+
+    fn timed_frame(
+        &mut self,
+        (which, frame, round): (usize, u32, u32),
+        scene: &Arc<Scene<S>>,
+        progress: &dyn Progress,
+    ) -> Result<(), SweepError> {
+        let (configuration, run) = &mut self.runs[which];
+        let (configuration, view) = (*configuration, self.path.views[frame as usize]);
+        if !run.pose(scene, progress) {
+            return Err(ExperimentError::Cancelled.into());
+        }
+        let ((list, stages), cull_ms): ((DrawList<S>, _), _) = timed(|| run.stages_ms(&view));
+        let options = options(run);
+        let images = (&mut self.images.0, &mut self.images.1);
+        let ((), draw_ms) = timed(|| list.draw(images, scene, &view, &options));
+        let stages_ms = stages.into_iter().map(|(name, ms)| (name.to_owned(), ms)).collect();
+        let scene = self.number;
+        self.keep(Line::Timed(TimedFrame { scene, configuration, frame, round, cull_ms, draw_ms, stages_ms }))
     }
 }
 

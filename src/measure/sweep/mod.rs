@@ -6,8 +6,8 @@
 //! ([`results`]): they are the same however it came about, but for times.
 //!
 //! Counts, images and errors repeat exactly and come from one flight along the path; times come from further
-//! flights, in which all configurations take turns at each frame, in rotated order, so that drift of the
-//! machine falls on all of them.
+//! flights, in which all configurations take turns at a few frames each, in rotated order: caches are as warm
+//! as in use, and drift of the machine falls on all of them.
 
 mod fly;
 mod log;

@@ -5,7 +5,7 @@ use glam::DVec2;
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 
-use super::layout::{GLASS, Layout, SHEET};
+use super::layout::{COLORS, GLASS, Layout, SHEET, STONE};
 
 /// The wall at y = 6 and what it hides, seen from the origin.
 pub(super) fn hidden(plan: &mut Layout) {
@@ -75,7 +75,7 @@ pub(super) fn doubled_faces(plan: &mut Layout) {
         // Coplanar and only partly the same.
         plan.wall([3.5 - f64::from(k), 6.0], [-4.0, 6.0]);
     }
-    plan.paint(0);
+    plan.paint(STONE);
     behind(plan);
     plan.look([0.0, 0.0], [0.0, 6.0]);
     plan.look([0.5, 0.0], [0.2, 6.0]);
@@ -171,6 +171,15 @@ pub(super) fn subpixel_slabs(plan: &mut Layout) {
 }
 
 pub(super) fn leaves(plan: &mut Layout) {
+    foliage(plan);
+    plan.crates([-3.0, 10.0], [3.0, 14.0], [8, 4]);
+    for x in [0.0, 0.1, 0.2] {
+        plan.look([x, 0.0], [x, 6.0]);
+    }
+}
+
+/// Leaves between y = 5 and y = 8.
+fn foliage(plan: &mut Layout) {
     let mut rng = Pcg32::new(11, 7);
     let mut unit = move || f64::from(rng.next_u32() >> 8) / f64::from(1u32 << 24);
     plan.begin("leaves");
@@ -180,9 +189,32 @@ pub(super) fn leaves(plan: &mut Layout) {
         let (u, v) = (0.5 * unit() - 0.25, 0.5 * unit() - 0.25);
         plan.piece([x, y], [x + u, y + v], [level, level + 0.3]);
     }
-    plan.paint(0);
-    plan.crates([-3.0, 10.0], [3.0, 14.0], [8, 4]);
-    for x in [0.0, 0.1, 0.2] {
+    plan.paint(STONE);
+}
+
+pub(super) fn tearing(plan: &mut Layout) {
+    plan.begin("slanting wall");
+    plan.paint(SHEET);
+    for k in 0..64 {
+        let [from, to] = [k, k + 1].map(|k| 0.125 * f64::from(k) - 4.0);
+        plan.wall([from, from + 6.0], [to, to + 6.0]);
+    }
+    plan.row(13.0, -9.0, 72, [0.25, 0.25]);
+    for x in [-0.5, 0.0, 0.5] {
+        plan.look([x, 0.0], [x, 6.0]);
+    }
+}
+
+pub(super) fn translucent_intersection(plan: &mut Layout) {
+    foliage(plan);
+    for (k, color) in (0..4).zip(COLORS.into_iter().cycle()) {
+        let x = 2.0 * f64::from(k) - 4.0;
+        plan.begin(format!("panel {k}"));
+        plan.paint(color);
+        plan.wall([x + 1.9, 5.5], [x, 7.5]);
+    }
+    plan.paint(STONE);
+    for x in [-0.2, -0.1, 0.0, 0.1, 0.2] {
         plan.look([x, 0.0], [x, 6.0]);
     }
 }
@@ -208,7 +240,7 @@ pub(super) fn see_through(plan: &mut Layout) {
     plan.paint(SHEET);
     // It shows its back, which is there as well.
     plan.wall([-4.0, 6.0], [0.0, 6.0]);
-    plan.paint(0);
+    plan.paint(STONE);
     plan.crates([-3.0, 8.0], [3.0, 12.0], [6, 4]);
     plan.look([0.0, 0.0], [0.0, 6.0]);
     plan.look([0.0, 7.0], [0.0, 0.0]);
@@ -257,7 +289,7 @@ pub(super) fn moving_occluder(plan: &mut Layout) {
     plan.paint(SHEET);
     plan.wall([1.0, 5.9], [-1.0, 5.9]);
     plan.moves((0..8).map(|k| [0.3 * f64::from(k), 0.0]).collect());
-    plan.paint(0);
+    plan.paint(STONE);
     behind(plan);
     for _ in 0..8 {
         plan.look([0.0, 0.0], [0.0, 6.0]);

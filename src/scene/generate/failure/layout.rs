@@ -19,7 +19,7 @@ const SIDE_PX: u32 = 128;
 
 /// Materials by number.
 pub(super) const STONE: u32 = 0;
-const COLORS: [u32; 3] = [1, 2, 3];
+pub(super) const COLORS: [u32; 3] = [1, 2, 3];
 pub(super) const GLASS: u32 = 4;
 pub(super) const SHEET: u32 = 5;
 

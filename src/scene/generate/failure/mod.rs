@@ -121,6 +121,12 @@ failures! {
     blind, "blind", Popped,
         "A blind whose slats turn their edges to the eye and then their sides: a small step changes what \
          they cover, which a color kept for a few directions cannot say.";
+    tearing, "tearing", Wrong,
+        "A closed wall seen at an angle between the axes: faces of a cell that look along it are nearly \
+         empty, and seen aslant together with full ones they let what is behind shine through.";
+    translucent_intersection, "translucent-intersection", Wrong,
+        "Panels cut through leaves that are drawn as colors of their cells: a cell is before a panel or \
+         behind it as a whole, though it has leaves on both sides.";
     see_through, "see-through", Kept,
         "Glass before crates, and a sheet that shows its back: glass hides nothing and has to be drawn, and \
          what has two sides has no back to cull.";
