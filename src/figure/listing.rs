@@ -9,19 +9,35 @@ use crate::method::CodeLine;
 const TEXT_PT: f32 = 8.0;
 /// Room for the numbers of lines.
 const GUTTER_PT: f32 = 15.0;
+/// Distance of the values from the line that they belong to, in its size.
+const VALUES_GAP: f32 = 2.0;
+
+/// A line of pseudocode as it is shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row<'a> {
+    /// The line.
+    pub line: &'a CodeLine,
+    /// Whether a run comes to it; other lines are gray.
+    pub is_reached: bool,
+    /// Of the line at which a run stands: the values that matter there, or nothing.
+    pub lit: Option<String>,
+}
+
+impl<'a> Row<'a> {
+    /// Lines of which no run is shown.
+    pub fn all(code: &'a [CodeLine]) -> Vec<Self> {
+        code.iter().map(|line| Self { line, is_reached: true, lit: None }).collect()
+    }
+}
 
 /// Pseudocode `width_pt` wide. Below a line that differs from the paper's stands the paper's.
-pub fn listing(code: &[CodeLine], width_pt: f32) -> Drawing {
-    let paper_line = |line: &CodeLine| {
-        let indent = line.text.len() - line.text.trim_start().len();
-        format!("{}paper: {}", " ".repeat(indent), line.paper)
-    };
+pub fn listing(rows: &[Row<'_>], width_pt: f32) -> Drawing {
     let width = |text: &str| metrics::width_pt(text, Font::Mono, 1.0);
-    let widest = code.iter().map(|l| width(l.text).max(width(&paper_line(l)))).fold(1.0, f32::max);
+    let widest = rows.iter().map(|r| width(r.line.text).max(width(&paper_line(r.line)))).fold(1.0, f32::max);
     let size_pt = ((width_pt - GUTTER_PT) / widest).min(TEXT_PT);
     let (line_pt, mut y) = (size_pt * 1.4, 2.0);
     let mut paper = Drawing::default();
-    for line in code {
+    for Row { line, is_reached, lit } in rows {
         let number = line.label.rsplit(':').next().unwrap_or_default();
         // A rule above each procedure.
         if number == "1" {
@@ -35,14 +51,44 @@ pub fn listing(code: &[CodeLine], width_pt: f32) -> Drawing {
         };
         y += line_pt;
         text(GUTTER_PT - 5.0, y, Role::Faint, Anchor::End, number);
-        text(GUTTER_PT, y, Role::Ink, Anchor::Start, line.text);
+        let role = if *is_reached { Role::Ink } else { Role::Faint };
+        text(GUTTER_PT, y, role, Anchor::Start, line.text);
+        let first = y;
+        if let Some(values) = lit {
+            let beside = GUTTER_PT + (width(line.text) + VALUES_GAP) * size_pt;
+            let wanted = metrics::width_pt(values, Font::Regular, size_pt);
+            // Where they do not fit beside the line, they stand below it.
+            let fits = beside + wanted <= width_pt;
+            let left = if fits { beside } else { GUTTER_PT * 2.0 };
+            for part in metrics::wrap(values, Font::Regular, size_pt, width_pt - left) {
+                y += if fits { 0.0 } else { line_pt };
+                paper.text(Layer::Labels, Role::Evidence, vec2(left, y), size_pt, Anchor::Start, part);
+            }
+            let (top, bottom) = (first - size_pt, y + size_pt * 0.35);
+            let corners = [[1.5, top], [width_pt - 1.5, top], [width_pt - 1.5, bottom], [1.5, bottom]];
+            let area = Mark::Area(corners.map(|[x, y]| vec2(x, y)).to_vec());
+            paper.push(Layer::Ground, Role::Current, Subject::None, area);
+        }
         if !line.paper.is_empty() {
             y += line_pt;
-            text(GUTTER_PT, y, Role::Faint, Anchor::Start, &paper_line(line));
+            let mark = Mark::Text {
+                at: vec2(GUTTER_PT, y),
+                text: paper_line(line),
+                size_pt,
+                anchor: Anchor::Start,
+                font: Font::Mono,
+            };
+            paper.push(Layer::Labels, Role::Faint, Subject::None, mark);
         }
     }
     y += line_pt * 0.6;
     paper.line(Layer::Ground, Role::Faint, Subject::None, [vec2(0.0, y), vec2(width_pt, y)]);
     paper.size_pt = vec2(width_pt, y + 1.0);
     paper
+}
+
+/// What the paper has in the place of a line.
+fn paper_line(line: &CodeLine) -> String {
+    let indent = line.text.len() - line.text.trim_start().len();
+    format!("{}paper: {}", " ".repeat(indent), line.paper)
 }

@@ -17,6 +17,8 @@ use crate::scene::{Progress, Scene};
 pub trait Entry<S: Space>: Sync {
     /// Identity.
     fn card(&self) -> &'static Card;
+    /// Names of its pictures that are not of the world.
+    fn pictures(&self) -> &'static [&'static str];
     /// All parameters with the values that `settings` give them.
     ///
     /// # Errors
@@ -159,6 +161,9 @@ impl<S: Space, M: Shown<S>> Entry<S> for Of<M> {
     }
     fn knobs(&self, settings: &Settings) -> Result<Vec<(Knob, KnobValue)>, SettingError> {
         params::<S, M>(settings).map(|p| listed::<S, M>(&p))
+    }
+    fn pictures(&self) -> &'static [&'static str] {
+        M::PICTURES
     }
     fn ready(
         &self,
