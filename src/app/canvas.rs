@@ -399,3 +399,60 @@ fn mixed(under: Rgb, over: Rgb, alpha: f32) -> Rgb {
     let mix = |(u, o): (u8, u8)| (f32::from(u) + (f32::from(o) - f32::from(u)) * alpha + 0.5) as u8;
     [mix((under[0], over[0])), mix((under[1], over[1])), mix((under[2], over[2]))]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Eye;
+    use crate::scene::Parts;
+
+    const PAPER: Rgb = [255; 3];
+
+    /// A square 2 wide, 5 before an eye at the origin, and the picture of it.
+    fn picture(ceiling: Option<f32>) -> Canvas {
+        let corners =
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vec3::new(x, y, -5.0));
+        let parts = Parts::<Solid>::simple("square", corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+        let scene = Scene::new(parts).expect("a scene");
+        let (position, target) = (Vec3::ZERO, Vec3::NEG_Z);
+        let eye = Eye { position, target, up: Vec3::Y, fov: 1.2, near: 0.1, far: 100.0 };
+        let mut canvas = Canvas::new(View { eye, width: 300, height: 200 }, 1.0, PAPER, ceiling);
+        canvas.surfaces(&scene, scene.live(), |_| Ink::of(Theme::Print, Role::Visible));
+        canvas
+    }
+
+    #[test]
+    fn a_line_is_parted_where_a_surface_covers_it() {
+        let canvas = picture(None);
+        let line = |z: f32| [Vec3::new(-3.0, 0.2, z), Vec3::new(3.0, 0.2, z)];
+        let (front, behind) = canvas.parted(line(-6.0));
+        assert_eq!((front.len(), behind.len()), (2, 1));
+        // The rim of the square, seen 6 away.
+        let [from, to] = behind[0];
+        assert!((from.x + 1.2).abs() < 0.03 && (to.x - 1.2).abs() < 0.03, "{from} {to}");
+        for z in [-4.0, -5.0] {
+            let (front, behind) = canvas.parted(line(z));
+            assert!(front.len() == 1 && behind.is_empty(), "before it and on it: {z}");
+            assert!((front[0][1] - front[0][0]).length() > 5.0);
+        }
+        let outside = canvas.parted([Vec3::new(90.0, 0.0, -5.0), Vec3::new(99.0, 0.0, -5.0)]);
+        assert!(outside.0.is_empty() && outside.1.is_empty());
+    }
+
+    #[test]
+    fn surfaces_hide_areas_behind_them_and_are_cut_by_the_ceiling() {
+        let at = |pixels: &Pixels, x: usize, y: usize| {
+            let from = 4 * (y * pixels.width as usize + x);
+            [pixels.rgba[from], pixels.rgba[from + 1], pixels.rgba[from + 2]]
+        };
+        let mut canvas = picture(None);
+        let wide = [[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]].map(|[x, y]| Vec3::new(x, y, -7.0));
+        canvas.area(&wide, ([200, 0, 0], 1.0), None);
+        let pixels = canvas.pixels();
+        let square = at(&pixels, 150, 100);
+        assert!(square[2] > square[0] && at(&pixels, 20, 20) == [200, 0, 0], "{square:?}");
+        // 2 of 6.84 units of 200 pixels: rows 71 to 129.
+        let cut = picture(Some(0.0)).pixels();
+        assert_eq!((at(&cut, 150, 85), at(&cut, 150, 115)), (PAPER, square));
+    }
+}

@@ -312,14 +312,14 @@ impl State {
         render::export(&drawing, format, export.theme, recipe).map_err(|e| e.to_string())
     }
 
-    /// The name of a figure's file, without its ending.
-    pub fn figure_name(&self, export: &Export) -> String {
+    /// The name of a figure's file, without its ending; the step has at least so many digits.
+    pub fn figure_name(&self, export: &Export, digits: usize) -> String {
         let scene = self.staged().map_or("figure", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
         let picture = match export.picture {
             Picture::Observer => String::new(),
             picture => format!("-{}", self.picture_word(picture)),
         };
-        format!("{scene}-{}-step-{}{picture}", self.method, self.step)
+        format!("{scene}-{}-step-{:0digits$}{picture}", self.method, self.step)
     }
 
     fn picture_word(&self, picture: Picture) -> String {
@@ -370,7 +370,7 @@ impl State {
         if self.figure(&export).is_none() {
             return self.fail("There is nothing to export yet.");
         }
-        let path = self.free_path(&self.figure_name(&export), format.name());
+        let path = self.free_path(&self.figure_name(&export, 1), format.name());
         let bytes = self.figure_file(&export, format, &path);
         match bytes.and_then(|b| write_file(&path, &b).map_err(|e| e.to_string())) {
             Ok(()) => self.tell(format!("The figure was written to {path}.")),

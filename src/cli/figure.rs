@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use super::plates::{self, Files, Plate};
 use super::progress::Bar;
-use super::{CliError, output, snapshot, suggest};
+use super::snapshot::{self, Snapshot};
+use super::{CliError, output, remake, suggest};
 use crate::papers::{self, Figure};
 use crate::scene::Progress;
 
@@ -36,7 +37,7 @@ pub(super) struct Args {
     #[command(flatten)]
     files: Files,
     #[command(flatten)]
-    own: snapshot::Args,
+    own: Snapshot,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
@@ -47,6 +48,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let _ = writeln!(text, "{:<28} {}", figure.name, figure.summary);
         }
         return output::print(text.as_bytes());
+    }
+    if let Some(folder) = &args.check {
+        return remake::run(folder);
     }
     args.own.refuse_lone()?;
     if let Some(scene) = &args.own.scene {

@@ -16,6 +16,7 @@ mod output;
 mod paper;
 mod plates;
 mod progress;
+mod remake;
 mod scene;
 mod snapshot;
 mod stability;

@@ -2,15 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
-use std::thread;
-use std::time::Duration;
 
 use super::methods::{find, refuse_clock, settings};
 use super::plates::{Files, write};
 use super::progress::Bar;
+use super::remake::wait;
 use super::view::{Asked, ViewArgs};
 use super::{CliError, World, scene, suggest};
-use crate::app::{Action, AnyOpened, AnyView, Export, Filter, Opened, PAPERS, Picture, State, word};
+use crate::app::{AnyOpened, AnyView, Command, Export, Filter, Opened, PAPERS, Picture, State, word};
 use crate::drawing::words::count;
 use crate::figure::Paper;
 use crate::geometry::{Either, View};
@@ -21,12 +20,10 @@ use crate::trace::Counts;
 /// Words of pictures that every method has, and of all that there are.
 const SHARED: [&str; 3] = ["observer", "eye", "pseudocode"];
 const ALL: &str = "all";
-/// Time between two looks at how far the work is.
-const REST: Duration = Duration::from_millis(5);
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "A step of a run, as the explorer shows it")]
-pub(super) struct Args {
+pub(super) struct Snapshot {
     /// A path to .obj, .gltf, .glb, .pdb, .xyz or a flatland .json, or generate:NAME[?key=value&…]
     #[arg(long, value_name = "SCENE", requires = "method")]
     pub scene: Option<String>,
@@ -39,6 +36,9 @@ pub(super) struct Args {
     /// After so many events
     #[arg(long, value_name = "N", group = "moment", requires = "scene")]
     step: Option<usize>,
+    /// Steps from A to B, every Sth, a file each
+    #[arg(long, value_name = "A..B[..S]", group = "moment", requires = "scene", value_parser = steps)]
+    steps: Option<Steps>,
     /// After the last event; this is the default
     #[arg(long, group = "moment", requires = "scene")]
     last: bool,
@@ -87,7 +87,20 @@ fn ratio(text: &str) -> Result<f32, String> {
     fits.ok_or_else(|| "expected a ratio from 0.2 to 5 such as 4:3 or 1.5".into())
 }
 
-impl Args {
+/// From, to, and how many at a time.
+#[derive(Clone, Copy, Debug)]
+struct Steps(usize, usize, usize);
+
+fn steps(text: &str) -> Result<Steps, String> {
+    let numbers: Option<Vec<usize>> = text.split("..").map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[from, to]) if from <= to => Ok(Steps(from, to, 1)),
+        Some(&[from, to, stride]) if from <= to && stride > 0 => Ok(Steps(from, to, stride)),
+        _ => Err("expected steps such as 0..40 or 0..400..10".into()),
+    }
+}
+
+impl Snapshot {
     /// That nothing of this form is given without its scene.
     pub fn refuse_lone(&self) -> Result<(), CliError> {
         if self.scene.is_none() && (self.view.is_asked() || self.view.image().is_some()) {
@@ -98,7 +111,7 @@ impl Args {
     }
 }
 
-pub(super) fn run(args: &Args, source: &str, files: &Files) -> Result<(), CliError> {
+pub(super) fn run(args: &Snapshot, source: &str, files: &Files) -> Result<(), CliError> {
     let key = args.method.as_deref().unwrap_or_default();
     let settings = settings(&args.set)?;
     let filter = args.filter()?;
@@ -115,12 +128,15 @@ pub(super) fn run(args: &Args, source: &str, files: &Files) -> Result<(), CliErr
     for command in args.commands.iter().filter(|c| !c.starts_with("frame:")) {
         state.speak(command).map_err(|why| CliError::words(format!("--do {command}"), why))?;
     }
-    let step = args.step_of(&state, filter.as_ref())?;
-    state.speak(&format!("go-to:{step}")).map_err(|why| CliError::work("--step", why))?;
+    let steps = args.steps_of(&state, filter.as_ref())?;
     let pictures = args.pictures(&state);
     files.prepare()?;
-    let count = pictures.len() * files.formats().len();
-    for (i, picture) in pictures.into_iter().enumerate() {
+    let digits = steps.last().map_or(1, |last| last.to_string().len());
+    let wanted = steps.iter().flat_map(|step| pictures.iter().map(move |picture| (*step, *picture)));
+    let all = steps.len() * pictures.len();
+    for (i, (step, picture)) in wanted.enumerate() {
+        bar.report(i as f32 / all as f32, "making figures");
+        state.apply(Command::GoTo(step));
         let export = Export {
             picture,
             paper: args.paper.paper(),
@@ -128,12 +144,11 @@ pub(super) fn run(args: &Args, source: &str, files: &Files) -> Result<(), CliErr
             outline_text: files.outline_text(),
             aspect,
         };
-        for (j, format) in files.formats().into_iter().enumerate() {
-            bar.report((i * files.formats().len() + j) as f32 / count as f32, "making figures");
+        for format in files.formats() {
             if bar.cancelled() {
                 return Err(CliError::Interrupted);
             }
-            let path = files.path(&state.figure_name(&export), format);
+            let path = files.path(&state.figure_name(&export, digits), format);
             let bytes = state.figure_file(&export, format, &path.to_string_lossy());
             write(&path, &bytes.map_err(|why| CliError::work(path.display().to_string(), why))?)?;
         }
@@ -150,7 +165,7 @@ struct Begin {
     path: Option<String>,
 }
 
-impl Args {
+impl Snapshot {
     /// The filter of the step that is wanted.
     fn filter(&self) -> Result<Option<Filter>, CliError> {
         let hidden = format!("verdict:{}", Verdict::Hidden.name());
@@ -207,16 +222,7 @@ impl Args {
         if let Some(eye) = begin.eye.or(sized) {
             state.see_from(&eye);
         }
-        while let Some(busy) = state.busy() {
-            bar.report(busy.fraction * 0.9, "recording");
-            if bar.cancelled() {
-                state.apply(Action::Cancel);
-                return Err(CliError::Interrupted);
-            }
-            if !state.poll() {
-                thread::sleep(REST);
-            }
-        }
+        wait(state, bar)?;
         match (state.film(), state.notices.iter().rev().find(|n| n.is_error)) {
             (Some(_), _) => Ok(()),
             (None, Some(notice)) => Err(CliError::work(state.method.as_str(), notice.text.as_str())),
@@ -224,18 +230,24 @@ impl Args {
         }
     }
 
-    /// The step that is wanted, of a film that is there.
-    fn step_of(&self, state: &State, filter: Option<&Filter>) -> Result<usize, CliError> {
+    /// The steps that are wanted, of a film that is there.
+    fn steps_of(&self, state: &State, filter: Option<&Filter>) -> Result<Vec<usize>, CliError> {
         let last = state.len();
-        if let Some(step) = self.step {
+        let Steps(from, to, stride) = match (self.step, self.steps) {
+            (Some(step), _) => Steps(step, step, 1),
+            (None, Some(steps)) => steps,
+            (None, None) => Steps(last, last, 1),
+        };
+        if to > last {
+            let option = if self.step.is_some() { "--step" } else { "--steps" };
             let run = format!("the run has {} steps: 0 to {last}", count(last));
-            return if step <= last { Ok(step) } else { Err(CliError::words(format!("--step {step}"), run)) };
+            return Err(CliError::words(format!("{option} {to}"), run));
         }
         let (Some(filter), Some(stage), Some(film)) = (filter, state.staged(), state.film()) else {
-            return Ok(last);
+            return Ok((from..=to).step_by(stride).collect());
         };
         let applied = filter.on(stage.scene(), film);
-        (0..last).find(|&at| applied.passes(at)).map(|at| at + 1).ok_or_else(|| {
+        (0..last).find(|&at| applied.passes(at)).map(|at| vec![at + 1]).ok_or_else(|| {
             let option = if self.first_hidden { "--first-hidden" } else { "--where" };
             let counts = film.stamps.counts(last);
             let mut there: Vec<String> = Counts::VERDICTS
