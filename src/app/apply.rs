@@ -43,10 +43,7 @@ impl State {
                 self.is_to_frame = false;
             }
             Command::Observe(_) => {}
-            Command::Picture(name) => match self.own_named(&name) {
-                Some(which) => self.own_picture = which,
-                None => self.fail(format!("The method has no picture `{name}`.")),
-            },
+            Command::Picture(name) => self.show_picture(&name),
             Command::Depths(scale) => self.depths = scale,
             Command::Filter(text) => self.filter = text,
             Command::Fold(at) => self.outline.toggle(at),
@@ -80,6 +77,13 @@ impl State {
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    fn show_picture(&mut self, name: &str) {
+        match self.own_named(name) {
+            Some(which) => self.own_picture = which,
+            None => self.fail(format!("The method has no picture `{name}`.")),
+        }
     }
 
     fn move_eye(&mut self, view: &AnyView, gesture: Gesture) {

@@ -31,6 +31,7 @@ pub(super) struct Ink {
     /// Lines and patterns.
     pub stroke: Rgb,
     pub width_pt: f32,
+    pub dash: &'static [f32],
     pub hatch: Hatch,
     /// Inside of areas, and its opacity.
     pub fill: (Rgb, f32),
@@ -42,7 +43,8 @@ impl Ink {
         // A surface has no outline to be dotted, so its inside is.
         let hatch = if role == Role::Outside { Hatch::Dots } else { style.hatch };
         let fill = style.fill.unwrap_or((theme.paper(), 0.0));
-        Self { flat: theme.flat(role), stroke: style.stroke, width_pt: style.width_pt, hatch, fill }
+        let (stroke, width_pt, dash) = (style.stroke, style.width_pt, style.dash);
+        Self { flat: theme.flat(role), stroke, width_pt, dash, hatch, fill }
     }
 }
 
@@ -244,12 +246,16 @@ impl Canvas {
     }
 
     /// A line of a width in points, before and behind surfaces with these opacities.
-    pub fn line(&mut self, ends: [Vec3; 2], color: Rgb, width_pt: f32, [front, behind]: [f32; 2]) {
+    pub fn line(&mut self, ends: [Vec3; 2], ink: &Ink, width_pt: f32, [front, behind]: [f32; 2]) {
         let half = (width_pt * self.scale * 0.5).max(0.5);
         let Some(along) = self.along(ends) else { return };
         let is_flat = (along.to.x - along.from.x).abs() >= (along.to.y - along.from.y).abs();
         let reach = half.ceil() as i64;
+        let length_pt = (along.to - along.from).truncate().length() / self.scale;
         for i in 0..along.count {
+            if is_between(ink.dash, along.part(i) * length_pt) {
+                continue;
+            }
             let p = along.at(i);
             let alpha = if self.is_before(p) { front } else { behind };
             for off in -reach..=reach {
@@ -258,7 +264,7 @@ impl Canvas {
                 let middle = if is_flat { p.y - (y as f32 + 0.5) } else { p.x - (x as f32 + 0.5) };
                 let cover = (half + 0.5 - middle.abs()).clamp(0.0, 1.0);
                 if let Some(at) = self.sample(x, y).filter(|_| cover > 0.0) {
-                    self.blend(at, color, alpha * cover);
+                    self.blend(at, ink.stroke, alpha * cover);
                 }
             }
         }
@@ -362,6 +368,19 @@ impl Along {
         let share = s * self.to.z / ((1.0 - s) * self.from.z + s * self.to.z);
         self.range[0] + (self.range[1] - self.range[0]) * share
     }
+}
+
+/// Whether a place along a line lies between two dashes, all in points.
+fn is_between(dash: &[f32], at_pt: f32) -> bool {
+    let period: f32 = dash.iter().sum();
+    let mut rest = if period > 0.0 { at_pt.rem_euclid(period) } else { return false };
+    for (i, length) in dash.iter().enumerate() {
+        if rest < *length {
+            return i % 2 == 1;
+        }
+        rest -= length;
+    }
+    false
 }
 
 /// The part of a row inside a convex polygon.

@@ -146,10 +146,13 @@ impl State {
             legend: Vec::new(),
             caption: self.caption(export.picture)?,
         };
-        // The legend's room is known before the picture is laid out.
-        let world = self.content(export, aspect, page.room_pt())?;
-        page.legend = world.1;
-        let mut content = self.content(export, aspect, page.room_pt())?.0;
+        let (mut content, entries) = self.content(export, aspect, page.room_pt())?;
+        page.legend = entries;
+        let room = page.room_pt();
+        // The legend takes room that only a slide, or a high picture, has not.
+        if content.size_pt.y > room.y {
+            content = self.content(export, aspect, room)?.0;
+        }
         let legend: Vec<&str> = page.legend.iter().map(|e| e.label.as_str()).collect();
         let of = if legend.is_empty() { String::new() } else { format!(" Shown: {}.", legend.join("; ")) };
         content.description = page.caption.clone() + &of;
@@ -168,6 +171,8 @@ impl State {
             Picture::Eye => self.seen(export, room, label),
             Picture::Code => {
                 let drawing = self.listed(room.x)?;
+                let shrunk = (room.y / drawing.size_pt.y.max(1.0)).min(1.0);
+                let drawing = drawing.scaled(shrunk);
                 let entries = self.entries_of(&drawing);
                 Some((drawing, entries))
             }
@@ -276,8 +281,10 @@ impl State {
                 format!("{}{depths}. ", crate::drawing::words::capitalized(reel.pictures().get(which)?))
             }
         };
+        let sentence = self.sentence();
+        let stop = if sentence.ends_with(['.', '!', '?']) { "" } else { "." };
         Some(format!(
-            "{what}{}, {}: {} {}s; {}. Step {} of {}: {}{}",
+            "{what}{}, {}: {} {}s; {}. Step {} of {}: {sentence}{stop}{}",
             card.name,
             scene.name(),
             count(scene.live_count()),
@@ -285,7 +292,6 @@ impl State {
             said.join(", "),
             count(self.step),
             count(self.len()),
-            self.sentence(),
             departs(card.key, &card.departing(|d| d.holds(reel.knobs())))
         ))
     }

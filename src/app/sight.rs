@@ -29,8 +29,19 @@ const ROWS: u32 = 256;
 /// How much of what is behind a see-through segment is covered by it.
 const VEIL: f32 = 0.3;
 
-/// What a column shows: colors with half heights (of the walls' image, 0 to 1), the farthest first.
-type Bands = Vec<(Rgb, f32, Subject)>;
+/// What a column shows, the farthest first.
+type Bands = Vec<Band>;
+
+/// A thing in a column.
+#[derive(Clone, Copy)]
+struct Band {
+    /// Its color as a wall, which fades with the distance, and as a pixel of the strip.
+    wall: Rgb,
+    pixel: Rgb,
+    /// Half its height as a wall, of the whole.
+    half: f32,
+    subject: Subject,
+}
 
 impl State {
     /// The Eye's picture, no larger than the room, and its legend.
@@ -57,16 +68,18 @@ impl State {
             .then(|| stage.drawn(self.step))
             .flatten()
             .and_then(|list| stage.painted(&list, export.theme.flat_linear(Role::Paper)));
-        ask.shown.prims &= painted.is_none();
+        let is_painted = painted.is_some();
+        ask.shown.prims &= !is_painted;
         let size = Vec2::new(width, width / aspect) * ask.pixels_per_point;
         (view.width, view.height) = (size.x.round().max(1.0) as u32, size.y.round().max(1.0) as u32);
         let (pixels, over) = stage.surfaces(&view, &ask)?;
         let marks = page::legend(&over);
         let picture = Picture::Over(painted.unwrap_or(pixels), over, view);
         let mut entries = self.entries(marks);
-        // What was left out is not in this picture.
-        entries.retain(|e| {
-            matches!(e.role, Role::Scene | Role::Visible | Role::Current | Role::Selected | Role::Evidence)
+        // What was left out is not in this picture; what stands for something has colors of its own.
+        entries.retain(|e| match e.role {
+            Role::Scene | Role::Visible => !is_painted,
+            role => matches!(role, Role::Current | Role::Selected | Role::Evidence),
         });
         Some((panels(width, 1, &[Panel { label, picture }]), entries))
     }
@@ -91,16 +104,8 @@ impl State {
         rims(&columns, [walls, strip], &mut paper);
         let [a, b] = strip;
         paper.outline(Layer::Labels, Role::Faint, Subject::None, [a, vec2(b.x, a.y), b, vec2(a.x, b.y)]);
-        for (subject, role, y) in [
-            (self.selection, Role::Selected, strip[1].y + 4.0),
-            (self.current_subject(), Role::Current, strip[0].y - 4.0),
-        ] {
-            let Some((from, to)) = stage.extent_of(subject) else { continue };
-            let x = |ndc: f32| (ndc * 0.5 + 0.5) * room.x;
-            let ends = [vec2(x(from), y), vec2(x(to).max(x(from) + 4.0).min(room.x), y)];
-            paper.line(Layer::Emphasis, role, subject, ends);
-        }
-        let seen: BTreeSet<Subject> = columns.iter().flatten().map(|(_, _, s)| *s).collect();
+        self.underline(stage, strip, &mut paper);
+        let seen: BTreeSet<Subject> = columns.iter().flatten().map(|band| band.subject).collect();
         let plural = if seen.len() == 1 { "" } else { "s" };
         let text = format!("{} pixels, {} segment{plural} seen", count(columns.len()), count(seen.len()));
         let text = if stage.drawn(0).is_some() { format!("{} pixels", count(columns.len())) } else { text };
@@ -115,6 +120,20 @@ impl State {
         Some((paper, entries))
     }
 
+    /// What is selected stands below the strip, what the step is about on it.
+    fn underline(&self, stage: &Stage<Flat>, strip: [Vec2; 2], paper: &mut Drawing) {
+        let width = strip[1].x;
+        for (subject, role, y) in [
+            (self.selection, Role::Selected, strip[1].y + 4.0),
+            (self.current_subject(), Role::Current, strip[0].y - 4.0),
+        ] {
+            let Some((from, to)) = stage.extent_of(subject) else { continue };
+            let x = |ndc: f32| (ndc * 0.5 + 0.5) * width;
+            let ends = [vec2(x(from), y), vec2(x(to).max(x(from) + 4.0).min(width), y)];
+            paper.line(Layer::Emphasis, role, subject, ends);
+        }
+    }
+
     /// What each column shows: what a method stands for segments in its own colors, else segments by state.
     fn columns(&self, stage: &Stage<Flat>, theme: Theme) -> Vec<Bands> {
         let half = |nearest: f32, depth: f32| 0.46 * (nearest / depth).sqrt();
@@ -125,7 +144,9 @@ impl State {
             let nearest = depths.iter().flatten().copied().fold(f32::INFINITY, f32::min);
             let colors = pixels.rgba.as_chunks::<4>().0.iter().map(|p| [p[0], p[1], p[2]]);
             let band = |(color, depth): (Rgb, &Option<f32>)| {
-                depth.map(|d| (color, half(nearest, d), Subject::None)).into_iter().collect()
+                let of =
+                    |d| Band { wall: color, pixel: color, half: half(nearest, d), subject: Subject::None };
+                depth.map(of).into_iter().collect()
             };
             return colors.zip(&depths).map(band).collect();
         }
@@ -133,18 +154,20 @@ impl State {
         let all = |c: &Column| c.opaque.into_iter().chain(c.through.iter().copied()).collect::<Vec<_>>();
         let nearest = image.iter().flat_map(all).map(|(_, d)| d).fold(f32::INFINITY, f32::min);
         let bands = |(i, column): (usize, &Column)| {
-            let mut under = theme.paper();
+            let mut under = [theme.paper(); 2];
             let band = |(prim, depth): (PrimId, f32)| {
                 let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(prim, self.step));
                 let is_veil = column.opaque.is_none_or(|(p, _)| p != prim);
                 let near = (nearest / depth).sqrt();
-                let alpha = (0.35 + 0.65 * near) * if is_veil { VEIL } else { 1.0 };
+                let alpha = if is_veil { VEIL } else { 1.0 };
                 let culled = matches!(known, Known::Decided(v)
                     if v != Verdict::Visible && v != Verdict::Partial);
                 // What was culled has gaps: every other pair of columns is left out.
-                let alpha = if culled && (i / 2) % 2 == 1 { 0.0 } else { alpha };
-                under = mixed(under, theme.style(role_of(known)).stroke, alpha);
-                (under, half(nearest, depth), Subject::Prim(prim))
+                let wall = if culled && (i / 2) % 2 == 1 { 0.0 } else { alpha * (0.35 + 0.65 * near) };
+                let color = theme.style(role_of(known)).stroke;
+                under = [mixed(under[0], color, wall), mixed(under[1], color, alpha)];
+                let [wall, pixel] = under;
+                Band { wall, pixel, half: half(nearest, depth), subject: Subject::Prim(prim) }
             };
             all(column).into_iter().map(band).collect()
         };
@@ -158,8 +181,8 @@ fn image(columns: &[Bands], rows: u32, ground: Rgb) -> Pixels {
     for row in 0..rows {
         let away = ((row as f32 + 0.5) / rows as f32 - 0.5).abs();
         for column in columns {
-            let shown = column.iter().rev().find(|(_, half, _)| rows == 1 || away <= *half);
-            let [r, g, b] = shown.map_or(ground, |(color, ..)| *color);
+            let shown = column.iter().rev().find(|band| rows == 1 || away <= band.half);
+            let [r, g, b] = shown.map_or(ground, |band| if rows == 1 { band.pixel } else { band.wall });
             rgba.extend([r, g, b, 255]);
         }
     }
@@ -170,7 +193,7 @@ fn image(columns: &[Bands], rows: u32, ground: Rgb) -> Pixels {
 fn rims(columns: &[Bands], places: [[Vec2; 2]; 2], paper: &mut Drawing) {
     for i in 1..columns.len() {
         let (Some(a), Some(b)) = (columns[i - 1].last(), columns[i].last()) else { continue };
-        if a.2 == b.2 {
+        if a.subject == b.subject {
             continue;
         }
         for [min, max] in places {

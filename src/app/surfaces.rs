@@ -110,7 +110,7 @@ impl Stage<Solid> {
                 let corners: Vec<Vec3> = scene.prim_points(prim).collect();
                 for side in 0..corners.len() {
                     let ends = [corners[side], corners[(side + 1) % corners.len()]];
-                    canvas.line(ends, ask.ink(role(prim)).stroke, 0.5, [alpha; 2]);
+                    canvas.line(ends, &Ink { dash: &[], ..ask.ink(role(prim)) }, 0.5, [alpha; 2]);
                 }
             }
             return;
@@ -143,7 +143,7 @@ fn boxes(recorded: &Recorded<Solid>, ask: &Ask, has_stand_ins: bool, canvas: &mu
         let ink = ask.ink(role);
         let (width, strength) = if is_done { (DONE_BOX, DONE) } else { (OPEN_BOX, 1.0) };
         for ends in edges(hierarchy, node) {
-            canvas.line(ends, ink.stroke, ink.width_pt * width, [strength, BEHIND * strength]);
+            canvas.line(ends, &ink, ink.width_pt * width, [strength, BEHIND * strength]);
         }
     }
 }
@@ -167,7 +167,7 @@ fn marked(marks: &Drawing<Vec3>, ask: &Ask, canvas: &mut Canvas) -> Drawing<Vec3
             for side in sides {
                 let (front, behind) = canvas.parted(side);
                 for part in behind {
-                    canvas.line(part, ink.stroke, ink.width_pt, [BEHIND; 2]);
+                    canvas.line(part, &ink, ink.width_pt, [BEHIND; 2]);
                 }
                 drawn.extend(front);
             }

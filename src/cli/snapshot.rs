@@ -57,7 +57,7 @@ pub(super) struct Snapshot {
     /// Width over height of the Observer's picture [default: to fit flatland, 4:3 in space]
     #[arg(long, value_name = "RATIO", requires = "scene", value_parser = ratio)]
     aspect: Option<f32>,
-    /// A command of the explorer before that, such as look-in-cut, surface-wireframe, select:node:4, frame:0:7
+    /// A command of the explorer before that, such as look-in-cut, surface-wire, select:node:4, frame:0:7
     /// (view 7 of path 0); may be given several times
     #[arg(long = "do", value_name = "COMMAND", requires = "scene")]
     commands: Vec<String>,

@@ -103,8 +103,7 @@ fn the_window_writes_what_the_command_writes() {
         state.apply(Command::Open(source));
         state.block_until_idle();
         state.apply(Command::Method("hierarchical-z".into()));
-        state.apply(Command::Set("pixels".into(), "1".into(), 0));
-        state.apply(Action::Undo);
+        state.apply(Command::Set("backface-culling".into(), "true".into(), 0));
         state.block_until_idle();
         state.apply(Command::GoTo(state.len() / 2));
         state.apply(Command::Select(Subject::Node(NodeId(1))));
