@@ -1,6 +1,6 @@
 //! What is on screen as a figure file: any of its pictures on paper, with legend and caption. The window and
-//! the command line write the same bytes. Every file carries the session, so that opening it brings everything
-//! back, and the command that makes it again.
+//! the command line write the same bytes. Every file carries the session, so that opening it brings
+//! everything back, and the command that makes it again.
 
 use std::path::Path;
 
@@ -182,8 +182,8 @@ impl State {
                 let mut drawing = reel.picture(self.step, which, self.depths);
                 let free = room / drawing.size_pt.max(Vec2::ONE);
                 drawing = drawing.scaled(free.min_element().min(MOST_ENLARGED));
-                let entries = self.entries_of(&drawing);
-                Some((drawing, entries))
+                // Roles have meanings of their own there, which it tells itself.
+                Some((drawing, Vec::new()))
             }
         }
     }
@@ -242,7 +242,7 @@ impl State {
         entries
     }
 
-    /// The roles that a picture outside the world shows, in the words of the screen's legend.
+    /// The roles that the pseudocode shows, in the words of the screen's legend.
     fn entries_of(&self, drawing: &Drawing) -> Vec<Entry> {
         let words = self.legend();
         let mut entries = page::legend(drawing);

@@ -16,8 +16,8 @@ use crate::scene::Progress;
                   cullscope figure --list\n  cullscope figure --all\n  \
                   cullscope figure --scene scenes2d/street.json --method hierarchical-z --first-hidden \
                   --picture all --paper column\n  cullscope figure --check figures\n\n\
-                  Every file carries how it was made: the explorer opens it where it was, and its text has the \
-                  command that makes it again in its folder.\n\n\
+                  Every file carries how it was made: the explorer opens it where it was, and its text has \
+                  the command that makes it again in its folder.\n\n\
                   For LaTeX write pdf and use \\includegraphics. With the svg package TeX sets the text: \
                   it runs out of the page, and signs like _ and % stop TeX."
 )]

@@ -240,7 +240,7 @@ impl Snapshot {
         };
         if to > last {
             let option = if self.step.is_some() { "--step" } else { "--steps" };
-            let run = format!("the run has {} steps: 0 to {last}", count(last));
+            let run = format!("the run has {0} steps: 0 to {0}", count(last));
             return Err(CliError::words(format!("{option} {to}"), run));
         }
         let (Some(filter), Some(stage), Some(film)) = (filter, state.staged(), state.film()) else {

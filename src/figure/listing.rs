@@ -78,8 +78,8 @@ pub fn listing(rows: &[Row<'_>], width_pt: f32) -> Drawing {
     paper
 }
 
-/// Marks a line from `left` whose base is `first`, so long, and sets the values beside it, or below where they
-/// do not fit; returns the base of the last of these lines.
+/// Marks a line from `left` whose base is `first`, so long, and sets the values beside it, or below where
+/// they do not fit; returns the base of the last of these lines.
 fn light(
     values: &str,
     [left, first, length]: [f32; 3],
