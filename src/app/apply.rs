@@ -2,8 +2,8 @@
 
 use super::any::{AnyStage, AnyView};
 use super::command::{Action, Command};
-use super::export::Picture;
 use super::open::{AnyOpened, Wanted};
+use super::plate::Picture;
 use super::session::{Session, write_file};
 use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};

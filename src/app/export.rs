@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use glam::Vec2;
-use serde::{Deserialize, Serialize};
 
+use super::plate::{Export, Made, PAPERS, Picture, word};
 use super::session::{Session, SessionError, write_file};
 use super::shown::{LookIn, Theme};
 use super::stage::Staged;
@@ -34,73 +34,6 @@ const COMMON_ASPECT: f32 = 4.0 / 3.0;
 const LABEL_PT: f32 = 17.0;
 /// Pictures of methods are not enlarged beyond this.
 const MOST_ENLARGED: f32 = 1.6;
-
-/// What a figure shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Picture {
-    /// The scene from outside.
-    #[default]
-    Observer,
-    /// What the Eye sees.
-    Eye,
-    /// The pseudocode.
-    Code,
-    /// A picture of the method, by its number.
-    Own(usize),
-}
-
-/// How a figure is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Export {
-    /// What it shows.
-    pub picture: Picture,
-    /// Its size.
-    pub paper: Paper,
-    /// Its colors.
-    pub theme: Theme,
-    /// Whether letters of SVG files are outlines.
-    pub outline_text: bool,
-    /// Width over height of the Observer's picture.
-    pub aspect: f32,
-}
-
-/// How a figure was made, in its file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Made {
-    /// The command that makes it again, in the folder of the file.
-    pub command: String,
-    /// Word of the picture.
-    pub picture: String,
-    /// Word of the paper.
-    pub paper: String,
-    /// Name of the theme.
-    pub theme: String,
-    /// `fonts` or `paths`.
-    pub text: String,
-    /// Width over height of the Observer's picture.
-    pub aspect: f32,
-}
-
-/// Papers by the words of files and the command line.
-pub const PAPERS: [(&str, Paper); 3] =
-    [("column", Paper::Column), ("page", Paper::TwoColumns), ("slide", Paper::Slide)];
-
-impl Export {
-    /// The word of its paper; that of a page of any other size is `page`.
-    pub fn paper_word(&self) -> &'static str {
-        PAPERS.iter().find(|(_, paper)| *paper == self.paper).map_or("page", |(word, _)| word)
-    }
-    /// `fonts` or `paths`.
-    pub fn text_word(&self) -> &'static str {
-        if self.outline_text { "paths" } else { "fonts" }
-    }
-}
-
-/// A name as one word of a file or of the command line.
-pub fn word(name: &str) -> String {
-    let parts = name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty());
-    parts.collect::<Vec<_>>().join("-").to_lowercase()
-}
 
 impl State {
     /// What can be made a figure of, by word.

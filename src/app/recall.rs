@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::any::ViewRecord;
+use super::camera::ObserverCamera;
 use super::command::{Action, Command};
-use super::export::word;
 use super::findings::Laboratory;
 use super::measured::{Tables, tables};
 use super::open::{Wanted, file_name, named_from};
-use super::recipe::observer;
+use super::plate::word;
 use super::session::{Picked, Session, Shown as Kept, Stop, VERSION};
 use super::shown::{Breakpoint, Detail, Dialog, Layout, LookIn, Shown, Surface, Theme};
 use super::start::Start;
@@ -279,7 +279,7 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
             ("object", n) => Command::Select(Subject::Object(ObjectId(n.parse().ok()?))),
             _ => return None,
         },
-        "observe" => Command::Observe(observer(value)?),
+        "observe" => Command::Observe(ObserverCamera::parse(value)?),
         "picture" => Command::Picture(value.to_owned()),
         "depths" => Command::Depths(DepthScale::ALL.into_iter().find(|s| s.name() == value)?),
         _ => return None,

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::camera::ObserverCamera;
 use super::command::Action;
-use super::export::{Export, Picture};
 use super::open::named_from;
+use super::plate::{Export, Picture};
 use super::recall::spoken_subject;
 use super::shown::{LookIn, Surface};
 use super::state::State;
@@ -39,7 +39,7 @@ impl State {
         let picture = self.pictures().into_iter().find(|(p, _)| *p == export.picture);
         words.extend(picture.into_iter().flat_map(|(_, word)| ["--picture".into(), word]));
         words.extend(["--paper", export.paper_word(), "--theme", export.theme.name()].map(String::from));
-        if export.picture == Picture::Observer && export.aspect != self.fitting_aspect() {
+        if export.aspect != self.fitting_aspect() {
             words.extend(["--aspect".into(), export.aspect.to_string()]);
         }
         if export.outline_text {
@@ -69,11 +69,16 @@ impl State {
             Subject::Eye => Some(Action::SelectEye.info().name.to_owned()),
             subject => spoken_subject(subject).map(|thing| format!("select:{thing}")),
         });
-        if self.depths != DepthScale::default() && matches!(export.picture, Picture::Own(_)) {
+        if self.depths != DepthScale::default() {
             spoken.push(format!("depths:{}", self.depths.name()));
         }
-        if export.picture == Picture::Observer && self.observer != self.framing(export.aspect) {
-            spoken.push(format!("observe:{}", numbers(&self.observer)));
+        // That of a figure of another one is the one that is shown.
+        if self.own_picture > 0 && !matches!(export.picture, Picture::Own(_)) {
+            let shown = self.pictures().into_iter().find(|(p, _)| *p == Picture::Own(self.own_picture));
+            spoken.extend(shown.map(|(_, word)| format!("picture:{word}")));
+        }
+        if self.observer != self.framing(export.aspect) {
+            spoken.push(format!("observe:{}", self.observer.numbers()));
         }
         spoken
     }
@@ -93,20 +98,6 @@ impl State {
         }
         camera
     }
-}
-
-fn numbers(camera: &ObserverCamera) -> String {
-    let [x, y, z] = camera.pivot;
-    let all = [x, y, z, camera.yaw, camera.pitch, camera.roll, camera.distance, camera.extent];
-    all.map(|v| v.to_string()).join(",")
-}
-
-/// The Observer whose numbers these are; `None` of one that cannot see.
-pub(super) fn observer(text: &str) -> Option<ObserverCamera> {
-    let all: Vec<f32> = text.split(',').map(|v| v.trim().parse().ok()).collect::<Option<_>>()?;
-    let [x, y, z, yaw, pitch, roll, distance, extent] = all[..] else { return None };
-    let camera = ObserverCamera { pivot: [x, y, z], yaw, pitch, roll, distance, extent };
-    camera.is_sound().then_some(camera)
 }
 
 /// A word for a shell.

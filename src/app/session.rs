@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::any::ViewRecord;
 use super::camera::ObserverCamera;
-use super::export::Made;
 use super::file::write_whole;
+use super::plate::Made;
 
 /// Version that this program writes; it reads no later one.
 pub const VERSION: u32 = 1;

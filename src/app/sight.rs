@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 
 use glam::{Vec2, vec2};
 
-use super::export::Export;
 use super::pick::Column;
+use super::plate::Export;
 use super::shown::Surface;
 use super::stage::Stage;
 use super::state::State;

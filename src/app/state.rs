@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
-use super::export::Picture;
 use super::findings::Findings;
 use super::measured::Measured;
 use super::outline::Outline;
+use super::plate::Picture;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Reading, Staged};

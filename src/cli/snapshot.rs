@@ -131,12 +131,14 @@ pub(super) fn run(args: &Snapshot, source: &str, files: &Files) -> Result<(), Cl
     let steps = args.steps_of(&state, filter.as_ref())?;
     let pictures = args.pictures(&state);
     files.prepare()?;
+    let shown = state.own_picture;
     let digits = steps.last().map_or(1, |last| last.to_string().len());
     let wanted = steps.iter().flat_map(|step| pictures.iter().map(move |picture| (*step, *picture)));
     let all = steps.len() * pictures.len();
     for (i, (step, picture)) in wanted.enumerate() {
         bar.report(i as f32 / all as f32, "making figures");
         state.apply(Command::GoTo(step));
+        state.own_picture = if let Picture::Own(which) = picture { which } else { shown };
         let export = Export {
             picture,
             paper: args.paper.paper(),
