@@ -2,6 +2,8 @@
 
 #[path = "cli/cubes.rs"]
 mod cubes;
+#[path = "cli/figures.rs"]
+mod figures;
 #[path = "cli/motion.rs"]
 mod motion;
 #[path = "cli/stability.rs"]

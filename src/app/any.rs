@@ -22,6 +22,13 @@ impl AnyStage {
     pub fn view(&self) -> AnyView {
         each!(self, s => Either(s.view))
     }
+    /// The Eye with an image of another size; of flatland it has height 1.
+    pub fn sized(&self, (width, height): (u32, u32)) -> AnyView {
+        match self {
+            Self::Flat(s) => Either::Flat(View { width, height: 1, ..s.view }),
+            Self::Solid(s) => Either::Solid(View { width, height, ..s.view }),
+        }
+    }
     /// The scene.
     pub fn scene(&self) -> AnyScene {
         each!(self, s => Either(s.scene.clone()))

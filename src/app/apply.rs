@@ -3,6 +3,7 @@
 use super::any::{AnyStage, AnyView};
 use super::command::{Action, Command};
 use super::open::{AnyOpened, Wanted};
+use super::plate::Picture;
 use super::session::{Session, write_file};
 use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
@@ -42,6 +43,8 @@ impl State {
                 self.is_to_frame = false;
             }
             Command::Observe(_) => {}
+            Command::Picture(name) => self.show_picture(&name),
+            Command::Depths(scale) => self.depths = scale,
             Command::Filter(text) => self.filter = text,
             Command::Fold(at) => self.outline.toggle(at),
             Command::Detail(detail) => self.detail = detail,
@@ -74,6 +77,13 @@ impl State {
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    fn show_picture(&mut self, name: &str) {
+        match self.own_named(name) {
+            Some(which) => self.own_picture = which,
+            None => self.fail(format!("The method has no picture `{name}`.")),
+        }
     }
 
     fn move_eye(&mut self, view: &AnyView, gesture: Gesture) {
@@ -126,6 +136,7 @@ impl State {
             | Action::ExportSvg
             | Action::ExportPdf
             | Action::ExportPng => open,
+            Action::FigureOwn => self.film().is_some_and(|f| !f.reel.pictures().is_empty()),
             Action::Report | Action::About | Action::FrameSelection | Action::Swap => open,
             Action::Laboratory => open,
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
@@ -158,6 +169,10 @@ impl State {
             Action::ThemeLight => s.theme == Theme::Light,
             Action::ThemeDark => s.theme == Theme::Dark,
             Action::ThemePrint => s.theme == Theme::Print,
+            Action::FigureObserver => self.export_of == Picture::Observer,
+            Action::FigureEye => self.export_of == Picture::Eye,
+            Action::FigureOwn => matches!(self.export_of, Picture::Own(_)),
+            Action::FigureCode => self.export_of == Picture::Code,
             Action::LayoutDebug => s.layout == Layout::Debug,
             Action::LayoutLecture => s.layout == Layout::Lecture,
             Action::LayoutFigure => s.layout == Layout::Figure,
@@ -194,6 +209,10 @@ impl State {
             Action::ExportSvg => self.effects.push(Effect::Export(Format::Svg)),
             Action::ExportPdf => self.effects.push(Effect::Export(Format::Pdf)),
             Action::ExportPng => self.effects.push(Effect::Export(Format::Png)),
+            Action::FigureObserver => self.export_of = Picture::Observer,
+            Action::FigureEye => self.export_of = Picture::Eye,
+            Action::FigureOwn => self.export_of = Picture::Own(self.own_picture),
+            Action::FigureCode => self.export_of = Picture::Code,
             Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
             Action::Cancel if self.busy().is_some() => {
                 self.worker.cancel();
@@ -426,6 +445,43 @@ impl State {
         }
         self.recall = None;
         self.load(Wanted::named(source), views);
+    }
+
+    /// Puts a scene on stage that was loaded elsewhere, with the views that were named for it, and records it
+    /// with the method and the parameters that are wanted.
+    pub fn put(&mut self, scene: AnyOpened) {
+        self.recall = None;
+        self.put_on_stage(scene);
+    }
+
+    /// Lets culling see from here, as it is: near and far stay.
+    pub fn see_from(&mut self, view: &AnyView) {
+        self.change(0, |s| {
+            if let Some(stage) = &mut s.stage {
+                stage.set_view(view);
+            }
+        });
+    }
+
+    /// Carries out a command by its name, such as `step` or `go-to:12`.
+    ///
+    /// # Errors
+    /// If there is no such command, or what it says went wrong, in a line.
+    pub fn speak(&mut self, text: &str) -> Result<(), String> {
+        self.notices.clear();
+        self.order(text)?;
+        self.block_until_idle();
+        self.notices.iter().find(|n| n.is_error).map_or(Ok(()), |n| Err(n.text.clone()))
+    }
+
+    /// The same without waiting for what it takes.
+    ///
+    /// # Errors
+    /// If there is no such command.
+    pub fn order(&mut self, text: &str) -> Result<(), String> {
+        let command = super::recall::spoken_command(text).ok_or("this is not a command of the explorer")?;
+        self.apply(command);
+        Ok(())
     }
 
     pub(super) fn load(&mut self, wanted: Wanted, views: Option<String>) {

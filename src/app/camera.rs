@@ -114,6 +114,19 @@ impl ObserverCamera {
         let pivot = at + (Vec2::new(self.pivot[0], self.pivot[1]) - at) * kept;
         self.pivot = [pivot.x, pivot.y, 0.0];
     }
+    /// Its numbers as text, every bit of them.
+    pub fn numbers(&self) -> String {
+        let [x, y, z] = self.pivot;
+        let all = [x, y, z, self.yaw, self.pitch, self.roll, self.distance, self.extent];
+        all.map(|v| v.to_string()).join(",")
+    }
+    /// The Observer whose [numbers](Self::numbers) these are; `None` of one that cannot see.
+    pub fn parse(text: &str) -> Option<Self> {
+        let all: Vec<f32> = text.split(',').map(|v| v.trim().parse().ok()).collect::<Option<_>>()?;
+        let [x, y, z, yaw, pitch, roll, distance, extent] = all[..] else { return None };
+        let camera = Self { pivot: [x, y, z], yaw, pitch, roll, distance, extent };
+        camera.is_sound().then_some(camera)
+    }
     /// Whether every number is finite and the distance positive: what a session file may hold.
     pub fn is_sound(&self) -> bool {
         let all = [self.yaw, self.pitch, self.roll, self.distance, self.extent];

@@ -9,6 +9,7 @@ use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
 use crate::method::Verdict;
+use crate::raster::DepthScale;
 
 /// Where an action stands in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -90,6 +91,13 @@ actions! {
         surfaces of space as pixels.";
     File ExportPdf "export-pdf" "Export figure as PDF…" [] "Writes the picture on screen as a page.";
     File ExportPng "export-png" "Export figure as PNG…" ["Ctrl+E"] "Writes the picture on screen as pixels.";
+    File FigureObserver "figure-observer" "Figures show: Observer view" [] "Exported figures show the scene \
+        from outside.";
+    File FigureEye "figure-eye" "Figures show: Eye view" [] "Exported figures show what the Eye sees.";
+    File FigureOwn "figure-picture" "Figures show: the method's picture" [] "Exported figures show the \
+        picture of the pane Pictures.";
+    File FigureCode "figure-pseudocode" "Figures show: pseudocode" [] "Exported figures show the pseudocode, \
+        with the line of the step.";
     File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
                                                        open.";
     File Quit "quit" "Quit" ["Ctrl+Q"] "Closes the explorer.";
@@ -255,6 +263,10 @@ pub enum Command {
     Frame(usize, usize),
     /// Moves the Observer.
     Observe(ObserverCamera),
+    /// Shows a picture of the method, by its word.
+    Picture(String),
+    /// Shades depths in it on this scale.
+    Depths(DepthScale),
     /// Filters the event tree.
     Filter(String),
     /// Folds or unfolds the node entered by this event.

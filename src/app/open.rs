@@ -19,9 +19,9 @@ pub struct Example {
 }
 
 /// A scene, and the views that were named with it.
-pub(super) type Opened<S> = (Arc<Scene<S>>, Option<ViewPath<S>>);
+pub type Opened<S> = (Arc<Scene<S>>, Option<ViewPath<S>>);
 /// The same of either space.
-pub(super) type AnyOpened = Either<Opened<Flat>, Opened<Solid>>;
+pub type AnyOpened = Either<Opened<Flat>, Opened<Solid>>;
 
 /// A scene to load, as a person or a session names it.
 #[derive(Clone, Debug, Default)]

@@ -24,6 +24,25 @@ impl Stage<Flat> {
             .filter(|n| n.0 > 0)
             .map_or(Subject::None, Subject::Node)
     }
+    /// From where to where a thing reaches in the image, −1 to 1; `None` if nothing of it is before the Eye.
+    pub fn extent_of(&self, subject: Subject) -> Option<(f32, f32)> {
+        let corners: Vec<_> = match subject {
+            Subject::Prim(prim) if prim.at() < self.scene.prim_count() => {
+                self.posed().prim_points(prim).collect()
+            }
+            _ => self.bounds_of(subject).filter(|b| !b.is_empty())?.corners().collect(),
+        };
+        let (projection, near) = (self.view.projection(), self.view.eye.near);
+        let clip: Vec<_> = corners.iter().map(|&p| projection.clip(p)).collect();
+        let pairs = clip.iter().flat_map(|a| clip.iter().map(move |b| (*a, *b)));
+        // Of each side the part that lies before the Eye.
+        let before = pairs.filter(|(a, _)| a.y >= near).flat_map(|(a, b)| {
+            let b = if b.y >= near { b } else { a + (b - a) * ((near - a.y) / (b.y - a.y)) };
+            [a.x / a.y, b.x / b.y]
+        });
+        let (from, to) = before.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        (from <= 1.0 && to >= -1.0).then(|| (from.max(-1.0), to.min(1.0)))
+    }
     /// What each column of the Eye's image shows, from left to right.
     pub fn image(&self) -> Vec<Column> {
         let target = raster::render(&**self.posed(), &self.view, self.scene.live());

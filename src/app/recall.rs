@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use super::any::ViewRecord;
+use super::camera::ObserverCamera;
 use super::command::{Action, Command};
 use super::findings::Laboratory;
 use super::measured::{Tables, tables};
 use super::open::{Wanted, file_name, named_from};
+use super::plate::word;
 use super::session::{Picked, Session, Shown as Kept, Stop, VERSION};
 use super::shown::{Breakpoint, Detail, Dialog, Layout, LookIn, Shown, Surface, Theme};
 use super::start::Start;
@@ -14,6 +16,7 @@ use super::state::{Notice, State};
 use crate::drawing::Subject;
 use crate::geometry::{NodeId, ObjectId, PrimId};
 use crate::method::Settings;
+use crate::raster::DepthScale;
 use crate::trace::Counts;
 
 impl State {
@@ -56,8 +59,17 @@ impl State {
                 theme: s.theme.name().into(),
                 layout: s.layout.name().into(),
                 scale: s.scale,
+                picture: self.own_word(),
+                depths: self.depths.name().into(),
             },
+            figure: None,
         }
+    }
+
+    /// The word of the method's picture that is shown; of the first one nothing.
+    fn own_word(&self) -> String {
+        let names = self.film().map_or(&[][..], |f| f.reel.pictures());
+        names.get(self.own_picture).filter(|_| self.own_picture > 0).map_or_else(String::new, |n| word(n))
     }
 
     pub(super) fn save(&mut self, path: &str) {
@@ -119,6 +131,8 @@ impl State {
 
     fn recall_look(&mut self, session: &Session) {
         let kept = &session.shown;
+        let scale = DepthScale::ALL.into_iter().find(|s| s.name() == kept.depths);
+        self.depths = scale.unwrap_or_default();
         let named = Shown::default();
         self.shown = Shown {
             prims: kept.prims,
@@ -131,6 +145,11 @@ impl State {
             layout: Layout::ALL.into_iter().find(|l| l.name() == kept.layout).unwrap_or(named.layout),
             scale: if kept.scale.is_finite() { kept.scale.clamp(0.5, 4.0) } else { 1.0 },
         };
+    }
+
+    /// The number of the method's picture with this word.
+    pub(super) fn own_named(&self, wanted: &str) -> Option<usize> {
+        self.film()?.reel.pictures().iter().position(|name| word(name) == word(wanted))
     }
 
     /// What culling depends on, before the film is recorded.
@@ -167,6 +186,7 @@ impl State {
             Picked::Eye => Subject::Eye,
             _ => Subject::None,
         };
+        self.own_picture = self.own_named(&session.shown.picture).unwrap_or_default();
         self.detail = if session.coarse { Detail::Coarse } else { Detail::Full };
         self.filter = session.filter.clone();
         let end = self.len();
@@ -259,8 +279,21 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
             ("object", n) => Command::Select(Subject::Object(ObjectId(n.parse().ok()?))),
             _ => return None,
         },
+        "observe" => Command::Observe(ObserverCamera::parse(value)?),
+        "picture" => Command::Picture(value.to_owned()),
+        "depths" => Command::Depths(DepthScale::ALL.into_iter().find(|s| s.name() == value)?),
         _ => return None,
     })
+}
+
+/// A thing as `select` takes it.
+pub(super) fn spoken_subject(subject: Subject) -> Option<String> {
+    match subject {
+        Subject::Prim(p) => Some(format!("prim:{p}")),
+        Subject::Node(n) => Some(format!("node:{n}")),
+        Subject::Object(o) => Some(format!("object:{o}")),
+        _ => None,
+    }
 }
 
 fn picked(subject: Subject) -> Picked {

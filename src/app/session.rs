@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::any::ViewRecord;
 use super::camera::ObserverCamera;
 use super::file::write_whole;
+use super::plate::Made;
 
 /// Version that this program writes; it reads no later one.
 pub const VERSION: u32 = 1;
@@ -80,6 +81,10 @@ pub struct Shown {
     pub theme: String,
     /// Name of the layout.
     pub layout: String,
+    /// Word of the method's picture.
+    pub picture: String,
+    /// Name of the scale of depths in such pictures.
+    pub depths: String,
     /// Size of everything.
     pub scale: f32,
 }
@@ -96,6 +101,8 @@ impl Default for Shown {
             look_in: word(),
             theme: word(),
             layout: word(),
+            picture: word(),
+            depths: word(),
             scale: 1.0,
         }
     }
@@ -147,6 +154,9 @@ pub struct Session {
     /// What is shown.
     #[serde(default)]
     pub shown: Shown,
+    /// In a figure's file: how it was made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub figure: Option<Made>,
 }
 
 /// Why a session was refused. Displays as one line.

@@ -5,13 +5,15 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::layers::Layers;
 use crate::culling::Methods;
 use crate::drawing::words::{Room, short};
 use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::index::Hierarchy;
-use crate::method::{Card, Film, Reel};
+use crate::method::{Card, Film, Reel, settings_for};
 use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
 use crate::trace::{Moves, Stamps};
 use crate::truth::Judgement;
@@ -159,6 +161,23 @@ impl<S: Space> Stage<S> {
             _ => None,
         }
     }
+    /// What is brought into the picture with this selection: the thing, or else everything. The Eye too, in
+    /// space unless it stands so far off that the scene would be a spot.
+    pub fn framed(&self, selection: Subject) -> Aabb<S::Vector> {
+        let (whole, eye) = (self.posed().bounds(), &self.view.eye);
+        let is_flat = S::Vector::AXES == 2;
+        match selection {
+            Subject::Eye if is_flat => Aabb::of([eye.position, eye.target]),
+            Subject::Eye => {
+                let around = S::Vector::splat(whole.diagonal() * 0.1);
+                Aabb { min: eye.position - around, max: eye.position + around }
+            }
+            selected => self.bounds_of(selected).unwrap_or_else(|| {
+                let is_by = (eye.position - whole.center()).length() < 1.2 * whole.diagonal();
+                if is_flat || is_by { whole.with(eye.position) } else { whole }
+            }),
+        }
+    }
     /// The index of the film.
     fn hierarchy(&self) -> Option<&dyn Hierarchy<S>> {
         self.recorded.as_ref().map(|r| r.film.hierarchy())
@@ -290,8 +309,15 @@ pub trait Staged {
     fn is_eye_moved(&self) -> bool;
     /// What became of near and far where the Eye was moved out of the range of its path's view, in a line.
     fn changed_depths(&self) -> Option<String>;
-    /// The Eye in one line that can be pasted into a command line.
+    /// The Eye in one line that can be pasted into a command line, every bit of it.
     fn eye_text(&self) -> String;
+    /// Where the Eye stands and looks, for people.
+    fn eye_words(&self) -> String;
+    /// Whether the path that is followed is the scene's, with the same number that it has there: then the
+    /// place names the view.
+    fn is_path_of_scene(&self) -> bool;
+    /// Parameters of the film that are not by default, as the command line takes them.
+    fn changed(&self) -> Vec<(&'static str, String)>;
     /// Every method of the space.
     fn methods(&self) -> Vec<&'static Card>;
 }
@@ -358,24 +384,53 @@ impl<S: Methods> Staged for Stage<S> {
         })
     }
     fn eye_text(&self) -> String {
-        let list =
-            |v: S::Vector| (0..S::Vector::AXES).map(|a| v.get(a).to_string()).collect::<Vec<_>>().join(",");
-        let (v, e) = (&self.view, &self.view.eye);
-        let up = if S::Vector::AXES == 3 { format!(" --up {}", list(e.up)) } else { String::new() };
-        format!(
-            "--eye {} --target {}{up} --fov {} --near {} --far {} --size {}x{}",
-            list(e.position),
-            list(e.target),
-            e.fov.to_degrees(),
-            e.near,
-            e.far,
-            v.width,
-            v.height
-        )
+        view_text(&self.view, self.scene.origin())
+    }
+    fn eye_words(&self) -> String {
+        let eye = &self.view.eye;
+        format!("Eye at ({}) toward ({})", Self::vector(eye.position), Self::vector(eye.target))
+    }
+    fn is_path_of_scene(&self) -> bool {
+        let own = Self::new(self.scene.clone(), None, 0).paths;
+        own.get(self.path).is_some_and(|path| path.views == self.paths[self.path].views)
+    }
+    fn changed(&self) -> Vec<(&'static str, String)> {
+        let Some(film) = self.recorded.as_ref().map(|r| &r.film) else { return vec![] };
+        S::method(film.card().key).map_or(vec![], |entry| settings_for(entry, film.knobs()))
     }
     fn methods(&self) -> Vec<&'static Card> {
         S::methods().iter().map(|m| m.card()).collect()
     }
+}
+
+/// A view in the words of the command line, every bit of it.
+pub fn view_text<S: Space>(view: &View<S>, origin: DVec3) -> String {
+    let list = |v: S::Vector, origin: DVec3| {
+        let number = |a: usize| match origin[a] {
+            0.0 => v.get(a).to_string(),
+            far => (f64::from(v.get(a)) + far).to_string(),
+        };
+        (0..S::Vector::AXES).map(number).collect::<Vec<_>>().join(",")
+    };
+    let e = &view.eye;
+    let up = if S::Vector::AXES == 3 { format!(" --up {}", list(e.up, DVec3::ZERO)) } else { String::new() };
+    format!(
+        "--eye {} --target {}{up} --fov {} --near {} --far {} --size {}x{}",
+        list(e.position, origin),
+        list(e.target, origin),
+        degrees(e.fov),
+        e.near,
+        e.far,
+        view.width,
+        view.height
+    )
+}
+
+/// The shortest number of degrees that is this angle.
+fn degrees(radians: f32) -> String {
+    let exact = f64::from(radians).to_degrees();
+    let is_it = |text: &String| text.parse::<f64>().is_ok_and(|d| d.to_radians() as f32 == radians);
+    (0..12).map(|decimals| format!("{exact:.decimals$}")).find(is_it).unwrap_or_else(|| exact.to_string())
 }
 
 impl<S: Methods> Stage<S> {

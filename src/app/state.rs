@@ -9,6 +9,7 @@ use super::camera::ObserverCamera;
 use super::findings::Findings;
 use super::measured::Measured;
 use super::outline::Outline;
+use super::plate::Picture;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Reading, Staged};
@@ -18,6 +19,7 @@ use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
 use crate::figure::Look;
 use crate::method::{Event, Settings};
+use crate::raster::DepthScale;
 use crate::render::Format;
 
 /// Something that the person should read.
@@ -83,6 +85,12 @@ pub struct State {
     pub is_eye_locked: bool,
     /// What is shown and how.
     pub shown: Shown,
+    /// What a figure of the window shows; any picture of the method stands for the one that is shown.
+    pub export_of: Picture,
+    /// Which picture of the method is shown.
+    pub own_picture: usize,
+    /// How depths are shaded in it.
+    pub depths: DepthScale,
     /// The dialog in front of everything else.
     pub dialog: Dialog,
     /// Filter of the event tree.
@@ -147,6 +155,9 @@ impl State {
             is_swapped: false,
             is_eye_locked: false,
             shown: Shown::default(),
+            export_of: Picture::default(),
+            own_picture: 0,
+            depths: DepthScale::default(),
             dialog: Dialog::None,
             filter: String::new(),
             outline: Outline::default(),

@@ -631,7 +631,7 @@ fn the_image_of_flatland_shows_the_nearest_segments() {
 fn a_figure_brings_its_session_back() {
     let mut state = opened(FLAT);
     state.apply(Command::GoTo(77));
-    let drawing = state.figure(1.5, None).expect("a figure");
+    let drawing = state.figure(&state.export_like_window(1.5)).expect("a figure");
     assert!(drawing.items.len() > 100);
     let recipe = state.session().text();
     let options = crate::render::SvgOptions { metadata: Some(&recipe), ..Default::default() };

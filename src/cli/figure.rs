@@ -1,61 +1,43 @@
 //! `cullscope figure`: the papers' figures as files.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::{fs, io};
 
-use super::error::reason;
+use super::plates::{self, Files, Plate};
 use super::progress::Bar;
-use super::{CliError, output, suggest};
+use super::snapshot::{self, Snapshot};
+use super::{CliError, output, remake, suggest};
 use crate::papers::{self, Figure};
-use crate::render::{self, Format, SvgOptions, Theme};
 use crate::scene::Progress;
 
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  cullscope figure coorg-teller-figure-4 --format svg,pdf --out figures\n  \
-                  cullscope figure --list\n  cullscope figure --all\n\n\
+                  cullscope figure --list\n  cullscope figure --all\n  \
+                  cullscope figure --scene scenes2d/street.json --method hierarchical-z --first-hidden \
+                  --picture all --paper column\n  cullscope figure --check figures\n\n\
+                  Every file carries how it was made: the explorer opens it where it was, and its text has \
+                  the command that makes it again in its folder.\n\n\
                   For LaTeX write pdf and use \\includegraphics. With the svg package TeX sets the text: \
                   it runs out of the page, and signs like _ and % stop TeX."
 )]
 pub(super) struct Args {
-    /// Which figures; --list names them
+    /// Which built-in figures; --list names them
     #[arg(value_name = "NAME", conflicts_with_all = ["all", "list"])]
     names: Vec<String>,
     /// All of them
     #[arg(long, conflicts_with = "list")]
     all: bool,
-    /// List the figures instead
+    /// List the built-in figures instead
     #[arg(long)]
     list: bool,
-    /// File formats, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "svg")]
-    format: Vec<Format>,
-    /// Colors
-    #[arg(long, value_enum, default_value = "print")]
-    theme: Colors,
-    /// Letters in SVG files; PDF files carry their fonts, PNG files have none
-    #[arg(long, value_enum, default_value = "fonts")]
-    text: Letters,
-    /// Folder for the files; it is made if it is missing
-    #[arg(long, value_name = "DIR", default_value = ".")]
-    out: PathBuf,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Colors {
-    Light,
-    Dark,
-    Print,
-}
-
-#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
-enum Letters {
-    /// Text that can be found and edited; where our font is not read, in a similar one
-    Fonts,
-    /// Outlines: the same in every program, but no longer text
-    Paths,
+    /// Make every figure in a folder again, and name those that differ
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["names", "all", "list", "scene"])]
+    check: Option<PathBuf>,
+    #[command(flatten)]
+    files: Files,
+    #[command(flatten)]
+    own: Snapshot,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
@@ -67,40 +49,28 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         }
         return output::print(text.as_bytes());
     }
+    if let Some(folder) = &args.check {
+        return remake::run(folder);
+    }
+    args.own.refuse_lone()?;
+    if let Some(scene) = &args.own.scene {
+        return match args.names.first() {
+            None if !args.all => snapshot::run(&args.own, scene, &args.files),
+            name => Err(CliError::words(name.map_or("--all", String::as_str), "cannot be used with --scene")
+                .with_help("built-in figures have scenes of their own: give names, or a scene")),
+        };
+    }
     let figures = chosen(args)?;
-    let theme = match args.theme {
-        Colors::Light => Theme::Light,
-        Colors::Dark => Theme::Dark,
-        Colors::Print => Theme::Print,
-    };
-    let formats: BTreeSet<Format> = args.format.iter().copied().collect();
-    fs::create_dir_all(&args.out).map_err(|e| {
-        let taken = e.kind() == io::ErrorKind::AlreadyExists;
-        let why = if taken { "this is a file, not a folder".into() } else { reason(&e) };
-        CliError::work(args.out.display().to_string(), why)
-    })?;
+    args.files.prepare()?;
     let bar = Bar::new();
     for (i, figure) in figures.iter().enumerate() {
         bar.report(i as f32 / figures.len() as f32, "making figures");
         if bar.cancelled() {
             return Err(CliError::Interrupted);
         }
-        let drawing = figure.drawing(&|role| theme.flat_linear(role))?;
-        let outline_text = args.text == Letters::Paths;
-        let letters = if outline_text { " --text paths" } else { "" };
-        let recipe = format!("cullscope figure {} --theme {}{letters}", figure.name, theme.name());
-        for format in &formats {
-            let bytes = match format {
-                Format::Svg => {
-                    let options = SvgOptions { outline_text, metadata: Some(&recipe) };
-                    render::svg(&drawing, theme, &options).into_bytes()
-                }
-                Format::Pdf | Format::Png => render::export(&drawing, *format, theme, &recipe)
-                    .map_err(|e| CliError::work(figure.name, e.to_string()))?,
-            };
-            let path = args.out.join(format!("{}.{}", figure.name, format.name()));
-            output::write_file(&path, |to| to.write_all(&bytes).map(|()| true))?;
-            output::print(format!("{}\n", path.display()).as_bytes())?;
+        let plate = Plate { theme: args.files.theme(), outline_text: args.files.outline_text() };
+        for format in args.files.formats() {
+            plates::write(&args.files.path(figure.name, format), &plate.built_in(figure, format)?)?;
         }
     }
     Ok(())
@@ -112,8 +82,10 @@ fn chosen(args: &Args) -> Result<Vec<&'static Figure>, CliError> {
         return Ok(papers::figures().collect());
     }
     if args.names.is_empty() {
-        return Err(CliError::words("figure", "no figure is named")
-            .with_help(format!("give a NAME or --all; figures: {}", known.join(", "))));
+        return Err(CliError::words("figure", "no figure is named").with_help(format!(
+            "give a NAME, --all, or --scene and --method; figures: {}",
+            known.join(", ")
+        )));
     }
     let find = |name: &String| {
         let missing = || {

@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::{CliError, World, output, suggest};
 use crate::geometry::{Flat, Solid};
-use crate::method::{Card, Departure, Entry, Knob, KnobValue, Settings};
+use crate::method::{Budget, Card, Departure, Entry, Knob, KnobValue, Settings};
 use crate::trace::format::knob_json;
 
 #[derive(clap::Args)]
@@ -70,6 +70,15 @@ pub(super) fn settings(pairs: &[String]) -> Result<Settings, CliError> {
         settings.parse(pair)?;
     }
     Ok(settings)
+}
+
+/// Refuses a budget of time where the same run is to be told again.
+pub(super) fn refuse_clock(knobs: &[(Knob, KnobValue)]) -> Result<(), CliError> {
+    let is_time = |(_, v): &&(Knob, KnobValue)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_)));
+    let Some((_, time)) = knobs.iter().find(is_time) else { return Ok(()) };
+    let why = "what fits into a time differs from run to run, and what is written must not";
+    Err(CliError::words(format!("--set budget={time}"), why)
+        .with_help("give a number of primitives; `cullscope cull` prints how many were drawn"))
 }
 
 /// Parameters by name, as JSON.

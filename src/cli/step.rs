@@ -6,11 +6,10 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value as Json};
 
-use super::methods::params_json;
+use super::methods::{params_json, refuse_clock};
 use super::task::Task;
 use super::{CliError, World, output};
 use crate::geometry::{ViewPath, each};
-use crate::method::{Budget, KnobValue};
 use crate::scene::{Progress, Scene, write_views};
 use crate::trace::Detail;
 use crate::trace::format::{Header, write_film, write_header};
@@ -46,13 +45,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 fn of<S: World>(args: &Args, scene: &Arc<Scene<S>>) -> Result<(), CliError> {
     let mut ready = args.task.ready(scene)?;
-    if let Some((_, time)) =
-        ready.run.knobs().iter().find(|(_, v)| matches!(v, KnobValue::Budget(Budget::Milliseconds(_))))
-    {
-        let why = "what fits into a time differs from run to run, and a trace must not";
-        return Err(CliError::words(format!("--set budget={time}"), why)
-            .with_help("give a number of primitives; `cullscope cull` prints how many were drawn"));
-    }
+    refuse_clock(&ready.run.knobs())?;
     let (detail, name) = match args.detail {
         Fineness::Coarse => (Detail::Coarse, "coarse"),
         Fineness::Full => (Detail::Full, "full"),

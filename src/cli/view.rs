@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{CliError, World, output, suggest};
+use crate::app::view_text;
 use crate::geometry::{Eye, MAX_SIDE_PX, Vector, View, ViewPath};
 use crate::scene::{Scene, framing_view, motion_path, random_views, read_views};
 
@@ -76,7 +77,43 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     both.ok_or_else(|| format!("expected a width and a height from 1 to {MAX_SIDE_PX} such as 1024x1024"))
 }
 
+/// What views were asked for.
+pub(super) enum Asked<S: World> {
+    /// None.
+    Nothing,
+    /// Those of a file, or random ones.
+    Path(ViewPath<S>),
+    /// A path of the scene, by name.
+    Named(String),
+    /// A single one.
+    Single(View<S>),
+}
+
 impl ViewArgs {
+    /// What was asked for; the image size apart.
+    pub fn asked<S: World>(&self, scene: &Scene<S>) -> Result<Asked<S>, CliError> {
+        Ok(if let Some(name) = &self.path {
+            self.views(scene)?;
+            Asked::Named(name.clone())
+        } else if self.eye.is_some() {
+            Asked::Single(self.views(scene)?.views[0])
+        } else if self.is_asked() {
+            Asked::Path(self.views(scene)?)
+        } else {
+            Asked::Nothing
+        })
+    }
+
+    /// The image size that was asked for; of flatland it has height 1.
+    pub fn image(&self) -> Option<(u32, u32)> {
+        self.size
+    }
+
+    /// Whether any views were asked for.
+    pub fn is_asked(&self) -> bool {
+        self.view.is_some() || self.path.is_some() || self.random_views.is_some() || self.eye.is_some()
+    }
+
     /// The views that were asked for, at least one.
     pub fn views<S: World>(&self, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
         let flat = S::Vector::AXES == 2;
@@ -88,8 +125,8 @@ impl ViewArgs {
         if let Some((width, height)) = self.size {
             path.views.iter_mut().for_each(|v| (v.width, v.height) = (width, height));
         }
-        if self.view.is_none() && self.path.is_none() && self.random_views.is_none() && self.eye.is_none() {
-            output::say(&format!("view: {}", in_words(&path.views[0], scene.origin())));
+        if !self.is_asked() {
+            output::say(&format!("view: {}", view_text(&path.views[0], scene.origin())));
         }
         Ok(path)
     }
@@ -97,9 +134,7 @@ impl ViewArgs {
     /// The same, but where no views are asked for all of the scene's first path. Without a size the images
     /// are no larger than `most_px` a side.
     pub fn path<S: World>(&self, scene: &Scene<S>, most_px: u32) -> Result<ViewPath<S>, CliError> {
-        let is_asked =
-            self.view.is_some() || self.path.is_some() || self.random_views.is_some() || self.eye.is_some();
-        let own = scene.paths().first().filter(|_| !is_asked);
+        let own = scene.paths().first().filter(|_| !self.is_asked());
         let mut path = own.map_or_else(|| self.views(scene), |own| Ok(own.clone()))?;
         for view in &mut path.views {
             if let Some((width, height)) = self.size {
@@ -193,31 +228,4 @@ fn no_path<S: World>(paths: &[ViewPath<S>], name: &str) -> CliError {
     } else {
         error.with_help(suggest::help(name, &names, "paths"))
     }
-}
-
-/// A view in the words of the command line, so that it can be given again.
-fn in_words<S: World>(view: &View<S>, origin: DVec3) -> String {
-    let vector = |v: S::Vector, origin: DVec3| {
-        let number = |a: usize| {
-            if origin[a] == 0.0 {
-                v.get(a).to_string()
-            } else {
-                (f64::from(v.get(a)) + origin[a]).to_string()
-            }
-        };
-        (0..S::Vector::AXES).map(number).collect::<Vec<_>>().join(",")
-    };
-    let eye = &view.eye;
-    let up =
-        if S::Vector::AXES == 3 { format!(" --up {}", vector(eye.up, DVec3::ZERO)) } else { String::new() };
-    format!(
-        "--eye {} --target {}{up} --fov {:.3} --near {} --far {} --size {}x{}",
-        vector(eye.position, origin),
-        vector(eye.target, origin),
-        f64::from(eye.fov).to_degrees(),
-        eye.near,
-        eye.far,
-        view.width,
-        view.height
-    )
 }

@@ -362,6 +362,22 @@ impl<P> Drawing<P> {
     }
 }
 
+impl Drawing {
+    /// The same drawing larger or smaller, with its text; the widths of lines stay.
+    pub fn scaled(mut self, factor: f32) -> Self {
+        self.size_pt *= factor;
+        for item in &mut self.items {
+            item.mark = item.mark.mapped(|p| p * factor);
+            match &mut item.mark {
+                Mark::Text { size_pt, .. } => *size_pt *= factor,
+                Mark::Dot { radius_pt, .. } => *radius_pt *= factor,
+                _ => {}
+            }
+        }
+        self
+    }
+}
+
 impl<V: Vector> Drawing<V> {
     /// Adds the edges of a box: one outline in the plane, twelve lines in space.
     pub fn bounds(&mut self, layer: Layer, role: Role, subject: Subject, bounds: &Aabb<V>) {

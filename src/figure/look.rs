@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::drawing::{Drawing, Item, Layer, Mark, Role, Subject};
-use crate::geometry::{Frustum, NodeId, PrimId, Solid, Space, Vector, View};
+use crate::geometry::{Aabb, Frustum, NodeId, PrimId, Solid, Space, Vector, View};
 use crate::index::Hierarchy;
 use crate::method::{Film, Verdict};
 use crate::scene::{Scene, framing_view};
@@ -177,6 +177,15 @@ fn emphasized<S: Space>(film: &dyn Film<S>, subject: Subject, role: Role, to: &m
     };
     match subject {
         Subject::Prim(prim) if prim.at() < scene.prim_count() => outline(prim),
+        // In space the outlines of all its triangles would be a web.
+        Subject::Object(object) if S::Vector::AXES == 3 => {
+            let prims = scene.live().iter().filter(|&&p| scene.object_of(p) == object);
+            let around =
+                prims.fold(Aabb::empty(), |all: Aabb<S::Vector>, &p| all.union(scene.prim_bounds(p)));
+            if !around.is_empty() {
+                to.bounds(Layer::Emphasis, role, subject, &around);
+            }
+        }
         Subject::Object(object) => {
             scene.live().iter().filter(|&&p| scene.object_of(p) == object).for_each(|&p| outline(p))
         }

@@ -19,7 +19,7 @@ mod tradeoff;
 pub use chart::{chart, charts};
 pub use clip::clip;
 pub use heat::{Heat, heat_map};
-pub use listing::listing;
+pub use listing::{Row, listing};
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};
 pub use panels::{Panel, Picture, panels, plate_labels};

@@ -17,6 +17,8 @@ use crate::scene::{Progress, Scene};
 pub trait Entry<S: Space>: Sync {
     /// Identity.
     fn card(&self) -> &'static Card;
+    /// Names of its pictures that are not of the world.
+    fn pictures(&self) -> &'static [&'static str];
     /// All parameters with the values that `settings` give them.
     ///
     /// # Errors
@@ -165,6 +167,9 @@ impl<S: Space, M: Shown<S>> Entry<S> for Of<M> {
     }
     fn is_conservative(&self, settings: &Settings) -> Result<bool, SettingError> {
         params::<S, M>(settings).map(|p| M::is_conservative(&p))
+    }
+    fn pictures(&self) -> &'static [&'static str] {
+        M::PICTURES
     }
     fn ready(
         &self,

@@ -9,7 +9,7 @@ use super::{Answers, palette};
 use crate::app::{Command, Stage, State};
 use crate::drawing::{Drawing, Subject};
 use crate::figure::{self, Look, Sheet};
-use crate::geometry::{Aabb, Either, Flat};
+use crate::geometry::{Either, Flat};
 use crate::render::screen;
 
 /// Distance of the turning handle from the Eye, points.
@@ -35,7 +35,7 @@ pub fn show(
     if state.is_to_frame {
         let mut camera = state.observer;
         camera.frame_flat(
-            &target_box(state, stage),
+            &stage.framed(state.selection),
             &stage.posed().bounds(),
             rect.width() / rect.height().max(1.0),
         );
@@ -82,15 +82,6 @@ fn sheet(state: &State, rect: egui::Rect) -> Sheet {
     let center = Vec2::new(state.observer.pivot[0], state.observer.pivot[1]);
     let scale = rect.height() / (2.0 * state.observer.distance).max(1e-6);
     Sheet { center, scale, middle_pt: Vec2::new(rect.width(), rect.height()) * 0.5 }
-}
-
-/// What `F` brings into the picture.
-fn target_box(state: &State, stage: &Stage<Flat>) -> Aabb<Vec2> {
-    let eye = &stage.view.eye;
-    match state.selection {
-        Subject::Eye => Aabb::of([eye.position, eye.target]),
-        selected => stage.bounds_of(selected).unwrap_or_else(|| stage.posed().bounds().with(eye.position)),
-    }
 }
 
 #[expect(clippy::too_many_arguments, reason = "what a panel is drawn from, and where its answers go")]

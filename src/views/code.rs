@@ -3,7 +3,6 @@
 use eframe::egui::{self, RichText, ScrollArea, Sense};
 
 use super::icons::{self, Icon};
-use super::inspector::value;
 use super::{Answers, palette};
 use crate::app::{Breakpoint, Command, Layout, Reading, State};
 use crate::method::{Card, CodeLine, Event, Verdict};
@@ -27,7 +26,7 @@ pub fn show(state: &State, kept: &mut Option<Reached>, ui: &mut egui::Ui, answer
     }
     let Some((_, reached)) = kept else { return };
     let lit = state.line();
-    let values = values(state);
+    let values = state.values();
     stops(state, film, ui, answers);
     // A step, a film or another size of the panel scrolls to the line; in between one may scroll away.
     let shown = (state.step, film.serial, ui.available_height() as u32);
@@ -207,31 +206,4 @@ fn next_time(state: &State, line: u8) -> Option<usize> {
     let events = state.events();
     let at = |i: &usize| events[*i] == Event::Line(line);
     (state.step..events.len()).find(at).or_else(|| (0..events.len()).find(at)).map(|i| i + 1)
-}
-
-/// The values that matter at this step: the two numbers that the evidence compared; where nothing was
-/// compared, the first of the event's own.
-fn values(state: &State) -> String {
-    let (Some(film), Some(at)) = (state.film(), state.current()) else { return String::new() };
-    let event = film.reel.events()[at];
-    let found = film.reel.evidence_at(state.step);
-    let is_line = matches!(event, Event::Line(_) | Event::FrameBegan);
-    // A line that leads to a test says nothing yet: what was found before is another test's.
-    let events = film.reel.events();
-    let next = events[at..].iter().find(|e| !matches!(e, Event::Line(_)));
-    if is_line && matches!(next, Some(Event::Noted(_))) {
-        return String::new();
-    }
-    if let Some(compared) = found.and_then(|i| film.reel.compared(i)) {
-        return compared.to_string();
-    }
-    let shown = if is_line { found } else { Some(at) };
-    let Some(i) = shown else { return String::new() };
-    let fields = film.reel.fields(i).1;
-    fields
-        .iter()
-        .take(4)
-        .map(|f| format!("{} {}", f.name.replace('_', " "), value(&f.value)))
-        .collect::<Vec<_>>()
-        .join(" · ")
 }

@@ -164,7 +164,7 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
                     Pane::Inspector => inspector::show(state, ui, answers),
                     Pane::Parameters => parameters::show(state, &mut cache.hand.gesture, ui, answers),
                     Pane::Timeline => timeline::show(state, &mut cache.timeline, ui, answers),
-                    Pane::Pictures => pictures::show(state, &mut cache.picture, ui),
+                    Pane::Pictures => pictures::show(state, &mut cache.picture, ui, answers),
                     _ => code::show(state, &mut cache.code, ui, answers),
                 });
             }

@@ -4,22 +4,9 @@ use eframe::egui::{self, Grid, RichText, ScrollArea};
 
 use super::Answers;
 use super::why::subject_name;
-use crate::app::{Action, Command, State};
+use crate::app::{Action, Command, State, value};
 use crate::drawing::Subject;
-use crate::drawing::words::{Room, capitalized, count, short, spaced};
-use crate::method::Value;
-
-/// A value as a person reads it.
-pub fn value(value: &Value) -> String {
-    match value {
-        Value::Number(v) => short(*v as f32, Room::Row),
-        Value::Integer(v) => v.to_string(),
-        Value::Switch(true) => "yes".into(),
-        Value::Switch(false) => "no".into(),
-        Value::Word(w) => w.clone(),
-        Value::List(list) => list.iter().map(|v| short(*v as f32, Room::Row)).collect::<Vec<_>>().join(", "),
-    }
-}
+use crate::drawing::words::{capitalized, count, spaced};
 
 /// Shows the inspector.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {

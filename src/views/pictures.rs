@@ -3,22 +3,21 @@
 use eframe::egui::{self, ComboBox, ScrollArea, Sense};
 use glam::vec2;
 
-use crate::app::State;
+use super::Answers;
+use crate::app::{Command, State};
 use crate::drawing::Drawing;
 use crate::raster::DepthScale;
 use crate::render::screen;
 
-/// Which picture is shown, and the picture itself.
+/// The picture that is shown.
 #[derive(Clone, Debug, Default)]
 pub struct Shown {
-    which: usize,
-    scale: DepthScale,
     /// Film, step, picture and scale that it was drawn for.
     drawn: Option<((u64, usize, usize, DepthScale), Drawing)>,
 }
 
 /// Shows a picture, with what it is and how its depths are shaded.
-pub fn show(state: &State, shown: &mut Shown, ui: &mut egui::Ui) {
+pub fn show(state: &State, shown: &mut Shown, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(film) = state.film().filter(|f| !f.reel.pictures().is_empty()) else {
         ui.label("This method has no pictures of its own.");
         ui.weak(
@@ -27,17 +26,21 @@ pub fn show(state: &State, shown: &mut Shown, ui: &mut egui::Ui) {
         return;
     };
     let names = film.reel.pictures();
-    shown.which = shown.which.min(names.len() - 1);
+    let mut which = state.own_picture.min(names.len() - 1);
     ui.horizontal_wrapped(|ui| {
-        ComboBox::from_id_salt("picture").show_index(ui, &mut shown.which, names.len(), |i| names[i]);
-        let mut scale = DepthScale::ALL.iter().position(|s| *s == shown.scale).unwrap_or(0);
+        if ComboBox::from_id_salt("picture").show_index(ui, &mut which, names.len(), |i| names[i]).changed() {
+            answers.push(Command::Picture(names[which].to_owned()));
+        }
+        let mut scale = DepthScale::ALL.iter().position(|s| *s == state.depths).unwrap_or(0);
         let depths = |i: usize| format!("depths {}", DepthScale::ALL[i].name());
-        ComboBox::from_id_salt("depths").show_index(ui, &mut scale, DepthScale::ALL.len(), depths);
-        shown.scale = DepthScale::ALL[scale];
+        let combo = ComboBox::from_id_salt("depths");
+        if combo.show_index(ui, &mut scale, DepthScale::ALL.len(), depths).changed() {
+            answers.push(Command::Depths(DepthScale::ALL[scale]));
+        }
     });
-    let key = (film.serial, state.step, shown.which, shown.scale);
+    let key = (film.serial, state.step, which, state.depths);
     if shown.drawn.as_ref().is_none_or(|(k, _)| *k != key) {
-        shown.drawn = Some((key, film.reel.picture(state.step, shown.which, shown.scale)));
+        shown.drawn = Some((key, film.reel.picture(state.step, which, state.depths)));
     }
     let Some((_, drawing)) = &shown.drawn else { return };
     ScrollArea::vertical().auto_shrink(false).id_salt("pictures").show(ui, |ui| {
@@ -54,7 +57,7 @@ pub fn show(state: &State, shown: &mut Shown, ui: &mut egui::Ui) {
         screen::paint(&ui.painter_at(rect), drawing, state.shown.theme, rect.min, scale);
         if let Some(at) = response.hover_pos() {
             let at = vec2(at.x - rect.min.x, at.y - rect.min.y) / scale;
-            if let Some(text) = film.reel.probe(state.step, shown.which, at) {
+            if let Some(text) = film.reel.probe(state.step, which, at) {
                 response.on_hover_text_at_pointer(text);
             }
         }

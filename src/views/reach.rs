@@ -8,29 +8,13 @@ use super::handles::{self, Hand, Handle};
 use crate::app::{Action, Command, Gesture, ObserverCamera, Stage, State};
 use crate::drawing::Subject;
 use crate::figure;
-use crate::geometry::{Aabb, Either, Solid, View};
+use crate::geometry::{Either, Solid, View};
 use crate::method::Verdict;
 use crate::render::gpu::SpaceCamera;
 use crate::trace::State as Known;
 
 /// Part of the Observer's distance to the Eye at which the turning handle stands.
 const AIM: f32 = 0.12;
-
-/// What `F` brings into the picture.
-pub fn target_box(state: &State, stage: &Stage<Solid>) -> Aabb<Vec3> {
-    let (whole, eye) = (stage.posed().bounds(), stage.view.eye.position);
-    match state.selection {
-        Subject::Eye => {
-            let around = Vec3::splat(whole.diagonal() * 0.1);
-            Aabb { min: eye - around, max: eye + around }
-        }
-        // The Eye too, unless it stands so far off that the scene would be a spot.
-        selected => stage.bounds_of(selected).unwrap_or_else(|| {
-            let is_by = (eye - whole.center()).length() < 1.2 * whole.diagonal();
-            if is_by { whole.with(eye) } else { whole }
-        }),
-    }
-}
 
 /// World ray through a point of the screen.
 fn ray(view: &View<Solid>, rect: Rect, at: Pos2) -> (Vec3, Vec3) {

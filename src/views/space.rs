@@ -6,15 +6,12 @@ use glam::{Vec2, Vec3};
 
 use super::handles::Hand;
 use super::{Answers, palette, reach};
-use crate::app::{Command, LookIn, PoseKey, Stage, Staged, State, Surface, Theme, WIDTH_PT};
+use crate::app::{Command, LookIn, PoseKey, Stage, Staged, State, Surface, Theme};
 use crate::drawing::{Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure;
 use crate::geometry::{Solid, View};
 use crate::render::gpu::{self, NodeBoxes, Palette, Shown, SpaceCamera, SpaceLayer, SpaceStyle, ViewportId};
 use crate::render::screen;
-
-/// Pixels an inch of figures of space.
-const FIGURE_DPI: f32 = 300.0;
 
 /// What lies on the graphics card.
 #[derive(Clone, Debug, Default)]
@@ -57,7 +54,7 @@ pub fn show(
     ui.painter_at(pane).rect_filled(pane, 0.0, palette::panel(state).canvas);
     if !is_eye && state.is_to_frame {
         let mut camera = state.observer;
-        camera.frame_solid(&reach::target_box(state, stage), &stage.posed().bounds(), pane.aspect_ratio());
+        camera.frame_solid(&stage.framed(state.selection), &stage.posed().bounds(), pane.aspect_ratio());
         answers.push(Command::Observe(camera));
     }
     let rect =
@@ -288,29 +285,4 @@ fn labels(
     figure::project(&Drawing { items: texts, ..Drawing::default() }, view, Vec2::ZERO, size, &mut paper);
     super::readable_labels(&mut paper);
     screen::paint(&ui.painter_at(rect), &paper, state.shown.theme, rect.min, 1.0);
-}
-
-/// The Observer's picture for print: the same surfaces, boxes and marks in the same style, drawn again as
-/// large as paper needs and in the colors of print.
-pub fn figure(
-    state: &State,
-    stage: &Stage<Solid>,
-    uploaded: &mut Uploaded,
-    gpu: &RenderState,
-    aspect: f32,
-) -> Option<Pixels> {
-    upload(state, stage, uploaded, gpu);
-    let scale = FIGURE_DPI / 72.0;
-    let size_px = [WIDTH_PT * scale, WIDTH_PT * scale / aspect.clamp(0.2, 5.0)].map(|v| v.round() as u32);
-    let style = SpaceStyle {
-        palette: Palette::of(Theme::Print),
-        transparent: true,
-        ..style(state, stage, false, scale)
-    };
-    let camera = state.observer.view(size_px[0], size_px[1]).eye.into();
-    let renderer = gpu.renderer.read();
-    let layer = renderer.callback_resources.get::<SpaceLayer>()?;
-    let drawn = layer.snapshot(&gpu.device, &gpu.queue, size_px, 2, &camera, &style);
-    let (width, height, rgba) = drawn.ok()?;
-    Some(Pixels { width, height, rgba: rgba.into() })
 }

@@ -170,33 +170,13 @@ fn underline(state: &State, stage: &Stage<Flat>, painter: &egui::Painter, rect: 
         (state.selection, Role::Selected, strip.bottom() + 4.0),
         (state.current_subject(), Role::Current, strip.top() - 4.0),
     ] {
-        if let Some((from, to)) = extent(stage, subject) {
+        if let Some((from, to)) = stage.extent_of(subject) {
             let x = |ndc: f32| rect.left() + (ndc * 0.5 + 0.5) * rect.width();
             let place = Rangef::new(x(from), x(to).max(x(from) + 8.0));
             painter.hline(place, y, Stroke::new(5.0, palette::halo(state, role)));
             painter.hline(place, y, Stroke::new(1.5, palette::role(state, role)));
         }
     }
-}
-
-/// From where to where a thing reaches in the image, −1 to 1; `None` if nothing of it is before the Eye.
-fn extent(stage: &Stage<Flat>, subject: Subject) -> Option<(f32, f32)> {
-    let corners: Vec<_> = match subject {
-        Subject::Prim(prim) if prim.at() < stage.scene.prim_count() => {
-            stage.posed().prim_points(prim).collect()
-        }
-        _ => stage.bounds_of(subject).filter(|b| !b.is_empty())?.corners().collect(),
-    };
-    let (projection, near) = (stage.view.projection(), stage.view.eye.near);
-    let clip: Vec<_> = corners.iter().map(|&p| projection.clip(p)).collect();
-    let pairs = clip.iter().flat_map(|a| clip.iter().map(move |b| (*a, *b)));
-    // Of each side the part that lies before the Eye.
-    let before = pairs.filter(|(a, _)| a.y >= near).flat_map(|(a, b)| {
-        let b = if b.y >= near { b } else { a + (b - a) * ((near - a.y) / (b.y - a.y)) };
-        [a.x / a.y, b.x / b.y]
-    });
-    let (from, to) = before.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    (from <= 1.0 && to >= -1.0).then(|| (from.max(-1.0), to.min(1.0)))
 }
 
 /// The walls above, the strip of pixels below.

@@ -9,7 +9,6 @@ use super::keys::{Hook, Keys};
 use super::{Answers, dialogs, menu, palette, status, welcome};
 use crate::app::{Action, Command, Dialog, Effect, Layout, Session, Start, State, Theme};
 use crate::drawing::Pixels;
-use crate::geometry::Either;
 use crate::render::screen;
 
 /// The explorer.
@@ -126,12 +125,11 @@ impl App {
         answers
     }
 
-    fn effects(&mut self, ctx: &egui::Context, gpu: Option<&eframe::egui_wgpu::RenderState>) {
+    fn effects(&mut self, ctx: &egui::Context) {
         for effect in std::mem::take(&mut self.state.effects) {
             match effect {
                 Effect::Export(format) => {
-                    let (aspect, pixels) = (self.cache.hand.aspect, self.pixels(gpu));
-                    self.state.export(format, aspect, pixels);
+                    self.state.export(format, self.cache.hand.aspect);
                 }
                 Effect::Copy(text) => ctx.copy_text(text),
                 Effect::FullScreen => {
@@ -143,13 +141,6 @@ impl App {
                 Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             }
         }
-    }
-
-    /// The Observer's picture of space as a figure has it.
-    fn pixels(&mut self, gpu: Option<&eframe::egui_wgpu::RenderState>) -> Option<Pixels> {
-        let (state, cache) = (&self.state, &mut self.cache);
-        let Some(Either::Solid(stage)) = &state.stage else { return None };
-        super::space::figure(state, stage, &mut cache.uploaded, gpu?, cache.hand.aspect)
     }
 
     /// Writes the screenshot of the command line once the window has been quiet for some frames, and quits.
@@ -192,7 +183,7 @@ impl eframe::App for App {
             self.state.apply(command);
             ctx.request_repaint();
         }
-        self.effects(&ctx, frame.wgpu_render_state());
+        self.effects(&ctx);
         if self.state.tick(ctx.input(|i| i.stable_dt)) {
             ctx.request_repaint();
         }

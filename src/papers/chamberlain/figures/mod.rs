@@ -12,7 +12,7 @@ use self::notes::{cubes, leaves, step_of_inner_cell};
 use crate::drawing::{Drawing, Role};
 use crate::figure::page::legend;
 use crate::figure::tools::{Maker, TWO_COLUMNS_PT, WIDTH_PT, entry, eye, flat_panel};
-use crate::figure::{Look, Paper, Swatch, listing, panels};
+use crate::figure::{Look, Paper, Row, Swatch, listing, panels};
 use crate::geometry::View;
 use crate::method::CodeLine;
 use crate::papers::keys::COLOR_CUBES;
@@ -95,7 +95,7 @@ pub fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
                    explorer steps through it. The paper's own figure was not at hand: this is what its text \
                    says, in lines. In gray below a line: what the paper has in its place.";
     let title = "Chamberlain et al. 1996, Figure 2: Render";
-    Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &listing(&code, TWO_COLUMNS_PT)))
+    Ok(maker.page(Paper::TwoColumns, title, Vec::new(), caption, &listing(&Row::all(&code), TWO_COLUMNS_PT)))
 }
 
 pub fn composition(maker: &Maker<'_>) -> Result<Drawing, SceneError> {

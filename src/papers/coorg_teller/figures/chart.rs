@@ -8,7 +8,7 @@ use crate::culling::anatomy::Blockers;
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject};
 use crate::figure::axis::{Axis, axes};
 use crate::figure::tools::{COLUMN_PT, LABEL_PT, Maker, NAME_PT, Plan, TWO_COLUMNS_PT, entry, eye};
-use crate::figure::{Paper, Sheet, Swatch, clip, listing};
+use crate::figure::{Paper, Row, Sheet, Swatch, clip, listing};
 use crate::geometry::{Aabb, Solid};
 use crate::method::CodeLine;
 use crate::papers::keys::LARGE_OCCLUDERS;
@@ -24,7 +24,7 @@ fn code(maker: &Maker<'_>) -> Result<Vec<CodeLine>, SceneError> {
 
 /// Figure 9: the algorithm. Below a line that differs from the paper's stands the paper's.
 pub(super) fn pseudocode(maker: &Maker<'_>) -> Result<Drawing, SceneError> {
-    let paper = listing(&code(maker)?, COLUMN_PT);
+    let paper = listing(&Row::all(&code(maker)?), COLUMN_PT);
     let caption = "The visibility algorithm, called with the root of the kD-tree, as the explorer steps \
                    through it: the selection of occluders, the recursion with view-frustum culling in front, \
                    TestOcclusion opened up, and the detail objects in Gather. In gray below a line: what the \

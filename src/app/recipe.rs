@@ -1,0 +1,110 @@
+//! The command that makes a figure again.
+
+use std::path::Path;
+
+use super::camera::ObserverCamera;
+use super::command::Action;
+use super::open::named_from;
+use super::plate::{Export, Picture};
+use super::recall::spoken_subject;
+use super::shown::{LookIn, Surface};
+use super::state::State;
+use crate::drawing::Subject;
+use crate::raster::DepthScale;
+use crate::render::Format;
+
+impl State {
+    /// The command line that makes a figure again in this folder.
+    pub(super) fn command(&self, export: &Export, format: Format, folder: &Path) -> String {
+        let Some(stage) = self.staged() else { return String::new() };
+        let scene = named_from(stage.scene().source(), Some(folder));
+        let mut words: Vec<String> = ["cullscope", "figure", "--scene"].map(String::from).to_vec();
+        words.extend([quoted(&scene), "--method".into(), self.method.clone()]);
+        for (name, value) in &self.settings.0 {
+            words.extend(["--set".into(), quoted(&format!("{name}={value}"))]);
+        }
+        let (path, frame) = stage.place();
+        let is_own = stage.is_path_of_scene();
+        for spoken in (is_own && (path, frame) != (0, 0))
+            .then(|| format!("frame:{path}:{frame}"))
+            .into_iter()
+            .chain(self.spoken_look(export))
+        {
+            words.extend(["--do".into(), spoken]);
+        }
+        if !is_own || stage.is_eye_moved() {
+            words.push(stage.eye_text());
+        }
+        words.extend(["--step".into(), self.step.to_string()]);
+        let picture = self.pictures().into_iter().find(|(p, _)| *p == export.picture);
+        words.extend(picture.into_iter().flat_map(|(_, word)| ["--picture".into(), word]));
+        words.extend(["--paper", export.paper_word(), "--theme", export.theme.name()].map(String::from));
+        if export.aspect != self.fitting_aspect() {
+            words.extend(["--aspect".into(), export.aspect.to_string()]);
+        }
+        if export.outline_text {
+            words.extend(["--text", "paths"].map(String::from));
+        }
+        words.extend(["--format", format.name()].map(String::from));
+        words.join(" ")
+    }
+
+    /// The commands of the explorer that lead from what it begins with to what is shown.
+    fn spoken_look(&self, export: &Export) -> Vec<String> {
+        let shown = &self.shown;
+        let toggles = [
+            (shown.prims, Action::ShowPrims),
+            (shown.nodes, Action::ShowNodes),
+            (shown.eye, Action::ShowEye),
+            (shown.evidence, Action::ShowEvidence),
+            (shown.surface == Surface::Solid, Action::CycleSurface),
+            (shown.surface != Surface::Translucent, Action::CycleSurface),
+            (shown.look_in == LookIn::Off, Action::CycleLookIn),
+            (shown.look_in != LookIn::Faces, Action::CycleLookIn),
+        ];
+        let off = toggles.into_iter().filter(|(is_usual, _)| !is_usual);
+        let mut spoken: Vec<String> = off.map(|(_, action)| action.info().name.to_owned()).collect();
+        spoken.extend(match self.selection {
+            Subject::None => None,
+            Subject::Eye => Some(Action::SelectEye.info().name.to_owned()),
+            subject => spoken_subject(subject).map(|thing| format!("select:{thing}")),
+        });
+        if self.depths != DepthScale::default() {
+            spoken.push(format!("depths:{}", self.depths.name()));
+        }
+        // That of a figure of another one is the one that is shown.
+        if self.own_picture > 0 && !matches!(export.picture, Picture::Own(_)) {
+            let shown = self.pictures().into_iter().find(|(p, _)| *p == Picture::Own(self.own_picture));
+            spoken.extend(shown.map(|(_, word)| format!("picture:{word}")));
+        }
+        if self.observer != self.framing(export.aspect) {
+            spoken.push(format!("observe:{}", self.observer.numbers()));
+        }
+        spoken
+    }
+
+    /// The Observer who has everything in sight, in a picture of this shape.
+    pub fn framing(&self, aspect: f32) -> ObserverCamera {
+        use crate::geometry::Either;
+        let mut camera = ObserverCamera::default();
+        match &self.stage {
+            Some(Either::Flat(s)) => {
+                camera.frame_flat(&s.framed(Subject::None), &s.posed().bounds(), aspect);
+            }
+            Some(Either::Solid(s)) => {
+                camera.frame_solid(&s.framed(Subject::None), &s.posed().bounds(), aspect);
+            }
+            None => {}
+        }
+        camera
+    }
+}
+
+/// A word for a shell.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}

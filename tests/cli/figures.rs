@@ -1,0 +1,212 @@
+//! Figures of one's own: what the explorer shows of a step, as files of the real program.
+
+use std::fs;
+use std::path::Path;
+
+use cullscope::app::{Action, Command, Picture, State};
+use cullscope::drawing::Subject;
+use cullscope::geometry::NodeId;
+use cullscope::render::{Format, recipe};
+use serde_json::Value as Json;
+
+use super::{cullscope, done, folder, json, refused, shipped, with};
+
+const OWN: [&str; 5] = ["figure", "--scene", "walls.json", "--method", "hierarchical-z"];
+
+/// What a figure carries.
+fn carried(file: &Path) -> Json {
+    json(&recipe(&fs::read(file).expect("a figure")).expect("a recipe"))
+}
+
+/// The words of a command line, as a shell takes them.
+fn words(line: &str) -> Vec<String> {
+    let (mut words, mut is_quoted) = (vec![String::new()], false);
+    for c in line.chars() {
+        match c {
+            '\'' => is_quoted = !is_quoted,
+            ' ' if !is_quoted => words.push(String::new()),
+            c => words.last_mut().expect("a word").push(c),
+        }
+    }
+    words
+}
+
+/// Runs the command that a figure carries in its folder; it must write the same bytes again.
+fn made_again(file: &Path) {
+    let before = fs::read(file).expect("a figure");
+    let line = carried(file)["figure"]["command"].as_str().expect("a command").to_owned();
+    fs::remove_file(file).expect("a file of our own");
+    let words = words(&line);
+    let words: Vec<&str> = words[1..].iter().map(String::as_str).collect();
+    done(file.parent().expect("a folder"), &words);
+    assert!(fs::read(file).expect("a figure") == before, "{}: {line}", file.display());
+}
+
+#[test]
+fn every_picture_of_a_step_is_written_and_made_again() {
+    let here = folder("own");
+    let views = ["--eye", "8.5,1,-8.5", "--target", "20,1.1,-12", "--fov", "47.3", "--size", "64x48"];
+    let solid = with(&["figure", "--scene", "boxes.obj", "--method", "hierarchical-z"], &views);
+    let flat = with(&OWN, &["--do", "frame:0:1", "--text", "paths"]);
+    for (task, scene) in [(&flat, "walls"), (&solid, "boxes")] {
+        let more = ["--first-hidden", "--picture", "all", "--paper", "column", "--out", "sub/figures"];
+        let said = done(&here, &with(&with(task, &more), &["--format", "svg,pdf,png"]));
+        let files: Vec<&Path> = said.lines().map(Path::new).collect();
+        assert!(files.len() == 6 * 3 && files[0].to_string_lossy().contains(scene), "{said}");
+        for word in ["-eye.svg", "-pseudocode.pdf", "-z-pyramid-stacked.png", "-visible-list.svg"] {
+            assert!(said.contains(word), "{word}: {said}");
+        }
+        for file in &files {
+            let carried = carried(&here.join(file));
+            assert_eq!(carried["method"], "hierarchical-z");
+            assert_eq!(carried["scene"], format!("../../{}", task[2]), "found from the file");
+        }
+        files.iter().for_each(|file| made_again(&here.join(file)));
+        let mut state = State::new();
+        state.apply(Command::Open(here.join(files[0]).to_string_lossy().into_owned()));
+        state.block_until_idle();
+        let sentence = state.sentence();
+        assert!(sentence.contains("hidden") || sentence.contains("behind"), "{sentence}");
+    }
+    assert!(done(&here, &["figure", "--check", "sub/figures"]).contains("36 of 36 figures"));
+}
+
+#[test]
+fn the_caption_says_what_is_not_by_default_and_the_step_is_marked() {
+    let here = folder("caption");
+    let room = shipped("scenes3d/corner_hole/corner_hole.obj");
+    let task = ["figure", "--scene", &room, "--method", "large-occluders", "--set", "tree-height=5"];
+    done(&here, &with(&task, &["--where", "kind:nodedecided"]));
+    let file = fs::read_dir(&here).expect("a folder").flatten().map(|e| e.path());
+    let file = file.filter(|p| p.extension().is_some_and(|e| e == "svg")).last().expect("a figure");
+    let svg = fs::read_to_string(&file).expect("a figure");
+    let state = carried(&file);
+    let start = svg.find("<desc").expect("a description");
+    let alt = &svg[start..svg.find("</desc>").expect("its end")];
+    assert!(alt.contains("tree-height 5") && alt.contains("departs from its paper"), "{alt}");
+    // Nothing else of some ten parameters, and the legend in the screen's words with counts.
+    assert!(!alt.contains("directions") && alt.contains("not decided") && alt.contains("drawn 0"), "{alt}");
+    assert!(svg.contains("role=\"img\"") && svg.contains("<title"));
+    // The node of the step has its box, and surfaces are pixels: nothing of them is a shape.
+    let emphasis = svg.find("id=\"layer-emphasis\"").or_else(|| svg.find("id=\"layer-evidence\""));
+    assert!(svg[emphasis.expect("marks")..].contains("current\""), "step {}", state["step"]);
+    assert!(svg.contains("data-node=") && svg.contains("<image") && !svg.contains("id=\"layer-scene\""));
+}
+
+#[test]
+fn the_window_writes_what_the_command_writes() {
+    let here = folder("window");
+    let building = shipped("scenes3d/corner_hole/corner_hole.obj");
+    for source in [here.join("walls.json").to_string_lossy().into_owned(), building] {
+        let mut state = State::new();
+        state.folder = here.clone();
+        state.apply(Command::Open(source));
+        state.block_until_idle();
+        state.apply(Command::Method("hierarchical-z".into()));
+        state.apply(Command::Set("backface-culling".into(), "true".into(), 0));
+        state.block_until_idle();
+        state.apply(Command::GoTo(state.len() / 2));
+        state.apply(Command::Select(Subject::Node(NodeId(1))));
+        state.apply(Action::CycleSurface);
+        state.apply(Action::CycleLookIn);
+        let mut camera = state.observer;
+        camera.orbit(0.3, -0.2);
+        camera.slide(glam::Vec2::new(0.1, -0.7));
+        state.apply(Command::Observe(camera));
+        state.apply(Command::Picture("visible list".into()));
+        for (picture, format) in [
+            (Action::FigureObserver, Format::Svg),
+            (Action::FigureEye, Format::Pdf),
+            (Action::FigureOwn, Format::Png),
+            (Action::FigureCode, Format::Svg),
+        ] {
+            state.apply(picture);
+            state.notices.clear();
+            state.export(format, 1.37);
+            let said = state.notices[0].text.clone();
+            let path = said.trim_start_matches("The figure was written to ").trim_end_matches('.');
+            made_again(Path::new(path));
+            // A second one does not overwrite the first.
+            state.export(format, 1.37);
+            let name = state.notices[1].text.clone();
+            assert!(name.contains(&format!("-2.{}", format.name())), "{name}");
+        }
+        assert_eq!(state.exported(), Picture::Code);
+    }
+}
+
+#[test]
+fn a_folder_is_checked_figure_by_figure() {
+    let here = folder("check");
+    done(&here, &with(&OWN, &["--step", "20", "--out", "out", "--format", "svg,png"]));
+    done(&here, &["figure", "coorg-teller-figure-4", "--out", "out"]);
+    fs::write(here.join("out/foreign.svg"), "<svg/>").expect("written");
+    let said = done(&here, &["figure", "--check", "out"]);
+    assert!(said.contains("foreign.svg: not checked: it was made by another program"), "{said}");
+    assert!(said.ends_with("3 of 3 figures are made again as they are\n"), "{said}");
+    let svg = here.join("out/walls-hierarchical-z-step-20.svg");
+    let text = fs::read_to_string(&svg).expect("a figure");
+    fs::write(&svg, text.replacen("stroke-width=\"1", "stroke-width=\"2", 1)).expect("written");
+    fs::write(here.join("out/cut.pdf"), "%PDF").expect("written");
+    fs::remove_file(here.join("out/coorg-teller-figure-4.svg")).expect("a file of our own");
+    let output = cullscope(&here, &["figure", "--check", "out"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("walls-hierarchical-z-step-20.svg: differs"), "{said}");
+    assert!(said.ends_with("1 of 2 figures are made again as they are\n"), "{said}");
+    // Another scene under its name is no longer what was drawn.
+    let walls = fs::read_to_string(here.join("walls.json")).expect("a scene");
+    fs::write(&svg, text).expect("written");
+    fs::write(here.join("walls.json"), walls.replace("[-1,3,1,3]", "[-1,3,1.5,3]")).expect("written");
+    let output = cullscope(&here, &["figure", "--check", "out"]);
+    assert_eq!(output.status.code(), Some(1), "the scene has changed");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("0 of 2"));
+    fs::remove_file(here.join("walls.json")).expect("a file of our own");
+    let output = cullscope(&here, &["figure", "--check", "out"]);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("was not found"), "the scene is gone");
+    refused(&here, &["figure", "--check", "none"], 1);
+}
+
+#[test]
+fn words_of_figures_that_are_off_say_what_there_is() {
+    let here = folder("own-words");
+    let off: [(&[&str], &str); 9] = [
+        (&["--picture", "piramid"], "did you mean `z-pyramid`?"),
+        (&["--step", "99999"], "steps: 0 to "),
+        (&["--where", "verdict:purple"], "verdict:"),
+        (&["--where", "verdit:hidden"], "verdict:"),
+        (&["--where", ""], "--step N"),
+        (&["--set", "pixel=1"], "parameters"),
+        (&["--do", "dance"], "not a command"),
+        (&["--path", "eye"], "did you mean `eyes`?"),
+        (&["--step", "1", "--last"], "cannot be used"),
+    ];
+    for (more, hint) in off {
+        let said = refused(&here, &with(&OWN, more), 2);
+        assert!(said.contains(hint), "{more:?}: {said}");
+    }
+    refused(&here, &["figure", "--scene", "walls.json"], 2);
+    refused(&here, &["figure", "--method", "frustum"], 2);
+    refused(&here, &["figure", "--all", "--step", "3"], 2);
+    refused(&here, &["figure", "--all", "--random-views", "3"], 2);
+    refused(&here, &with(&OWN, &["coorg-teller-figure-4"]), 2);
+    refused(&here, &with(&OWN, &["--all"]), 2);
+    refused(&here, &["figure", "--scene", "walls.json", "--method", "frustrum"], 2);
+    let said = refused(&here, &with(&OWN, &["--method", "frustum"]), 2);
+    assert!(said.contains("--method"), "{said}");
+    assert!(fs::read_dir(&here).expect("a folder").count() == 2, "nothing was written");
+}
+
+#[test]
+fn steps_are_numbered_files() {
+    let here = folder("steps");
+    let said = done(&here, &with(&OWN, &["--steps", "2..14..4", "--picture", "pseudocode"]));
+    let names = ["02", "06", "10", "14"].map(|n| format!("./walls-hierarchical-z-step-{n}-pseudocode.svg"));
+    assert_eq!(said.lines().collect::<Vec<_>>(), names);
+    names.iter().for_each(|name| assert!(here.join(name).exists()));
+    assert!(done(&here, &["figure", "--check", "."]).contains("4 of 4"));
+    for off in ["4..2", "a..b", "1..9..0", "1"] {
+        refused(&here, &with(&OWN, &["--steps", off]), 2);
+    }
+    assert!(refused(&here, &with(&OWN, &["--steps", "0..99999"]), 2).contains("steps: 0 to"));
+}
