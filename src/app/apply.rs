@@ -353,12 +353,26 @@ impl State {
         if subject == self.selection {
             return;
         }
+        if !self.is_there(subject) {
+            return self.fail("There is no such thing to select.");
+        }
         self.selected_before.push(self.selection);
         if self.selected_before.len() > SELECTIONS {
             self.selected_before.remove(0);
         }
         self.selected_after.clear();
         self.selection = subject;
+    }
+
+    /// Whether a thing is in the scene, or in the film's index; before there is one, everything is.
+    fn is_there(&self, subject: Subject) -> bool {
+        let Some(stage) = self.staged() else { return true };
+        match subject {
+            Subject::Prim(prim) => stage.scene().has_prim(prim),
+            Subject::Object(object) => object.at() < stage.scene().object_count(),
+            Subject::Node(node) => stage.film().is_none_or(|film| node.at() < film.node_count()),
+            _ => true,
+        }
     }
 
     fn inputs(&self) -> Option<Inputs> {

@@ -152,12 +152,16 @@ impl<S: Space> Stage<S> {
     /// The box of a primitive, an object or a node; `None` of anything else.
     pub fn bounds_of(&self, subject: Subject) -> Option<Aabb<S::Vector>> {
         match subject {
-            Subject::Prim(prim) => Some(self.posed().prim_bounds(prim)),
+            Subject::Prim(prim) if prim.at() < self.scene.prim_count() => {
+                Some(self.posed().prim_bounds(prim))
+            }
             Subject::Object(object) => {
                 let boxes = self.scene.prims_of(object).into_iter().map(|p| self.posed().prim_bounds(p));
                 Some(boxes.fold(Aabb::empty(), |all: Aabb<S::Vector>, b| all.union(b)))
             }
-            Subject::Node(node) => self.hierarchy().map(|h| h.bounds(node)),
+            Subject::Node(node) => {
+                self.hierarchy().filter(|h| node.at() < h.node_count()).map(|h| h.bounds(node))
+            }
             _ => None,
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use cullscope::app::{Action, Command, Picture, State};
 use cullscope::drawing::Subject;
-use cullscope::geometry::NodeId;
+use cullscope::geometry::PrimId;
 use cullscope::render::{Format, recipe};
 use serde_json::Value as Json;
 
@@ -106,7 +106,7 @@ fn the_window_writes_what_the_command_writes() {
         state.apply(Command::Set("backface-culling".into(), "true".into(), 0));
         state.block_until_idle();
         state.apply(Command::GoTo(state.len() / 2));
-        state.apply(Command::Select(Subject::Node(NodeId(1))));
+        state.apply(Command::Select(Subject::Prim(PrimId(1))));
         state.apply(Action::CycleSurface);
         state.apply(Action::CycleLookIn);
         let mut camera = state.observer;
@@ -144,7 +144,7 @@ fn a_folder_is_checked_figure_by_figure() {
     let said = done(&here, &["figure", "--check", "out"]);
     assert!(said.contains("foreign.svg: not checked: it was made by another program"), "{said}");
     assert!(said.ends_with("3 of 3 figures are made again as they are\n"), "{said}");
-    let svg = here.join("out/walls-hierarchical-z-step-20.svg");
+    let svg = here.join("out/two-walls-hierarchical-z-step-20.svg");
     let text = fs::read_to_string(&svg).expect("a figure");
     fs::write(&svg, text.replacen("stroke-width=\"1", "stroke-width=\"2", 1)).expect("written");
     fs::write(here.join("out/cut.pdf"), "%PDF").expect("written");
@@ -152,7 +152,7 @@ fn a_folder_is_checked_figure_by_figure() {
     let output = cullscope(&here, &["figure", "--check", "out"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("walls-hierarchical-z-step-20.svg: differs"), "{said}");
+    assert!(said.contains("two-walls-hierarchical-z-step-20.svg: differs"), "{said}");
     assert!(said.ends_with("1 of 2 figures are made again as they are\n"), "{said}");
     // Another scene under its name is no longer what was drawn.
     let walls = fs::read_to_string(here.join("walls.json")).expect("a scene");
@@ -170,7 +170,8 @@ fn a_folder_is_checked_figure_by_figure() {
 #[test]
 fn words_of_figures_that_are_off_say_what_there_is() {
     let here = folder("own-words");
-    let off: [(&[&str], &str); 9] = [
+    let off: [(&[&str], &str); 10] = [
+        (&["--do", "select:node:99999"], "no such thing"),
         (&["--picture", "piramid"], "did you mean `z-pyramid`?"),
         (&["--step", "99999"], "steps: 0 to "),
         (&["--where", "verdict:purple"], "verdict:"),
@@ -201,7 +202,8 @@ fn words_of_figures_that_are_off_say_what_there_is() {
 fn steps_are_numbered_files() {
     let here = folder("steps");
     let said = done(&here, &with(&OWN, &["--steps", "2..14..4", "--picture", "pseudocode"]));
-    let names = ["02", "06", "10", "14"].map(|n| format!("./walls-hierarchical-z-step-{n}-pseudocode.svg"));
+    let names =
+        ["02", "06", "10", "14"].map(|n| format!("./two-walls-hierarchical-z-step-{n}-pseudocode.svg"));
     assert_eq!(said.lines().collect::<Vec<_>>(), names);
     names.iter().for_each(|name| assert!(here.join(name).exists()));
     assert!(done(&here, &["figure", "--check", "."]).contains("4 of 4"));
