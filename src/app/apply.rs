@@ -173,6 +173,7 @@ impl State {
             Action::FigureEye => self.export_of == Picture::Eye,
             Action::FigureOwn => matches!(self.export_of, Picture::Own(_)),
             Action::FigureCode => self.export_of == Picture::Code,
+            Action::FigureVectors => self.exports_vectors,
             Action::LayoutDebug => s.layout == Layout::Debug,
             Action::LayoutLecture => s.layout == Layout::Lecture,
             Action::LayoutFigure => s.layout == Layout::Figure,
@@ -213,6 +214,7 @@ impl State {
             Action::FigureEye => self.export_of = Picture::Eye,
             Action::FigureOwn => self.export_of = Picture::Own(self.own_picture),
             Action::FigureCode => self.export_of = Picture::Code,
+            Action::FigureVectors => self.exports_vectors ^= true,
             Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
             Action::Cancel if self.busy().is_some() => {
                 self.worker.cancel();

@@ -98,6 +98,8 @@ actions! {
         picture of the pane Pictures.";
     File FigureCode "figure-pseudocode" "Figures show: pseudocode" [] "Exported figures show the pseudocode, \
         with the line of the step.";
+    File FigureVectors "figure-vectors" "Figures of space: vectors" [] "Surfaces that hide each other as \
+        vectors, what was culled as dashed outlines; else as pixels, as on screen.";
     File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
                                                        open.";
     File Quit "quit" "Quit" ["Ctrl+Q"] "Closes the explorer.";

@@ -138,6 +138,10 @@ impl State {
                 let world = figure::world(&*film.film, &film.stamps, self.step, &look);
                 let size = Vec2::new(width, width / aspect) * DPI / 72.0;
                 let view = self.observer.view(size.x.round() as u32, size.y.round() as u32);
+                if export.is_vector {
+                    let (faces, over) = s.faces(&view, &self.ask(export, false))?;
+                    return Some((figure::Picture::Solved(faces, over, view), page::legend(&world)));
+                }
                 let (pixels, over) = s.surfaces(&view, &self.ask(export, false))?;
                 (figure::Picture::Over(pixels, over, view), page::legend(&world))
             }
@@ -243,6 +247,9 @@ impl State {
     /// # Errors
     /// Why there is no such figure, in a line.
     pub fn figure_with(&self, export: &Export, format: Format, recipe: &str) -> Result<Vec<u8>, String> {
+        if let Some(Either::Solid(stage)) = self.stage.as_ref().filter(|_| export.is_vector) {
+            stage.refuse_vectors()?;
+        }
         let drawing = self.figure(export).ok_or("there is nothing to make a figure of yet")?;
         if format == Format::Svg {
             let options = SvgOptions { outline_text: export.outline_text, metadata: Some(recipe) };
@@ -275,6 +282,7 @@ impl State {
             theme: export.theme.name().into(),
             text: export.text_word().into(),
             aspect: export.aspect,
+            vectors: export.is_vector,
         }
     }
 
@@ -293,13 +301,15 @@ impl State {
             theme: theme.ok_or_else(|| unknown("theme", &made.theme))?,
             outline_text: made.text == "paths",
             aspect: made.aspect,
+            is_vector: made.vectors,
         })
     }
 
     /// The figure that the window's export makes.
     pub fn export_like_window(&self, aspect: f32) -> Export {
         let (paper, theme) = (Paper::TwoColumns, Theme::Print);
-        Export { picture: self.exported(), paper, theme, outline_text: false, aspect }
+        let is_vector = self.exports_vectors;
+        Export { picture: self.exported(), paper, theme, outline_text: false, aspect, is_vector }
     }
 
     /// Writes the picture on screen into [`State::folder`], and reports where; `aspect` is that of the

@@ -32,6 +32,8 @@ pub struct Export {
     pub outline_text: bool,
     /// Width over height of the Observer's picture.
     pub aspect: f32,
+    /// Whether surfaces of the Observer's picture of space are vectors that hide each other; else pixels.
+    pub is_vector: bool,
 }
 
 /// How a figure was made, in its file.
@@ -49,6 +51,9 @@ pub struct Made {
     pub text: String,
     /// Width over height of the Observer's picture.
     pub aspect: f32,
+    /// See [`Export::is_vector`].
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub vectors: bool,
 }
 
 /// Papers by the words of files and the command line.

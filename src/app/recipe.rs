@@ -42,6 +42,9 @@ impl State {
         if export.aspect != self.fitting_aspect() {
             words.extend(["--aspect".into(), export.aspect.to_string()]);
         }
+        if export.is_vector {
+            words.push("--vectors".into());
+        }
         if export.outline_text {
             words.extend(["--text", "paths"].map(String::from));
         }

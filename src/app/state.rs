@@ -87,6 +87,8 @@ pub struct State {
     pub shown: Shown,
     /// What a figure of the window shows; any picture of the method stands for the one that is shown.
     pub export_of: Picture,
+    /// Whether figures of space are vectors; see [`super::Export::is_vector`].
+    pub exports_vectors: bool,
     /// Which picture of the method is shown.
     pub own_picture: usize,
     /// How depths are shaded in it.
@@ -156,6 +158,7 @@ impl State {
             is_eye_locked: false,
             shown: Shown::default(),
             export_of: Picture::default(),
+            exports_vectors: false,
             own_picture: 0,
             depths: DepthScale::default(),
             dialog: Dialog::None,
@@ -219,8 +222,10 @@ impl State {
             (Some(_), None) => "Before the first event: nothing is decided yet.".into(),
             (Some(film), Some(at)) => {
                 let end = self.result().filter(|_| self.step == self.len());
-                let end = end.map(|result| format!(" The end: {result}")).unwrap_or_default();
-                film.reel.sentence(at) + &end
+                let sentence = film.reel.sentence(at);
+                let stop = if sentence.ends_with('.') { "" } else { "." };
+                let end = end.map(|result| format!("{stop} The end: {result}")).unwrap_or_default();
+                sentence + &end
             }
         }
     }

@@ -57,6 +57,9 @@ pub(super) struct Snapshot {
     /// Width over height of the Observer's picture [default: to fit flatland, 4:3 in space]
     #[arg(long, value_name = "RATIO", requires = "scene", value_parser = ratio)]
     aspect: Option<f32>,
+    /// Surfaces of space as vectors instead of pixels, hidden parts left out; what was culled as dashed outlines
+    #[arg(long, requires = "scene")]
+    vectors: bool,
     /// A command of the explorer before that, such as look-in-cut, surface-wire, select:node:4, frame:0:7
     /// (view 7 of path 0); may be given several times
     #[arg(long = "do", value_name = "COMMAND", requires = "scene")]
@@ -145,6 +148,7 @@ pub(super) fn run(args: &Snapshot, source: &str, files: &Files) -> Result<(), Cl
             theme: files.theme(),
             outline_text: files.outline_text(),
             aspect,
+            is_vector: args.vectors,
         };
         for format in files.formats() {
             if bar.cancelled() {

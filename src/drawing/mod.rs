@@ -232,6 +232,16 @@ pub enum Mark<P> {
         /// sRGB, and opacity; not premultiplied.
         rgba: [u8; 4],
     },
+    /// A filled convex polygon that hides what was painted before it, of which only some sides are outlined,
+    /// in the pattern of its role.
+    Facet {
+        /// Its corners.
+        points: Vec<P>,
+        /// Whether the side from each corner to the next one is outlined.
+        is_edge: Vec<bool>,
+        /// sRGB; without it there is the outline alone.
+        rgb: Option<[u8; 3]>,
+    },
     /// A line with an arrow head at its end.
     Arrow(P, P),
     /// A filled circle.
@@ -268,7 +278,10 @@ impl<P: Copy> Mark<P> {
     pub fn mapped(&self, f: impl Fn(P) -> P) -> Self {
         let mut mark = self.clone();
         match &mut mark {
-            Self::Line { points, .. } | Self::Area(points) | Self::Swatch { points, .. } => {
+            Self::Line { points, .. }
+            | Self::Area(points)
+            | Self::Swatch { points, .. }
+            | Self::Facet { points, .. } => {
                 points.iter_mut().for_each(|p| *p = f(*p));
             }
             Self::Arrow(a, b) => (*a, *b) = (f(*a), f(*b)),

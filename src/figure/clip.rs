@@ -50,6 +50,7 @@ impl Frame {
                 let parts = Some(self.area(points)).filter(|p| p.len() > 2);
                 parts.map(|points| Mark::Swatch { points, rgba }).into_iter().collect()
             }
+            Mark::Facet { points, is_edge, rgb } => self.facet(points, is_edge, rgb),
             Mark::Arrow(a, b) if self.holds(a) && self.holds(b) => vec![Mark::Arrow(a, b)],
             Mark::Arrow(a, b) => match self.segment(a, b) {
                 Some((c, d)) if d == b => vec![Mark::Arrow(c, d)],
@@ -93,6 +94,27 @@ impl Frame {
             }
         }
         pieces
+    }
+
+    /// The part of a facet; sides along the frame are none of its edges.
+    fn facet(&self, points: Vec<Vec2>, is_edge: Vec<bool>, rgb: Option<[u8; 3]>) -> Vec<Mark<Vec2>> {
+        if points.iter().all(|&p| self.holds(p)) {
+            return vec![Mark::Facet { points, is_edge, rgb }];
+        }
+        let n = points.len();
+        let mut marks = Vec::new();
+        let inside = self.area(points.clone());
+        if inside.len() > 2 && rgb.is_some() {
+            let is_edge = vec![false; inside.len()];
+            marks.push(Mark::Facet { points: inside, is_edge, rgb });
+        }
+        for k in (0..n).filter(|&k| is_edge[k]) {
+            if let Some((a, b)) = self.segment(points[k], points[(k + 1) % n]) {
+                // Two corners and a side: an edge alone.
+                marks.push(Mark::Facet { points: vec![a, b], is_edge: vec![true, false], rgb: None });
+            }
+        }
+        marks
     }
 
     fn area(&self, mut points: Vec<Vec2>) -> Vec<Vec2> {

@@ -13,6 +13,7 @@ pub mod page;
 mod panels;
 mod pick;
 mod place;
+mod solved;
 pub mod tools;
 mod tradeoff;
 
@@ -25,4 +26,5 @@ pub use page::{Entry, Page, Paper, Swatch};
 pub use panels::{Panel, Picture, panels, plate_labels};
 pub use pick::{pick, pick_node, pick_segment};
 pub use place::{Sheet, project};
+pub use solved::{Face, solved};
 pub use tradeoff::{tradeoff, tradeoff_charts, tradeoffs};

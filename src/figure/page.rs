@@ -358,7 +358,7 @@ pub fn label(role: Role) -> Option<&'static str> {
 pub fn legend<P>(picture: &Drawing<P>) -> Vec<Entry> {
     let entry = |role: Role| {
         let swatch = picture.items.iter().filter(|i| i.role == role).filter_map(|i| match i.mark {
-            Mark::Area(_) | Mark::Swatch { .. } => Some(Swatch::Area),
+            Mark::Area(_) | Mark::Swatch { .. } | Mark::Facet { .. } => Some(Swatch::Area),
             Mark::Line { .. } | Mark::Arrow(..) => Some(Swatch::Line),
             Mark::Dot { .. } => Some(Swatch::Dot),
             Mark::Text { .. } | Mark::Image { .. } => None,

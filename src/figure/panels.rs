@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::{Sheet, clip, project};
+use super::{Face, Sheet, clip, project, solved};
 use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
 use crate::geometry::{Aabb, Solid, View};
 
@@ -24,6 +24,8 @@ pub enum Picture {
     Pixels(crate::drawing::Pixels),
     /// A drawing of space over an image that this observer sees too.
     Over(crate::drawing::Pixels, Drawing<Vec3>, View<Solid>),
+    /// A drawing of space over surfaces that hide each other, as this observer sees them.
+    Solved(Vec<Face>, Drawing<Vec3>, View<Solid>),
 }
 
 impl Picture {
@@ -31,7 +33,9 @@ impl Picture {
     fn proportion(&self) -> f32 {
         match self {
             Self::Flat(_, bounds) => bounds.size().y / bounds.size().x.max(1e-6),
-            Self::Space(_, view) | Self::Over(_, _, view) => view.height as f32 / view.width as f32,
+            Self::Space(_, view) | Self::Over(_, _, view) | Self::Solved(_, _, view) => {
+                view.height as f32 / view.width as f32
+            }
             Self::Pixels(p) => p.height as f32 / p.width as f32,
         }
     }
@@ -45,6 +49,10 @@ impl Picture {
             Self::Pixels(pixels) => paper.push(Layer::Scene, Role::Scene, Subject::None, image(pixels)),
             Self::Over(pixels, world, observer) => {
                 paper.push(Layer::Ground, Role::Scene, Subject::None, image(pixels));
+                project(world, observer, min, max, &mut paper);
+            }
+            Self::Solved(faces, world, observer) => {
+                paper.items.extend(solved(faces, observer, min, max).unwrap_or_default().items);
                 project(world, observer, min, max, &mut paper);
             }
         }

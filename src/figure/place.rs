@@ -53,6 +53,9 @@ fn map<P: Copy>(mark: &Mark<P>, f: &impl Fn(P) -> Vec2) -> Mark<Vec2> {
         Mark::Line { points, closed } => Mark::Line { points: all(points), closed: *closed },
         Mark::Area(points) => Mark::Area(all(points)),
         Mark::Swatch { points, rgba } => Mark::Swatch { points: all(points), rgba: *rgba },
+        Mark::Facet { points, is_edge, rgb } => {
+            Mark::Facet { points: all(points), is_edge: is_edge.clone(), rgb: *rgb }
+        }
         Mark::Arrow(a, b) => Mark::Arrow(f(*a), f(*b)),
         Mark::Dot { at, radius_pt } => Mark::Dot { at: f(*at), radius_pt: *radius_pt },
         Mark::Text { at, text, size_pt, anchor, font } => {
@@ -73,12 +76,7 @@ pub fn project(
     max_pt: Vec2,
     paper: &mut Drawing<Vec2>,
 ) {
-    let camera = Camera {
-        projection: observer.projection(),
-        near: observer.eye.near,
-        min_pt,
-        size_pt: max_pt - min_pt,
-    };
+    let camera = Camera::new(observer, min_pt, max_pt);
     let mut placed: Vec<(f32, Item<Vec2>)> = Vec::with_capacity(world.items.len());
     for item in &world.items {
         if let Some((depth, mark)) = camera.mark(&item.mark) {
@@ -91,7 +89,8 @@ pub fn project(
     paper.items.extend(sorted.into_iter().chain(others).map(|(_, item)| item));
 }
 
-struct Camera {
+/// World to paper.
+pub(super) struct Camera {
     projection: Projection<Vec3>,
     near: f32,
     min_pt: Vec2,
@@ -99,8 +98,17 @@ struct Camera {
 }
 
 impl Camera {
+    /// What `observer` sees fills a rectangle.
+    pub(super) fn new(observer: &View<Solid>, min_pt: Vec2, max_pt: Vec2) -> Self {
+        let (projection, near) = (observer.projection(), observer.eye.near);
+        Self { projection, near, min_pt, size_pt: max_pt - min_pt }
+    }
+    /// World to clip coordinates.
+    pub(super) fn clip(&self, p: Vec3) -> Vec3 {
+        self.projection.clip(p)
+    }
     /// Clip coordinates to paper.
-    fn paper(&self, clip: Vec3) -> Vec2 {
+    pub(super) fn paper(&self, clip: Vec3) -> Vec2 {
         let image = Vec2::new(clip.x, -clip.y) / clip.z * 0.5 + Vec2::splat(0.5);
         self.min_pt + image * self.size_pt
     }
@@ -157,7 +165,7 @@ impl Camera {
                     font: *font,
                 },
             )),
-            Mark::Image { .. } => None,
+            Mark::Facet { .. } | Mark::Image { .. } => None,
         }
     }
 }

@@ -20,6 +20,9 @@ pub(super) enum Part {
     Face,
     /// An area in a color of its own.
     Swatch,
+    /// The same, which hides what is behind it, and its edges.
+    Facet,
+    Edge,
     Hatch,
     Line,
     Head,
@@ -36,6 +39,8 @@ impl Part {
             Part::Area => "area",
             Part::Face => "face",
             Part::Swatch => "swatch",
+            Part::Facet => "facet",
+            Part::Edge => "edge",
             Part::Hatch => "hatch",
             Part::Line => "line",
             Part::Head => "head",
@@ -90,6 +95,8 @@ pub(super) struct Piece<'a> {
 
 /// Width of the outlines of a scene's polygons: they are many and small.
 const HAIR_PT: f32 = 0.3;
+/// Width of the edges of solid surfaces.
+const EDGE_PT: f32 = 0.4;
 
 /// Calls `put` with each shape of a drawing, from the lowest to the topmost, with its item and its paint.
 pub(super) fn each_piece(
@@ -108,6 +115,12 @@ pub(super) fn each_piece(
             if let (Part::Swatch, Mark::Swatch { rgba: [r, g, b, alpha], .. }) = (piece.part, &item.mark) {
                 paint.fill = Some((look.vision.see([*r, *g, *b]), f32::from(*alpha) / 255.0));
             }
+            if let (Part::Facet, Mark::Facet { rgb: Some(rgb), .. }) = (piece.part, &item.mark) {
+                let color = look.vision.see(*rgb);
+                // Its own color around it, so that no paper shines through between neighbors.
+                paint.stroke = Some(Stroke { color, width_pt: HAIR_PT, dash: &[] });
+                paint.fill = Some((color, 1.0));
+            }
             put(item, piece, &paint);
         }
     }
@@ -125,6 +138,8 @@ pub(super) fn paint(part: Part, style: &Style) -> Paint {
         Part::Area => Paint { fill: style.fill, stroke: Some(line), ..none },
         Part::Face => Paint { fill: style.fill, stroke: Some(Stroke { width_pt: HAIR_PT, ..line }), ..none },
         Part::Swatch => Paint { stroke: Some(Stroke { width_pt: HAIR_PT, ..line }), ..none },
+        Part::Facet => none,
+        Part::Edge => Paint { stroke: Some(Stroke { width_pt: EDGE_PT, ..line }), ..none },
         Part::Hatch => Paint { hatch: Some((style.hatch, style.stroke)), ..none },
         Part::Line => Paint { stroke: Some(line), ..none },
         Part::Head => Paint { fill: Some((style.stroke, 1.0)), ..none },
@@ -175,6 +190,13 @@ fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piece<'a>>) {
             push(Part::Swatch, Shape::Path { points: Cow::Borrowed(points), closed: true });
             middle(points, true)
         }
+        Mark::Facet { points, is_edge, rgb } => {
+            if rgb.is_some() {
+                push(Part::Facet, Shape::Path { points: Cow::Borrowed(points), closed: true });
+            }
+            edges(points, is_edge, &mut push);
+            None
+        }
         Mark::Arrow(from, to) => {
             arrow(*from, *to, style, &mut push);
             Some((*from + *to) / 2.0 + above)
@@ -221,6 +243,26 @@ fn sign_line(sign: char, middle: Vec2) -> Line<'static> {
     Line { at, text, size_pt: SIGN_PT, anchor: Anchor::Middle, font: Font::Bold }
 }
 
+/// The sides that are edges, those that follow each other as one line.
+fn edges<'a>(points: &'a [Vec2], is_edge: &[bool], push: &mut impl FnMut(Part, Shape<'a>)) {
+    let n = points.len();
+    let Some(gap) = is_edge.iter().position(|is_edge| !is_edge) else {
+        return push(Part::Edge, Shape::Path { points: Cow::Borrowed(points), closed: true });
+    };
+    let mut line: Vec<Vec2> = Vec::new();
+    // From behind a gap, and to it again.
+    for k in (1..=n).map(|k| (gap + k) % n) {
+        if is_edge[k] {
+            if line.is_empty() {
+                line.push(points[k]);
+            }
+            line.push(points[(k + 1) % n]);
+        } else if !line.is_empty() {
+            push(Part::Edge, Shape::Path { points: Cow::Owned(std::mem::take(&mut line)), closed: false });
+        }
+    }
+}
+
 /// A shaft that ends inside its head, so that its butt does not show beyond the tip.
 fn arrow<'a>(from: Vec2, to: Vec2, style: &Style, push: &mut impl FnMut(Part, Shape<'a>)) {
     let along = to - from;
@@ -259,6 +301,9 @@ fn finite(mark: &Mark<Vec2>) -> bool {
     match mark {
         Mark::Line { points, closed: _ } => points.len() > 1 && points.iter().all(near),
         Mark::Area(points) | Mark::Swatch { points, .. } => points.len() > 2 && points.iter().all(near),
+        Mark::Facet { points, is_edge, .. } => {
+            points.len() > 1 && points.len() == is_edge.len() && points.iter().all(near)
+        }
         Mark::Arrow(a, b) => near(a) && near(b),
         Mark::Dot { at, radius_pt } => near(at) && radius_pt.is_finite() && *radius_pt > 0.0,
         Mark::Text { at, text, size_pt, .. } => {

@@ -20,7 +20,11 @@ pub fn show(state: &State, gesture: &mut Gesture, ui: &mut egui::Ui, answers: &m
         }
         if let Some(result) = state.result() {
             ui.add_space(4.0);
-            ui.label(result).on_hover_text("This frame with these parameters, beside an image of everything");
+            // Rows above may be wider than the pane.
+            ui.scope(|ui| {
+                ui.set_max_width((ui.clip_rect().right() - ui.cursor().left() - 4.0).max(80.0));
+                ui.label(result).on_hover_text("This frame, beside an image of everything");
+            });
         }
         if !state.settings.0.is_empty() {
             super::action_button(state, ui, Action::ResetSettings, "Reset", answers);

@@ -212,3 +212,58 @@ fn steps_are_numbered_files() {
     }
     assert!(refused(&here, &with(&OWN, &["--steps", "0..99999"]), 2).contains("steps: 0 to"));
 }
+
+/// The pixels of a PNG file, three numbers each, with its size.
+fn pixels(file: &Path) -> (u32, u32, Vec<[u8; 3]>) {
+    let reader = png::Decoder::new(std::io::BufReader::new(fs::File::open(file).expect("a picture")));
+    let mut reader = reader.read_info().expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("pixels");
+    let step = info.color_type.samples();
+    (info.width, info.height, bytes.chunks_exact(step).map(|p| [p[0], p[1], p[2]]).collect())
+}
+
+/// Surfaces as vectors hide each other as pixels do: the picture is the same but for lines. What pierces each
+/// other is cut, and what was culled has no surface.
+#[test]
+fn vectors_hide_what_is_behind() {
+    let here = folder("vectors");
+    for (scene, method) in [("generate:failure?case=interpenetration", "z-buffer"), ("boxes.obj", "z-buffer")]
+    {
+        let task =
+            ["figure", "--scene", scene, "--method", method, "--do", "show-evidence", "--do", "show-eye"];
+        done(&here, &with(&task, &["--format", "png,svg", "--out", "pixels"]));
+        done(&here, &with(&task, &["--format", "png,svg", "--out", "vectors", "--vectors"]));
+        let files = fs::read_dir(here.join("vectors")).expect("a folder").flatten().map(|e| e.path());
+        for file in files {
+            let plain = here.join("pixels").join(file.file_name().expect("a name"));
+            if file.extension().is_some_and(|e| e == "svg") {
+                let [text, other] = [&file, &plain].map(|f| fs::read_to_string(f).expect("a figure"));
+                assert!(!text.contains("<image") && text.contains("facet visible"), "{scene}");
+                assert!(other.contains("<image") && !other.contains("facet"), "{scene}");
+                continue;
+            }
+            let ((w, h, a), (v, g, b)) = (pixels(&plain), pixels(&file));
+            // The caption, which says nothing of it, has as much room.
+            assert_eq!((w, h), (v, g), "{scene}");
+            let far = |(a, b): (&[u8; 3], &[u8; 3])| (0..3).any(|c| a[c].abs_diff(b[c]) > 24);
+            let differ = a.iter().zip(&b).filter(|(a, b)| far((a, b))).count();
+            let painted = a.iter().filter(|p| p.iter().any(|c| *c < 230)).count();
+            assert!(painted > a.len() / 50 && differ < painted / 20, "{scene}: {differ} of {painted} differ");
+        }
+        fs::remove_dir_all(here.join("pixels")).expect("our own");
+        fs::remove_dir_all(here.join("vectors")).expect("our own");
+    }
+    // What culled is only outlined, and it is made again as it is.
+    let task = ["figure", "--scene", "boxes.obj", "--method", "frustum", "--vectors", "--out", "again"];
+    let said = done(&here, &task);
+    let file = here.join(said.trim());
+    let text = fs::read_to_string(&file).expect("a figure");
+    assert!(text.contains("edge outside") && !text.contains("facet outside"), "{said}");
+    made_again(&file);
+    assert!(done(&here, &["figure", "--check", "again"]).contains("1 of 1 figures"));
+    let large =
+        ["figure", "--scene", "generate:building?polygons=20000", "--method", "z-buffer", "--vectors"];
+    let said = refused(&here, &large, 1);
+    assert!(said.contains("too many for vectors") && said.lines().count() <= 2, "{said}");
+}

@@ -216,7 +216,7 @@ fn advice_is_right_and_repeats() {
     let tried = advice["tried"].as_array().expect("a list");
     assert!(tried.len() > 9 && tried[0]["verdict"] == "advised");
     assert!(said.contains("which promise nothing"), "{said}");
-    let roughly = done(&folder, &[&call[..], &["--max-wrong-pixels", "5"]].concat());
+    let roughly = done(&folder, &[&call[..], &["--max-wrong-pixels", "0.01"]].concat());
     assert!(!roughly.contains("which promise nothing"), "{roughly}");
     let advice = json(&fs::read_to_string(folder.join("a.json")).expect("an advice"));
     let tried = advice["tried"].as_array().expect("a list");

@@ -254,7 +254,8 @@ pub(super) fn marks(drawing: &Drawing<Vec3>) -> MarkWords {
                     to.areas.extend([points[0], points[i - 1], points[i]].map(corner));
                 }
             }
-            Mark::Text { .. } | Mark::Image { .. } => {}
+            // Facets are in figures alone.
+            Mark::Facet { .. } | Mark::Text { .. } | Mark::Image { .. } => {}
         }
     }
     to
