@@ -446,7 +446,7 @@ mod tests {
         let line = |z: f32| [Vec3::new(-3.0, 0.2, z), Vec3::new(3.0, 0.2, z)];
         let (front, behind) = canvas.parted(line(-6.0));
         assert_eq!((front.len(), behind.len()), (2, 1));
-        // The rim of the square, seen 6 away, where two samples are 0.041: those beside the rim count as before.
+        // The rim of the square, seen 6 away, where two samples are 0.041: the rim is in front.
         let [from, to] = behind[0];
         assert!((-1.2..-1.15).contains(&from.x) && (1.15..1.2).contains(&to.x), "{from} {to}");
         for z in [-4.0, -5.0] {

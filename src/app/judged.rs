@@ -1,28 +1,17 @@
-//! The frame at hand beside the truth: what can be seen, what of it is missing, what is drawn for nothing, and
-//! which share of the image is wrong.
+//! The frame at hand beside the truth: what can be seen, what of it is missing, what is drawn for nothing,
+//! and which share of the image is wrong.
 
 use super::state::State;
 use crate::drawing::words::{Room, count, short};
-use crate::method::{DrawList, Film, surfaces_of};
-use crate::raster::{Canvas, Drawable, Options, Target};
-use crate::truth::{Judgement, Truth};
-
-/// Compares what a film's run drew with all of its scene.
-pub(super) fn judge<S: Drawable>(film: &dyn Film<S>, list: &DrawList<S>) -> Judgement {
-    let (scene, view, surfaces) = (film.scene(), film.view(), surfaces_of(film.knobs()));
-    // What turns away is not in the list.
-    let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
-    let (mut image, mut canvas) = (Target::default(), Canvas::default());
-    list.draw((&mut image, &mut canvas), scene, view, &options);
-    Truth::new(scene, surfaces, 1, [1.0; 3]).judge(scene, view, list, (&image, &canvas))
-}
+use crate::truth::Judgement;
 
 impl State {
     /// How the film on stage did, at its end.
     pub fn judged(&self) -> Option<&Judgement> {
         self.film().map(|film| film.truth)
     }
-    /// The same in a sentence, such as `43 of 100 segments are drawn; all 12 that can be seen are among them.`
+    /// The same in a sentence, such as `43 of 100 segments are drawn; all 12 that can be seen are among
+    /// them.`
     pub fn result(&self) -> Option<String> {
         let (judged, scene) = (self.judged()?, self.staged()?.scene());
         let drawn = format!(

@@ -4,8 +4,19 @@
 use super::stage::Stage;
 use crate::drawing::Pixels;
 use crate::geometry::{Flat, View};
-use crate::method::{DrawList, surfaces_of};
-use crate::raster::{self, Drawable, Options, StandIn, Target};
+use crate::method::{DrawList, Film, surfaces_of};
+use crate::raster::{self, Canvas, Drawable, Options, StandIn, Target};
+use crate::truth::{Judgement, Truth};
+
+/// Compares what a film's run drew with all of its scene.
+pub(super) fn judge<S: Drawable>(film: &dyn Film<S>, list: &DrawList<S>) -> Judgement {
+    let (scene, view, surfaces) = (film.scene(), film.view(), surfaces_of(film.knobs()));
+    // What turns away is not in the list.
+    let options = Options { surfaces: surfaces.both_sides(), ..Options::default() };
+    let (mut image, mut canvas) = (Target::default(), Canvas::default());
+    list.draw((&mut image, &mut canvas), scene, view, &options);
+    Truth::new(scene, surfaces, 1, [1.0; 3]).judge(scene, view, list, (&image, &canvas))
+}
 
 impl<S: Drawable> Stage<S> {
     /// What has been drawn up to a step, of a method that stands something for primitives; `None` of others,
@@ -80,7 +91,7 @@ mod tests {
         let recording = run.expect("not cancelled").record(&stage.view, usize::MAX);
         let film = recording.film;
         let (stamps, moves) = (Arc::new(Stamps::new(&*film)), Arc::new(Moves::new(film.events())));
-        let truth = Arc::new(super::super::judged::judge(&*film, &recording.list));
+        let truth = Arc::new(judge(&*film, &recording.list));
         stage.recorded = Some(super::super::Recorded { film, stamps, moves, serial: 1, layers: None, truth });
         (stage, recording.list)
     }

@@ -57,7 +57,7 @@ pub(super) struct Snapshot {
     /// Width over height of the Observer's picture [default: to fit flatland, 4:3 in space]
     #[arg(long, value_name = "RATIO", requires = "scene", value_parser = ratio)]
     aspect: Option<f32>,
-    /// Surfaces of space as vectors instead of pixels, hidden parts left out; what was culled as dashed outlines
+    /// Surfaces of space as vectors that hide each other, not as pixels; what was culled as dashed outlines
     #[arg(long, requires = "scene")]
     vectors: bool,
     /// A command of the explorer before that, such as look-in-cut, surface-wire, select:node:4, frame:0:7

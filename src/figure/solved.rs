@@ -30,9 +30,9 @@ pub struct Face {
 const PIECES: usize = 40;
 const FEW: usize = 20_000;
 
-/// Surfaces on paper as `observer` sees them, whose image fills the rectangle from `min_pt` to `max_pt`: what is
-/// nearer hides what is behind, as far as paper shows it. What lies before the near plane is cut off. `None` if
-/// they cut each other into too many pieces.
+/// Surfaces on paper as `observer` sees them, whose image fills the rectangle from `min_pt` to `max_pt`: what
+/// is nearer hides what is behind, once it is painted in this order. What lies before the near plane is cut
+/// off. `None` if they cut each other into too many pieces.
 pub fn solved(faces: &[Face], observer: &View<Solid>, min_pt: Vec2, max_pt: Vec2) -> Option<Drawing> {
     let camera = Camera::new(observer, min_pt, max_pt);
     // In clip coordinates, where the eye is the origin: planes stay planes.
@@ -258,8 +258,8 @@ mod tests {
         (t > 0.0 && (0..n).all(is_left)).then_some(t)
     }
 
-    /// What is painted last along a ray is what the ray meets first, by every polygon's plane alone; triangles
-    /// that pierce each other included.
+    /// What is painted last along a ray is what the ray meets first, by every polygon's plane alone; also of
+    /// triangles that pierce each other.
     #[test]
     fn the_last_painted_is_the_nearest() {
         let (mut met, mut cut) = (0, 0);

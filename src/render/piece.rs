@@ -191,10 +191,7 @@ fn pieces<'a>(item: &'a Item<Vec2>, style: &Style, out: &mut Vec<Piece<'a>>) {
             middle(points, true)
         }
         Mark::Facet { points, is_edge, rgb } => {
-            if rgb.is_some() {
-                push(Part::Facet, Shape::Path { points: Cow::Borrowed(points), closed: true });
-            }
-            edges(points, is_edge, &mut push);
+            facet(points, is_edge, rgb.is_some(), &mut push);
             None
         }
         Mark::Arrow(from, to) => {
@@ -243,9 +240,12 @@ fn sign_line(sign: char, middle: Vec2) -> Line<'static> {
     Line { at, text, size_pt: SIGN_PT, anchor: Anchor::Middle, font: Font::Bold }
 }
 
-/// The sides that are edges, those that follow each other as one line.
-fn edges<'a>(points: &'a [Vec2], is_edge: &[bool], push: &mut impl FnMut(Part, Shape<'a>)) {
+/// A surface, if it is one, and those of its sides that are edges, what follows each other as one line.
+fn facet<'a>(points: &'a [Vec2], is_edge: &[bool], is_surface: bool, push: &mut impl FnMut(Part, Shape<'a>)) {
     let n = points.len();
+    if is_surface {
+        push(Part::Facet, Shape::Path { points: Cow::Borrowed(points), closed: true });
+    }
     let Some(gap) = is_edge.iter().position(|is_edge| !is_edge) else {
         return push(Part::Edge, Shape::Path { points: Cow::Borrowed(points), closed: true });
     };
