@@ -81,7 +81,7 @@ impl<'a, S: World> Course<'a, S> {
 
     /// The stretches of some frames, the scene at each, the first of a stretch for warming up.
     pub(super) fn plan(&mut self, frames: Frames) -> Vec<Posed<S>> {
-        let half = if frames.are_seen { &self.seen } else { &self.unseen };
+        let half = self.half(frames).to_vec();
         let motion = &mut self.motion;
         let one = |stretch: &Stretch<S>| {
             let some = stretch.iter().take(frames.most + 1);
