@@ -303,6 +303,19 @@ mod tests {
         }
     }
 
+    /// A plane through a corner cuts the side that it meets, and along it there is no edge.
+    #[test]
+    fn a_plane_may_pass_through_corners() {
+        let corners = [[-1.0, 0.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
+        let rhomb = whole(corners.map(|[x, y]| dvec3(x, y, 1.0)).to_vec(), 0);
+        let plane = Plane { normal: DVec3::X, at: 0.0 };
+        for part in rhomb.cut(&plane, 1e-9).map(|part| part.expect("on both sides")) {
+            let upright = |k: usize| part.points[k].x == 0.0 && part.points[(k + 1) % 3].x == 0.0;
+            assert_eq!(part.points.len(), 3);
+            assert!((0..3).all(|k| part.is_edge[k] != upright(k)), "{part:?}");
+        }
+    }
+
     /// Of polygons in one plane the first is on top, as in images; what is too much is refused.
     #[test]
     fn ties_go_to_the_first() {

@@ -256,7 +256,7 @@ fn vectors_hide_what_is_behind() {
     }
     // What culled is only outlined, and it is made again as it is.
     let task = ["figure", "--scene", "boxes.obj", "--method", "frustum", "--vectors", "--out", "again"];
-    let said = done(&here, &task);
+    let said = done(&here, &with(&task, &["--eye", "8.5,1,-8.5", "--target", "20,1.1,-12"]));
     let file = here.join(said.trim());
     let text = fs::read_to_string(&file).expect("a figure");
     assert!(text.contains("edge outside") && !text.contains("facet outside"), "{said}");

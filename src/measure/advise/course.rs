@@ -92,8 +92,8 @@ impl<'a, S: World> Course<'a, S> {
         half.iter().map(one).collect()
     }
 
-    /// Runs candidates on frames, a stretch each in turn so that what they need is in the caches; for each the
-    /// mean of the frames, of which each is the median of its flights, milliseconds.
+    /// Runs candidates on frames, a stretch each in turn so that what they need is in the caches; for each
+    /// the mean of the frames, of which each is the median of its flights, milliseconds.
     pub(super) fn fly(
         &mut self,
         runs: &mut [&mut Ready<S>],

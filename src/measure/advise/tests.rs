@@ -1,3 +1,5 @@
+//! What advice leaves out, gives up, keeps apart and counts.
+
 use super::*;
 use crate::culling::Methods;
 use crate::geometry::{Flat, Solid};
