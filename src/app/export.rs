@@ -140,6 +140,8 @@ impl State {
                 let view = self.observer.view(size.x.round() as u32, size.y.round() as u32);
                 if export.is_vector {
                     let (faces, over) = s.faces(&view, &self.ask(export, false))?;
+                    // Without an order there is no figure, rather than one without surfaces.
+                    figure::solved(&faces, &view, Vec2::ZERO, Vec2::ONE)?;
                     return Some((figure::Picture::Solved(faces, over, view), page::legend(&world)));
                 }
                 let (pixels, over) = s.surfaces(&view, &self.ask(export, false))?;
@@ -250,7 +252,11 @@ impl State {
         if let Some(Either::Solid(stage)) = self.stage.as_ref().filter(|_| export.is_vector) {
             stage.refuse_vectors()?;
         }
-        let drawing = self.figure(export).ok_or("there is nothing to make a figure of yet")?;
+        let drawing = self.figure(export).ok_or(if export.is_vector {
+            "surfaces pierce each other too often for vectors; leave them as pixels"
+        } else {
+            "there is nothing to make a figure of yet"
+        })?;
         if format == Format::Svg {
             let options = SvgOptions { outline_text: export.outline_text, metadata: Some(recipe) };
             return Ok(render::svg(&drawing, export.theme, &options).into_bytes());
@@ -315,10 +321,10 @@ impl State {
     /// Writes the picture on screen into [`State::folder`], and reports where; `aspect` is that of the
     /// Observer's window, width over height.
     pub fn export(&mut self, format: Format, aspect: f32) {
-        let export = self.export_like_window(aspect);
-        if self.figure(&export).is_none() {
+        if self.film().is_none() {
             return self.fail("There is nothing to export yet.");
         }
+        let export = self.export_like_window(aspect);
         let path = self.free_path(&self.figure_name(&export, 1), format.name());
         let bytes = self.figure_file(&export, format, &path);
         match bytes.and_then(|b| write_file(&path, &b).map_err(|e| e.to_string())) {

@@ -132,7 +132,27 @@ fn the_window_writes_what_the_command_writes() {
             assert!(name.contains(&format!("-2.{}", format.name())), "{name}");
         }
         assert_eq!(state.exported(), Picture::Code);
+        // As vectors, in flatland as they are without.
+        [Action::FigureObserver, Action::FigureVectors].map(|action| state.apply(action));
+        state.folder = here.join("vectors");
+        fs::create_dir_all(&state.folder).expect("a folder");
+        state.notices.clear();
+        state.export(Format::Svg, 1.37);
+        let said = state.notices[0].text.clone();
+        let path = said.trim_start_matches("The figure was written to ").trim_end_matches('.').to_owned();
+        made_again(Path::new(&path));
+        assert!(!fs::read_to_string(&path).expect("a figure").contains("<image"), "{path}");
     }
+    // What is too large for vectors is refused in a line, before it is put in order.
+    let mut state = State::new();
+    state.folder = here.join("vectors");
+    state.apply(Command::Open("generate:building?polygons=20000".into()));
+    state.block_until_idle();
+    state.apply(Action::FigureVectors);
+    state.notices.clear();
+    state.export(Format::Svg, 1.37);
+    let said = &state.notices[0];
+    assert!(said.is_error && said.text.contains("too many for vectors"), "{said:?}");
 }
 
 #[test]
