@@ -101,7 +101,10 @@ fn said(advice: &Advice) -> String {
         )
     };
     for &k in &advice.refused {
-        text += &format!("Not right enough there: {}\n", advice.trials[k].configuration.label());
+        text += &format!(
+            "Wrong or slower than frustum culling there: {}\n",
+            advice.trials[k].configuration.label()
+        );
     }
     if advice.left_out > 0 {
         let n = advice.left_out;

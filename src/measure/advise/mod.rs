@@ -11,7 +11,7 @@
 //!    parameters that helped are also tried together;
 //! 4. those few, beside plain drawing and frustum culling, on all frames in turn;
 //! 5. the best of them is checked on the other half of the path's views, which none was chosen by. If it is
-//!    not right enough there, the next one is.
+//!    not right enough there, or slower than frustum culling, the next one is.
 //!
 //! Most of the time goes into indexes, so none is built that cannot be advised: where nothing may be wrong,
 //! none of what promises nothing; and none further than [`SLOW_INDEX`] times as long as that of the method's
@@ -139,7 +139,7 @@ pub struct Advice {
     pub unseen: Flown,
     /// The plain method beside it that only leaves out what is out of view, on the same views.
     pub frustum: Flown,
-    /// Candidates that did well but were not right enough on unseen views.
+    /// Candidates that did well but on unseen views were not right enough, or slower than frustum culling.
     pub refused: Vec<usize>,
     /// Configurations that promise nothing, where only what promises will do: they were not tried.
     pub left_out: usize,
@@ -417,7 +417,9 @@ impl<S: World> Halving<'_, S> {
             // The numbers of those that were flown ascend.
             let [unseen, frustum] =
                 if chosen < FRUSTUM { [flown[0], flown[1]] } else { [flown[flown.len() - 1], flown[0]] };
-            if unseen.wrong_percent <= self.wish.most_wrong_percent || left.len() == 1 {
+            let is_right = unseen.wrong_percent <= self.wish.most_wrong_percent;
+            let pays = chosen <= FRUSTUM || unseen.time_ms <= frustum.time_ms * NOISE;
+            if is_right && pays || left.len() == 1 {
                 let grid: usize = S::methods().iter().map(|m| 1 + variations::<S>(*m).len()).sum();
                 let all = Frames { are_seen: true, most: LONGEST };
                 let cost = [self.course.flown, grid * self.course.count(all) * FLIGHTS];
@@ -482,7 +484,7 @@ impl Advice {
             let verdict = if k == self.chosen {
                 "advised"
             } else if self.refused.contains(&k) {
-                "not right enough on unseen views"
+                "worse on unseen views"
             } else if trial.index_bytes.is_none() {
                 "its index takes too long"
             } else if !is_right(k) {
