@@ -133,7 +133,8 @@ fn the_window_writes_what_the_command_writes() {
         }
         assert_eq!(state.exported(), Picture::Code);
         // As vectors, in flatland as they are without.
-        [Action::FigureObserver, Action::FigureVectors].map(|action| state.apply(action));
+        state.apply(Action::FigureObserver);
+        state.apply(Action::FigureVectors);
         state.folder = here.join("vectors");
         fs::create_dir_all(&state.folder).expect("a folder");
         state.notices.clear();
