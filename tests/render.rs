@@ -228,3 +228,46 @@ fn axes_can_be_read() {
     golden("axes.svg", &render::svg(&d, Theme::Print, &SvgOptions { outline_text: true, metadata: None }));
     look_at("axes.png", &render::png(&d, Theme::Print, PngSize::Dpi(200.0), None).expect("a picture"));
 }
+
+/// A picture of each state alone, as an area and as a line, at one place.
+fn states(theme: Theme, vision: ColorVision) -> Vec<(Role, Pixels)> {
+    let place = [vec2(4.0, 4.0), vec2(64.0, 4.0), vec2(64.0, 34.0), vec2(4.0, 34.0)];
+    let picture = |role: Role| {
+        let mut d = Drawing { size_pt: vec2(68.0, 60.0), ..Drawing::default() };
+        d.push(Layer::Scene, role, Subject::None, Mark::Area(place.to_vec()));
+        d.line(Layer::Scene, role, Subject::None, [vec2(4.0, 48.0), vec2(64.0, 48.0)]);
+        (role, render::pixels(&d, Look { theme, vision }, PngSize::Dpi(144.0)).expect("a picture"))
+    };
+    Role::STATES.into_iter().map(picture).collect()
+}
+
+/// How many pixels, of those from row to row, differ in lightness so that one sees it.
+fn apart(a: &Pixels, b: &Pixels, rows: std::ops::Range<usize>) -> usize {
+    let part = |p: &Pixels| {
+        let row = 4 * p.width as usize;
+        p.rgba[row * rows.start..row * rows.end].to_vec()
+    };
+    let (a, b) = (part(a), part(b));
+    let light = |p: &[u8]| (u32::from(p[0]) * 3 + u32::from(p[1]) * 6 + u32::from(p[2])) / 10;
+    let pixels = a.chunks_exact(4).zip(b.chunks_exact(4));
+    pixels.filter(|(a, b)| light(a).abs_diff(light(b)) > 20).count()
+}
+
+#[test]
+fn states_are_told_apart_without_color_in_what_is_drawn() {
+    for theme in Theme::ALL {
+        let shown = states(theme, ColorVision::Gray);
+        let mut worst = [(usize::MAX, Role::Ink, Role::Ink); 2];
+        for (i, (one, a)) in shown.iter().enumerate() {
+            for (other, b) in &shown[..i] {
+                for (k, rows) in [8..68, 88..104].into_iter().enumerate() {
+                    let count = apart(a, b, rows);
+                    worst[k] = if count < worst[k].0 { (count, *one, *other) } else { worst[k] };
+                }
+            }
+        }
+        // Areas, where the least is a sign, and lines of a point, where it is their dashes: a square
+        // millimeter has 32 pixels.
+        assert!(worst[0].0 > 36 && worst[1].0 > 36, "{}: {worst:?}", theme.name());
+    }
+}

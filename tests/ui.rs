@@ -1,9 +1,12 @@
 //! The window, driven by accessibility labels, the pointer and keys, as a person does.
 
-use cullscope::app::{Action, Command, Dialog, LookIn, ObserverCamera, Start, Tables, Theme};
-use cullscope::drawing::Subject;
+use cullscope::app::{Action, Command, Dialog, Export, LookIn, ObserverCamera, Start, State, Tables, Theme};
+use cullscope::drawing::{Drawing, Item, Layer, Mark, Pixels, Role, Subject};
+use cullscope::figure::Paper;
+use cullscope::figure::page::PT_PER_MM;
 use cullscope::geometry::{Flat, NodeId, PrimId, View};
 use cullscope::method::{Event, Verdict};
+use cullscope::render::{PngSize, pixels, png_pixels};
 use cullscope::views::window::App;
 use eframe::egui::{self, Key, Modifiers, pos2, vec2};
 use egui_kittest::Harness;
@@ -497,4 +500,101 @@ fn a_table_of_the_paper_is_measured_shown_and_stopped() {
     assert_eq!(state.measured.as_ref().map(|m| m.report.name), Some("coorg-teller-table-1"));
     click(&mut h, "Close");
     assert_eq!(h.state().state.dialog, Dialog::None);
+}
+
+/// The Observer's picture of a figure as large as the one in the window, a pixel a point.
+fn figure_pixels(state: &mut State, rect: egui::Rect) -> Pixels {
+    let export = Export {
+        paper: Paper::Custom {
+            width_mm: (rect.width() + 6.0) / PT_PER_MM,
+            height_mm: Some((rect.height() + 400.0) / PT_PER_MM),
+        },
+        aspect: Some(rect.aspect_ratio()),
+        theme: state.shown.theme,
+        ..Export::default()
+    };
+    let page = state.drawn(&export).expect("a figure");
+    // The frame of the picture is the first outline among labels.
+    let frame = page.items.iter().find_map(|item| match &item.mark {
+        Mark::Line { points, closed: true } if item.role == Role::Faint => Some(points.clone()),
+        _ => None,
+    });
+    let frame = frame.expect("a frame");
+    let mut picture = Drawing { size_pt: frame[2] - frame[0], ..Drawing::default() };
+    for item in page.items.iter().filter(|item| !matches!(item.layer, Layer::Legend | Layer::Caption)) {
+        picture.items.push(Item { mark: item.mark.mapped(|p| p - frame[0]), ..item.clone() });
+    }
+    pixels(&picture, export.theme, PngSize::Dpi(72.0)).expect("pixels")
+}
+
+/// Share of squares of 4 × 4 pixels whose mean color differs by more than a tenth.
+fn unlike(a: &[u8], b: &[u8], [width, height]: [usize; 2]) -> f32 {
+    let mean = |rgba: &[u8], x: usize, y: usize| {
+        let mut sum = [0u32; 3];
+        for (dx, dy) in (0..16).map(|i| (i % 4, i / 4)) {
+            let at = 4 * ((4 * y + dy) * width + 4 * x + dx);
+            (0..3).for_each(|c| sum[c] += u32::from(rgba[at + c]));
+        }
+        sum.map(|s| s / 16)
+    };
+    // Labels are larger on screen, and rims have the window's own frame.
+    let (across, down) = (width / 4, height / 4);
+    let squares = (1..down - 1).flat_map(|y| (1..across - 1).map(move |x| (x, y)));
+    let differs = |&(x, y): &(usize, usize)| {
+        let (a, b) = (mean(a, x, y), mean(b, x, y));
+        (0..3).any(|c| a[c].abs_diff(b[c]) > 25)
+    };
+    squares.clone().filter(differs).count() as f32 / squares.count() as f32
+}
+
+#[test]
+fn a_figure_has_the_picture_of_the_screen() {
+    for scene in ["scenes2d/street.json", "generate:building?polygons=3000"] {
+        let start = start(scene);
+        let mut h = Harness::builder()
+            .with_size(vec2(1280.0, 800.0))
+            .wgpu()
+            .build_eframe(move |cc| App::new(cc, start));
+        settle(&mut h);
+        let state = &mut h.state_mut().state;
+        state.apply(Action::ThemePrint);
+        state.apply(Action::LayoutFigure);
+        state.apply(Command::Method("hierarchical-z".into()));
+        settle(&mut h);
+        h.remove_cursor();
+        let last = h.state().state.len();
+        let mut before = None;
+        for step in [0, last / 8, last / 3, 3 * last / 4, last] {
+            h.state_mut().state.apply(Command::GoTo(step));
+            settle(&mut h);
+            let image = h.render().expect("a picture");
+            let rect = h.get_by_label_contains("Observer view.").rect();
+            let figure = figure_pixels(&mut h.state_mut().state, rect);
+            let size = [figure.width as usize, figure.height as usize];
+            assert!((figure.width as f32 - rect.width()).abs() < 2.0, "{size:?} {rect}");
+            let mut screen = Vec::new();
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let at = rect.min + vec2(x as f32, y as f32);
+                    screen.extend(image.get_pixel(at.x.round() as u32, at.y.round() as u32).0);
+                }
+            }
+            if let Some(folder) = std::env::var_os("FIGURES_OUT") {
+                for (name, rgba) in [("screen", &screen[..]), ("figure", &figure.rgba[..])] {
+                    let rgba = rgba.to_vec().into();
+                    let of = Pixels { width: figure.width, height: figure.height, rgba };
+                    let space = if scene.starts_with("scenes2d") { "flatland" } else { "space" };
+                    let path = std::path::Path::new(&folder).join(format!("{space}-{step}-{name}.png"));
+                    std::fs::write(path, png_pixels(&of)).expect("a file");
+                }
+            }
+            let share = unlike(&screen, &figure.rgba, size);
+            eprintln!("{scene}, step {step}: {share}");
+            assert!(share < 0.03, "{scene}, step {step}: {share} of the squares differ");
+            // Another step is another picture, so that this is no accident.
+            if let Some(before) = before.replace(screen) {
+                assert!(unlike(&before, &figure.rgba, size) > share, "{scene}, step {step}");
+            }
+        }
+    }
 }

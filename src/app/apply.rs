@@ -3,7 +3,6 @@
 use super::any::{AnyStage, AnyView};
 use super::command::{Action, Command};
 use super::open::{AnyOpened, Wanted};
-use super::plate::Picture;
 use super::session::{Session, write_file};
 use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
@@ -21,7 +20,12 @@ const SELECTIONS: usize = 200;
 impl State {
     /// Carries out a command.
     pub fn apply(&mut self, command: impl Into<Command>) {
-        match command.into() {
+        let command = command.into();
+        // A figure that is being made is of what was there when it began.
+        if self.making.is_some() && command != Command::Do(Action::Cancel) {
+            return;
+        }
+        match command {
             Command::Do(action) => self.act(action),
             Command::Open(source) => self.open(&source, None),
             Command::GoTo(step) => {
@@ -54,29 +58,32 @@ impl State {
             Command::BreakVerdict(verdict) => self.flip(Breakpoint::Verdict(verdict)),
             Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
             Command::Note(i, text) => {
-                if let Some(mark) = self.bookmarks.get_mut(i) {
-                    mark.note = text;
-                }
+                self.bookmarks.iter_mut().skip(i).take(1).for_each(|m| m.note.clone_from(&text))
             }
             Command::Bookmark(i) => self.go_bookmark(i),
-            Command::Unmark(i) if i < self.bookmarks.len() => {
-                self.bookmarks.remove(i);
+            Command::Unmark(i) => drop((i < self.bookmarks.len()).then(|| self.bookmarks.remove(i))),
+            Command::Surface(_) | Command::LookIn(_) | Command::Layout(_) | Command::Scale(_) => {
+                self.set_look(&command);
             }
-            Command::Unmark(_) => {}
+            Command::SaveTo(path) => self.save(&path),
+            Command::Figures(export) => self.exporting = *export,
+            Command::WriteFigure(export, path) => self.export_to(&export, &self.path_of(&path)),
+            Command::Tables(asked) => self.tables(asked),
+            Command::Laboratory(asked) => self.laboratory(asked),
+            Command::Dismiss(i) => drop((i < self.notices.len()).then(|| self.notices.remove(i))),
+        }
+        self.is_dirty = true;
+        self.refresh();
+    }
+
+    fn set_look(&mut self, command: &Command) {
+        match *command {
             Command::Surface(surface) => self.shown.surface = surface,
             Command::LookIn(way) => self.shown.look_in = way,
             Command::Layout(layout) => self.set_layout(layout),
             Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
-            Command::SaveTo(path) => self.save(&path),
-            Command::Tables(asked) => self.tables(asked),
-            Command::Laboratory(asked) => self.laboratory(asked),
-            Command::Dismiss(i) if i < self.notices.len() => {
-                self.notices.remove(i);
-            }
-            Command::Dismiss(_) => {}
+            _ => {}
         }
-        self.is_dirty = true;
-        self.refresh();
     }
 
     fn show_picture(&mut self, name: &str) {
@@ -133,10 +140,10 @@ impl State {
             | Action::Reload
             | Action::Save
             | Action::SaveAs
+            | Action::Figure
             | Action::ExportSvg
             | Action::ExportPdf
             | Action::ExportPng => open,
-            Action::FigureOwn => self.film().is_some_and(|f| !f.reel.pictures().is_empty()),
             Action::Report | Action::About | Action::FrameSelection | Action::Swap => open,
             Action::Laboratory => open,
             _ if (Action::Bookmark1..=Action::Bookmark10).contains(&action) => {
@@ -169,11 +176,6 @@ impl State {
             Action::ThemeLight => s.theme == Theme::Light,
             Action::ThemeDark => s.theme == Theme::Dark,
             Action::ThemePrint => s.theme == Theme::Print,
-            Action::FigureObserver => self.export_of == Picture::Observer,
-            Action::FigureEye => self.export_of == Picture::Eye,
-            Action::FigureOwn => matches!(self.export_of, Picture::Own(_)),
-            Action::FigureCode => self.export_of == Picture::Code,
-            Action::FigureVectors => self.exports_vectors,
             Action::LayoutDebug => s.layout == Layout::Debug,
             Action::LayoutLecture => s.layout == Layout::Lecture,
             Action::LayoutFigure => s.layout == Layout::Figure,
@@ -210,14 +212,11 @@ impl State {
             Action::ExportSvg => self.effects.push(Effect::Export(Format::Svg)),
             Action::ExportPdf => self.effects.push(Effect::Export(Format::Pdf)),
             Action::ExportPng => self.effects.push(Effect::Export(Format::Png)),
-            Action::FigureObserver => self.export_of = Picture::Observer,
-            Action::FigureEye => self.export_of = Picture::Eye,
-            Action::FigureOwn => self.export_of = Picture::Own(self.own_picture),
-            Action::FigureCode => self.export_of = Picture::Code,
-            Action::FigureVectors => self.exports_vectors ^= true,
+            Action::Figure => self.dialog = Dialog::Figure,
             Action::Cancel if self.dialog != Dialog::None => self.dialog = Dialog::None,
             Action::Cancel if self.busy().is_some() => {
                 self.worker.cancel();
+                self.making = None;
                 self.recall = None;
                 self.tell("Cancelled.");
             }
@@ -535,6 +534,10 @@ impl State {
     }
 
     fn take(&mut self, wait: bool) -> bool {
+        if self.making.is_some() {
+            self.make();
+            return true;
+        }
         let Some(done) = self.worker.answer(wait) else { return self.take_news() };
         self.take_news();
         match done {
@@ -583,6 +586,8 @@ impl State {
             Either::Solid(s) => self.observer.frame_solid(&s.scene.bounds(), &s.scene.bounds(), 4.0 / 3.0),
         }
         self.stage = Some(stage);
+        // Another scene has another shape and another run.
+        (self.exporting.aspect, self.exporting.steps) = (None, None);
         (self.step, self.selection) = (0, Subject::None);
         self.selected_before.clear();
         self.selected_after.clear();

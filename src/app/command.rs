@@ -5,6 +5,7 @@ use super::any::AnyView;
 use super::camera::ObserverCamera;
 use super::findings::Laboratory;
 use super::measured::Tables;
+use super::plate::Export;
 use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;
 use crate::geometry::NodeId;
@@ -87,19 +88,12 @@ actions! {
     File Reload "reload" "Reload scene" ["Ctrl+R"] "Reads the scene again.";
     File Save "save" "Save session" ["Ctrl+S"] "Saves what is open, so that it can be opened again.";
     File SaveAs "save-as" "Save session as…" ["Ctrl+Shift+S"] "Saves what is open under another name.";
-    File ExportSvg "export-svg" "Export figure as SVG…" [] "Writes the picture on screen as vectors; \
-        surfaces of space as pixels.";
-    File ExportPdf "export-pdf" "Export figure as PDF…" [] "Writes the picture on screen as a page.";
-    File ExportPng "export-png" "Export figure as PNG…" ["Ctrl+E"] "Writes the picture on screen as pixels.";
-    File FigureObserver "figure-observer" "Figures show: Observer view" [] "Exported figures show the scene \
-        from outside.";
-    File FigureEye "figure-eye" "Figures show: Eye view" [] "Exported figures show what the Eye sees.";
-    File FigureOwn "figure-picture" "Figures show: the method's picture" [] "Exported figures show the \
-        picture of the pane Pictures.";
-    File FigureCode "figure-pseudocode" "Figures show: pseudocode" [] "Exported figures show the pseudocode, \
-        with the line of the step.";
-    File FigureVectors "figure-vectors" "Figures of space: vectors" [] "Surfaces that hide each other as \
-        vectors, what was culled as dashed outlines; else as pixels, as on screen.";
+    File Figure "figure" "Figure…" ["Ctrl+Shift+E"] "Sets up what figures show, of which size and in which \
+        colors, and writes one.";
+    File ExportSvg "export-svg" "Write figure as SVG" [] "Writes the figure that is set up as vectors.";
+    File ExportPdf "export-pdf" "Write figure as PDF" [] "Writes the figure that is set up as a page.";
+    File ExportPng "export-png" "Write figure as PNG" ["Ctrl+E"] "Writes the figure that is set up as \
+        pixels.";
     File Cancel "cancel" "Cancel the work" ["Escape"] "Stops what is being waited for, or closes what is \
                                                        open.";
     File Quit "quit" "Quit" ["Ctrl+Q"] "Closes the explorer.";
@@ -301,6 +295,10 @@ pub enum Command {
     Scale(f32),
     /// Saves the session to a file.
     SaveTo(String),
+    /// Sets up figures.
+    Figures(Box<Export>),
+    /// Writes a figure to a file, whose ending tells the format.
+    WriteFigure(Box<Export>, String),
     /// Measures a paper's table, or writes it to a file.
     Tables(Tables),
     /// Measures methods against each other, or asks for advice.

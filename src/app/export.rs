@@ -6,23 +6,21 @@ use std::path::Path;
 
 use glam::Vec2;
 
-use super::plate::{Export, Made, PAPERS, Picture, word};
+use super::plate::{Export, Form, Made, Picture, RATE, word};
 use super::session::{Session, SessionError, write_file};
-use super::shown::{LookIn, Theme};
+use super::shown::{Dialog, LookIn, Theme};
 use super::stage::Staged;
 use super::state::State;
 use super::surfaces::Ask;
 use crate::drawing::words::count;
 use crate::drawing::{Drawing, Role, Subject};
 use crate::figure::page::{Entry, Swatch};
-use crate::figure::{self, Page, Panel, Paper, page, panels};
+use crate::figure::{self, Panel, labelled, page, panels};
 use crate::geometry::{Aabb, Either};
 use crate::method::departs;
 use crate::raster::DepthScale;
-use crate::render::{self, Format, SvgOptions};
+use crate::render::{self, Format};
 
-/// Pixels an inch of pictures of space.
-const DPI: f32 = 300.0;
 /// Longest figure file that is searched for a session, bytes.
 const LIMIT_BYTES: u64 = 256 << 20;
 /// Shapes of pictures, width over height.
@@ -34,6 +32,10 @@ const COMMON_ASPECT: f32 = 4.0 / 3.0;
 const LABEL_PT: f32 = 17.0;
 /// Pictures of methods are not enlarged beyond this.
 const MOST_ENLARGED: f32 = 1.6;
+/// No picture is narrower, points.
+const LEAST_PT: f32 = 20.0;
+/// Figures of fewer parts are made at once.
+const LONG_PARTS: usize = 4;
 
 impl State {
     /// What can be made a figure of, by word.
@@ -42,17 +44,6 @@ impl State {
         let own = own.iter().enumerate().map(|(i, name)| (Picture::Own(i), word(name)));
         let shared = [(Picture::Observer, "observer"), (Picture::Eye, "eye"), (Picture::Code, "pseudocode")];
         shared.into_iter().map(|(picture, name)| (picture, name.to_owned())).chain(own).collect()
-    }
-
-    /// The picture that the window's export shows.
-    pub fn exported(&self) -> Picture {
-        match self.export_of {
-            Picture::Own(_) => {
-                let count = self.film().map_or(0, |f| f.reel.pictures().len());
-                Picture::Own(self.own_picture.min(count.saturating_sub(1)))
-            }
-            picture => picture,
-        }
     }
 
     /// The shape that suits the Observer's picture, width over height.
@@ -66,48 +57,31 @@ impl State {
         }
     }
 
-    /// The figure as a page, and its alternative text as its description; `None` before there is a film, and
-    /// of a picture that the method does not have.
-    pub fn figure(&self, export: &Export) -> Option<Drawing> {
-        let stage = self.staged()?;
-        let reel = stage.film()?.reel;
-        let card = reel.card();
-        let aspect = export.aspect.clamp(LEAST_ASPECT, MOST_ASPECT);
-        let mut page = Page {
-            paper: export.paper,
-            title: card.name.to_owned(),
-            legend: Vec::new(),
-            caption: self.caption(export.picture)?,
-        };
-        let (mut content, entries) = self.content(export, aspect, page.room_pt())?;
-        page.legend = entries;
-        let room = page.room_pt();
-        // The legend takes room that only a slide, or a high picture, has not.
-        if content.size_pt.y > room.y {
-            content = self.content(export, aspect, room)?.0;
-        }
-        let legend: Vec<&str> = page.legend.iter().map(|e| e.label.as_str()).collect();
-        let of = if legend.is_empty() { String::new() } else { format!(" Shown: {}.", legend.join("; ")) };
-        content.description = page.caption.clone() + &of;
-        Some(page.compose(&content))
-    }
-
-    /// A picture as large as the room, and its legend.
-    fn content(&self, export: &Export, aspect: f32, room: Vec2) -> Option<(Drawing, Vec<Entry>)> {
-        let label = format!("step {} of {}", count(self.step), count(self.len()));
-        match export.picture {
+    /// A picture as large as the room, with a label below it (or without, if it is empty), and its legend.
+    pub(super) fn content(
+        &self,
+        export: &Export,
+        picture: Picture,
+        room: Vec2,
+        label: &str,
+    ) -> Option<(Drawing, Vec<Entry>)> {
+        let below = |drawing: Drawing| if label.is_empty() { drawing } else { labelled(drawing, label) };
+        let room = if label.is_empty() { room } else { room - Vec2::new(0.0, LABEL_PT) };
+        match picture {
             Picture::Observer => {
-                let width = room.x.min((room.y - LABEL_PT) * aspect).max(60.0);
+                let aspect = self.aspect_of(export);
+                let width = room.x.min(room.y * aspect).max(LEAST_PT);
                 let (picture, marks) = self.observed(export, aspect, width)?;
-                Some((panels(width, 1, &[Panel { label, picture }]), self.entries(marks)))
+                let panel = Panel { label: label.to_owned(), picture };
+                Some((panels(width, 1, &[panel]), self.entries(marks)))
             }
-            Picture::Eye => self.seen(export, room, label),
+            Picture::Eye => self.seen(export, room, label.to_owned()),
             Picture::Code => {
                 let drawing = self.listed(room.x)?;
                 let shrunk = (room.y / drawing.size_pt.y.max(1.0)).min(1.0);
                 let drawing = drawing.scaled(shrunk);
                 let entries = self.entries_of(&drawing);
-                Some((drawing, entries))
+                Some((below(drawing), entries))
             }
             Picture::Own(which) => {
                 let reel = self.film()?.reel;
@@ -116,9 +90,14 @@ impl State {
                 let free = room / drawing.size_pt.max(Vec2::ONE);
                 drawing = drawing.scaled(free.min_element().min(MOST_ENLARGED));
                 // Roles have meanings of their own there, which it tells itself.
-                Some((drawing, Vec::new()))
+                Some((below(drawing), Vec::new()))
             }
         }
+    }
+
+    /// Width over height of the Observer's picture.
+    pub(super) fn aspect_of(&self, export: &Export) -> f32 {
+        export.aspect.unwrap_or_else(|| self.fitting_aspect()).clamp(LEAST_ASPECT, MOST_ASPECT)
     }
 
     /// The Observer's picture, and the roles of its marks.
@@ -136,7 +115,7 @@ impl State {
             Either::Solid(s) => {
                 let film = s.recorded.as_ref()?;
                 let world = figure::world(&*film.film, &film.stamps, self.step, &look);
-                let size = Vec2::new(width, width / aspect) * DPI / 72.0;
+                let size = Vec2::new(width, width / aspect) * export.dpi() / 72.0;
                 let view = self.observer.view(size.x.round() as u32, size.y.round() as u32);
                 if export.is_vector {
                     let (faces, over) = s.faces(&view, &self.ask(export, false))?;
@@ -157,7 +136,7 @@ impl State {
             shown: self.shown,
             is_eye,
             theme: export.theme,
-            pixels_per_point: DPI / 72.0,
+            pixels_per_point: export.dpi() / 72.0,
         }
     }
 
@@ -192,8 +171,9 @@ impl State {
         entries
     }
 
-    /// Method, scene, view, what is not by default, the step, and where the method departs from its paper.
-    fn caption(&self, picture: Picture) -> Option<String> {
+    /// Method, scene, view, what is not by default, the step (or what is said of several), and where the
+    /// method departs from its paper.
+    pub(super) fn caption(&self, pictures: &[Picture], steps: Option<&str>) -> Option<String> {
         let stage = self.staged()?;
         let reel = stage.film()?.reel;
         let (card, scene) = (reel.card(), stage.scene());
@@ -203,79 +183,93 @@ impl State {
         }
         said.extend(stage.changed().into_iter().map(|(name, value)| format!("{name} {value}")));
         said.extend(match self.shown.look_in {
-            _ if picture != Picture::Observer || matches!(self.stage, Some(Either::Flat(_))) => None,
+            _ if !pictures.contains(&Picture::Observer) || matches!(self.stage, Some(Either::Flat(_))) => {
+                None
+            }
             LookIn::Off => None,
             LookIn::Cut => Some("cut at the Eye's height".into()),
             LookIn::Faces => Some("without faces that turn their back".into()),
         });
-        let what = match picture {
-            Picture::Observer => String::new(),
-            Picture::Eye => "What the Eye sees. ".into(),
-            Picture::Code => "Pseudocode; gray are lines that this frame never comes to. ".into(),
-            Picture::Own(which) => {
+        let gray = "gray are lines that this frame never comes to. ";
+        let what = match *pictures {
+            [Picture::Observer] => String::new(),
+            [Picture::Eye] => "What the Eye sees. ".into(),
+            [Picture::Code] => format!("Pseudocode; {gray}"),
+            [Picture::Own(which)] => {
                 let depths = match self.depths {
                     DepthScale::Logarithmic => String::new(),
                     scale => format!(", depths {}", scale.name()),
                 };
                 format!("{}{depths}. ", crate::drawing::words::capitalized(reel.pictures().get(which)?))
             }
+            _ if pictures.contains(&Picture::Code) => format!("Of the pseudocode {gray}"),
+            _ => String::new(),
         };
-        let sentence = self.sentence();
-        let stop = if sentence.ends_with(['.', '!', '?']) { "" } else { "." };
+        let told = match steps {
+            Some(steps) => format!("{steps} of {}.", count(self.len())),
+            None => {
+                let sentence = self.sentence();
+                let stop = if sentence.ends_with(['.', '!', '?']) { "" } else { "." };
+                format!("Step {} of {}: {sentence}{stop}", count(self.step), count(self.len()))
+            }
+        };
         Some(format!(
-            "{what}{}, {}: {} {}s; {}. Step {} of {}: {sentence}{stop}{}",
+            "{what}{}, {}: {} {}s; {}. {told}{}",
             card.name,
             scene.name(),
             count(scene.live_count()),
             scene.prim_name(),
             said.join(", "),
-            count(self.step),
-            count(self.len()),
             departs(card.key, &card.departing(|d| d.holds(reel.knobs())))
         ))
     }
 
-    /// The file's bytes; `file` is where it will lie.
-    ///
-    /// # Errors
-    /// Why there is no such figure, in a line.
-    pub fn figure_file(&self, export: &Export, format: Format, file: &str) -> Result<Vec<u8>, String> {
-        let recipe = Session { figure: Some(self.made(export, format, file)), ..self.session_in(Some(file)) };
-        self.figure_with(export, format, &recipe.text())
+    /// The text that a figure's file carries; `file` is where it will lie.
+    pub fn recipe(&self, export: &Export, format: Format, file: &str) -> String {
+        let figure = Some(self.made(export, format, file));
+        let mut session = Session { figure, ..self.session_in(Some(file)) };
+        // A figure of one picture is opened with it.
+        if let [Picture::Own(which)] = export.shown() {
+            session.shown.picture = self.own_word(*which);
+        }
+        session.text()
     }
 
-    /// The same with the text that it carries.
+    /// The bytes of a figure's file that carries a text.
     ///
     /// # Errors
     /// Why there is no such figure, in a line.
-    pub fn figure_with(&self, export: &Export, format: Format, recipe: &str) -> Result<Vec<u8>, String> {
-        if let Some(Either::Solid(stage)) = self.stage.as_ref().filter(|_| export.is_vector) {
-            stage.refuse_vectors()?;
+    pub fn figure_with(&mut self, export: &Export, format: Format, recipe: &str) -> Result<Vec<u8>, String> {
+        let mut making = self.begin(export, format, recipe)?;
+        loop {
+            if let Some(bytes) = self.go_on(&mut making)? {
+                return Ok(bytes);
+            }
         }
-        let drawing = self.figure(export).ok_or(if export.is_vector {
-            "surfaces pierce each other too often for vectors; leave them as pixels"
-        } else {
-            "there is nothing to make a figure of yet"
-        })?;
-        if format == Format::Svg {
-            let options = SvgOptions { outline_text: export.outline_text, metadata: Some(recipe) };
-            return Ok(render::svg(&drawing, export.theme, &options).into_bytes());
-        }
-        render::export(&drawing, format, export.theme, recipe).map_err(|e| e.to_string())
     }
 
     /// The name of a figure's file, without its ending; the step has at least so many digits.
     pub fn figure_name(&self, export: &Export, digits: usize) -> String {
         let scene = self.staged().map_or("figure", |s| s.scene().name()).replace(['/', '\\', ' '], "-");
-        let picture = match export.picture {
-            Picture::Observer => String::new(),
-            picture => format!("-{}", self.picture_word(picture)),
+        let step = match export.steps {
+            None => format!("step-{:0digits$}", self.step),
+            Some(steps) => format!("steps-{}-{}", steps.from, steps.to),
         };
-        format!("{scene}-{}-step-{:0digits$}{picture}", self.method, self.step)
+        let shown = export.shown().iter();
+        let pictures: String = match export.shown() {
+            [Picture::Observer] => String::new(),
+            _ => shown.map(|picture| format!("-{}", self.picture_word(*picture))).collect(),
+        };
+        format!("{scene}-{}-{step}{pictures}", self.method)
     }
 
     fn picture_word(&self, picture: Picture) -> String {
         self.pictures().into_iter().find(|(p, _)| *p == picture).map_or_else(String::new, |(_, word)| word)
+    }
+
+    /// The words of a figure's pictures, with commas.
+    pub(super) fn picture_words(&self, export: &Export) -> String {
+        export.shown().iter().map(|picture| self.picture_word(*picture)).collect::<Vec<_>>().join(",")
     }
 
     /// How a figure is made, for its file.
@@ -283,11 +277,14 @@ impl State {
         let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         Made {
             command: self.command(export, format, folder),
-            picture: self.picture_word(export.picture),
-            paper: export.paper_word().into(),
+            picture: self.picture_words(export),
+            steps: export.steps.map(|steps| steps.to_string()),
+            form: export.steps.map(|_| export.form.word().into()),
+            rate: if let Form::Animation(rate) = export.form { Some(rate) } else { None },
+            paper: export.paper.word(),
             theme: export.theme.name().into(),
             text: export.text_word().into(),
-            aspect: export.aspect,
+            aspect: self.aspect_of(export),
             vectors: export.is_vector,
         }
     }
@@ -298,39 +295,84 @@ impl State {
     /// A word that is not known, in a line.
     pub fn export_like(&self, made: &Made) -> Result<Export, String> {
         let unknown = |what: &str, word: &str| format!("there is no {what} `{word}`");
-        let picture = self.pictures().into_iter().find(|(_, word)| *word == made.picture);
-        let paper = PAPERS.iter().find(|(word, _)| *word == made.paper);
+        let known = self.pictures();
+        let picture = |word: &str| {
+            let found = known.iter().find(|(_, name)| name == word);
+            found.map(|(picture, _)| *picture).ok_or_else(|| unknown("picture", word))
+        };
         let theme = Theme::ALL.into_iter().find(|t| t.name() == made.theme);
+        let form = made.form.as_deref().unwrap_or_default();
         Ok(Export {
-            picture: picture.ok_or_else(|| unknown("picture", &made.picture))?.0,
-            paper: paper.ok_or_else(|| unknown("size of figures", &made.paper))?.1,
+            pictures: made.picture.split(',').map(picture).collect::<Result<_, _>>()?,
+            steps: made.steps.as_deref().map(str::parse).transpose()?,
+            form: match form {
+                "pages" => Form::Pages,
+                "animation" => Form::Animation(made.rate.unwrap_or(RATE)),
+                "" | "page" => Form::Page,
+                word => return Err(unknown("form of figures", word)),
+            },
+            paper: made.paper.parse().map_err(|_| unknown("size of figures", &made.paper))?,
             theme: theme.ok_or_else(|| unknown("theme", &made.theme))?,
             outline_text: made.text == "paths",
-            aspect: made.aspect,
+            aspect: Some(made.aspect),
             is_vector: made.vectors,
         })
     }
 
-    /// The figure that the window's export makes.
-    pub fn export_like_window(&self, aspect: f32) -> Export {
-        let (paper, theme) = (Paper::TwoColumns, Theme::Print);
-        let is_vector = self.exports_vectors;
-        Export { picture: self.exported(), paper, theme, outline_text: false, aspect, is_vector }
-    }
-
-    /// Writes the picture on screen into [`State::folder`], and reports where; `aspect` is that of the
+    /// Writes the figure that is set up into [`State::folder`], and reports where; `aspect` is that of the
     /// Observer's window, width over height.
     pub fn export(&mut self, format: Format, aspect: f32) {
+        let export =
+            Export { aspect: Some(self.exporting.aspect.unwrap_or(aspect)), ..self.exporting.clone() };
+        let path = self.free_path(&self.figure_name(&export, 1), format.name());
+        self.export_to(&export, &path);
+    }
+
+    /// Writes a figure to a file, whose ending tells the format; what takes long goes on as the explorer is
+    /// asked whether there is news.
+    pub(super) fn export_to(&mut self, export: &Export, path: &str) {
+        self.dialog = Dialog::None;
         if self.film().is_none() {
             return self.fail("There is nothing to export yet.");
         }
-        let export = self.export_like_window(aspect);
-        let path = self.free_path(&self.figure_name(&export, 1), format.name());
-        let bytes = self.figure_file(&export, format, &path);
-        match bytes.and_then(|b| write_file(&path, &b).map_err(|e| e.to_string())) {
-            Ok(()) => self.tell(format!("The figure was written to {path}.")),
-            Err(error) => self.fail(error),
+        let ending = Path::new(path).extension().map(|e| e.to_string_lossy().to_lowercase());
+        let begun =
+            ending.unwrap_or_default().parse::<Format>().map_err(|e| e.to_string()).and_then(|format| {
+                let recipe = self.recipe(export, format, path);
+                self.begin(export, format, &recipe)
+            });
+        match begun {
+            Ok(making) => {
+                let is_short = making.parts() < LONG_PARTS;
+                self.making = Some((making, path.to_owned()));
+                while is_short && self.making.is_some() {
+                    self.make();
+                }
+            }
+            Err(why) => self.fail(why),
         }
+    }
+
+    /// Goes on with the figure that is being made, by one part.
+    pub(super) fn make(&mut self) {
+        let Some((mut making, path)) = self.making.take() else { return };
+        let written = match self.go_on(&mut making) {
+            Ok(None) => {
+                self.making = Some((making, path));
+                return;
+            }
+            Ok(Some(bytes)) => write_file(&path, &bytes).map_err(|e| e.to_string()),
+            Err(why) => Err(why),
+        };
+        match written {
+            Ok(()) => self.tell(format!("The figure was written to {path}.")),
+            Err(why) => self.fail(why),
+        }
+    }
+
+    /// Whether a figure is being made, which goes on whenever the explorer is asked whether there is news.
+    pub fn is_making(&self) -> bool {
+        self.making.is_some()
     }
 
     /// A path where nothing is yet: other views of a step have the same name.

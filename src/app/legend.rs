@@ -25,6 +25,10 @@ const STATES: [(Role, &str); 10] = [
 impl State {
     /// The roles in the order in which they are named, with words and counts of primitives.
     pub fn legend(&self) -> Vec<(Role, String)> {
+        self.states(true)
+    }
+    /// The same with or without counts.
+    pub(super) fn states(&self, is_counted: bool) -> Vec<(Role, String)> {
         let Some(stage) = self.staged() else { return vec![] };
         let counts = |step| self.film().map_or(Counts::default(), |f| f.stamps.counts(step));
         let (end, here) = (counts(self.len()), counts(self.step));
@@ -48,6 +52,7 @@ impl State {
             Some((
                 role,
                 match role {
+                    _ if !is_counted => words.to_owned(),
                     Role::Scene => format!("{words} {}", count(here.undecided)),
                     _ if verdicts.is_empty() => words.to_owned(),
                     _ => format!("{words} {}", count(now)),

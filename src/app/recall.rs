@@ -59,17 +59,17 @@ impl State {
                 theme: s.theme.name().into(),
                 layout: s.layout.name().into(),
                 scale: s.scale,
-                picture: self.own_word(),
+                picture: self.own_word(self.own_picture),
                 depths: self.depths.name().into(),
             },
             figure: None,
         }
     }
 
-    /// The word of the method's picture that is shown; of the first one nothing.
-    fn own_word(&self) -> String {
+    /// The word of a picture of the method; of the first one nothing.
+    pub(super) fn own_word(&self, which: usize) -> String {
         let names = self.film().map_or(&[][..], |f| f.reel.pictures());
-        names.get(self.own_picture).filter(|_| self.own_picture > 0).map_or_else(String::new, |n| word(n))
+        names.get(which).filter(|_| which > 0).map_or_else(String::new, |n| word(n))
     }
 
     pub(super) fn save(&mut self, path: &str) {
@@ -202,6 +202,12 @@ impl State {
             self.is_to_frame = false;
         }
         self.step = session.step.min(end);
+        // A figure opened is the figure that is written again.
+        match session.figure.as_ref().map(|made| self.export_like(made)) {
+            Some(Ok(export)) => self.exporting = export,
+            Some(Err(why)) => self.tell(format!("How the figure was made is not known: {why}.")),
+            None => {}
+        }
     }
 
     /// Starts with what the command line names, or else with what was open last, or else with nothing.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::camera::ObserverCamera;
 use super::command::Action;
 use super::open::named_from;
-use super::plate::{Export, Picture};
+use super::plate::{Export, Form, Picture};
 use super::recall::spoken_subject;
 use super::shown::{LookIn, Surface};
 use super::state::State;
@@ -35,12 +35,22 @@ impl State {
         if !is_own || stage.is_eye_moved() {
             words.push(stage.eye_text());
         }
-        words.extend(["--step".into(), self.step.to_string()]);
-        let picture = self.pictures().into_iter().find(|(p, _)| *p == export.picture);
-        words.extend(picture.into_iter().flat_map(|(_, word)| ["--picture".into(), word]));
-        words.extend(["--paper", export.paper_word(), "--theme", export.theme.name()].map(String::from));
-        if export.aspect != self.fitting_aspect() {
-            words.extend(["--aspect".into(), export.aspect.to_string()]);
+        words.extend(match export.steps {
+            Some(steps) => ["--steps".into(), steps.to_string()],
+            None => ["--step".into(), self.step.to_string()],
+        });
+        words.extend(["--picture".into(), self.picture_words(export)]);
+        if export.steps.is_some() || export.shown().len() > 1 {
+            words.extend(["--as", export.form.word()].map(String::from));
+        }
+        if let Form::Animation(rate) = export.form {
+            words.extend(["--rate".into(), rate.to_string()]);
+        }
+        words.extend(["--paper".into(), export.paper.word()]);
+        words.extend(["--theme", export.theme.name()].map(String::from));
+        let aspect = self.aspect_of(export);
+        if aspect != self.fitting_aspect() {
+            words.extend(["--aspect".into(), aspect.to_string()]);
         }
         if export.is_vector {
             words.push("--vectors".into());
@@ -76,11 +86,11 @@ impl State {
             spoken.push(format!("depths:{}", self.depths.name()));
         }
         // That of a figure of another one is the one that is shown.
-        if self.own_picture > 0 && !matches!(export.picture, Picture::Own(_)) {
+        if self.own_picture > 0 && !matches!(export.shown(), [Picture::Own(_)]) {
             let shown = self.pictures().into_iter().find(|(p, _)| *p == Picture::Own(self.own_picture));
             spoken.extend(shown.map(|(_, word)| format!("picture:{word}")));
         }
-        if self.observer != self.framing(export.aspect) {
+        if self.observer != self.framing(self.aspect_of(export)) {
             spoken.push(format!("observe:{}", self.observer.numbers()));
         }
         spoken

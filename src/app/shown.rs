@@ -25,6 +25,8 @@ pub enum Dialog {
     Open,
     /// A name to save under.
     SaveAs,
+    /// What a figure shows and how it looks.
+    Figure,
     /// What was noticed while loading.
     Report,
     /// The method and its paper.

@@ -44,7 +44,8 @@ struct Band {
 }
 
 impl State {
-    /// The Eye's picture, no larger than the room, and its legend.
+    /// The Eye's picture with a label below it, no larger than the room apart from the label, and its
+    /// legend.
     pub(super) fn seen(&self, export: &Export, room: Vec2, label: String) -> Option<(Drawing, Vec<Entry>)> {
         match self.stage.as_ref()? {
             Either::Flat(stage) => self.strip(stage, export, room, &label),
@@ -62,7 +63,7 @@ impl State {
         let mut view = stage.view;
         let aspect = view.width as f32 / view.height.max(1) as f32;
         // A panel is at most so much higher than it is wide.
-        let width = room.x.min((room.y - 2.0 * TEXT_PT) * aspect).min(room.x * aspect * 1.6).max(60.0);
+        let width = room.x.min(room.y * aspect).min(room.x * aspect * 1.6).max(20.0);
         let mut ask = self.ask(export, true);
         let painted = (self.shown.surface == Surface::Solid && self.shown.prims)
             .then(|| stage.drawn(self.step))

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use super::any::AnyStage;
 use super::camera::ObserverCamera;
 use super::findings::Findings;
+use super::making::Making;
 use super::measured::Measured;
 use super::outline::Outline;
-use super::plate::Picture;
+use super::plate::Export;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Reading, Staged};
@@ -85,10 +86,10 @@ pub struct State {
     pub is_eye_locked: bool,
     /// What is shown and how.
     pub shown: Shown,
-    /// What a figure of the window shows; any picture of the method stands for the one that is shown.
-    pub export_of: Picture,
-    /// Whether figures of space are vectors; see [`super::Export::is_vector`].
-    pub exports_vectors: bool,
+    /// How figures of the window are made.
+    pub exporting: Export,
+    /// The figure that is being made, and its path.
+    pub(super) making: Option<(Making, String)>,
     /// Which picture of the method is shown.
     pub own_picture: usize,
     /// How depths are shaded in it.
@@ -157,8 +158,8 @@ impl State {
             is_swapped: false,
             is_eye_locked: false,
             shown: Shown::default(),
-            export_of: Picture::default(),
-            exports_vectors: false,
+            exporting: Export::default(),
+            making: None,
             own_picture: 0,
             depths: DepthScale::default(),
             dialog: Dialog::None,
@@ -207,7 +208,11 @@ impl State {
     }
     /// What is being waited for.
     pub fn busy(&self) -> Option<Busy> {
-        self.worker.busy()
+        let making = || {
+            let (making, path) = self.making.as_ref()?;
+            Some(Busy { what: format!("making {path}"), fraction: making.fraction() })
+        };
+        self.worker.busy().or_else(making)
     }
     /// Called from the worker thread whenever there is something new to show.
     pub fn set_wake(&self, wake: impl Fn() + Send + Sync + 'static) {

@@ -631,14 +631,11 @@ fn the_image_of_flatland_shows_the_nearest_segments() {
 fn a_figure_brings_its_session_back() {
     let mut state = opened(FLAT);
     state.apply(Command::GoTo(77));
-    let drawing = state.figure(&state.export_like_window(1.5)).expect("a figure");
-    assert!(drawing.items.len() > 100);
     let recipe = state.session().text();
-    let options = crate::render::SvgOptions { metadata: Some(&recipe), ..Default::default() };
-    let svg = crate::render::svg(&drawing, Theme::Print, &options);
+    let svg = state.figure_with(&Export::default(), crate::render::Format::Svg, &recipe).expect("a figure");
     let path = std::env::temp_dir().join(format!("cullscope-{}.svg", std::process::id()));
     let path = path.to_string_lossy().into_owned();
-    write_file(&path, svg.as_bytes()).expect("a file");
+    write_file(&path, &svg).expect("a file");
     let mut other = State::new();
     other.apply(Command::Open(path.clone()));
     other.block_until_idle();

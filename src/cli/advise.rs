@@ -169,7 +169,13 @@ fn drawn(args: &Args, advice: &Advice, format: Format) -> Result<Vec<u8>, CliErr
         advice.trials.len(),
     );
     let title = "Advice".to_owned();
-    let page = crate::figure::Page { paper: crate::figure::Paper::TwoColumns, title, legend, caption };
+    let page = crate::figure::Page {
+        paper: crate::figure::Paper::TwoColumns,
+        title,
+        legend,
+        caption,
+        ..crate::figure::Page::default()
+    };
     let recipe = format!("cullscope advise {} --max-wrong-pixels {}", args.scene, args.max_wrong_pixels);
     render::export(&page.compose(&content), format, Theme::Print, &recipe)
         .map_err(|e| CliError::work("--chart", e.to_string()))

@@ -8,6 +8,7 @@ use super::progress::Bar;
 use super::snapshot::{self, Snapshot};
 use super::{CliError, output, remake, suggest};
 use crate::papers::{self, Figure};
+use crate::render::{Format, Theme};
 use crate::scene::Progress;
 
 #[derive(clap::Args)]
@@ -68,8 +69,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         if bar.cancelled() {
             return Err(CliError::Interrupted);
         }
-        let plate = Plate { theme: args.files.theme(), outline_text: args.files.outline_text() };
-        for format in args.files.formats() {
+        let plate = Plate {
+            theme: args.files.theme().unwrap_or(Theme::Print),
+            outline_text: args.files.outline_text(),
+        };
+        for format in args.files.formats(Format::Svg) {
             plates::write(&args.files.path(figure.name, format), &plate.built_in(figure, format)?)?;
         }
     }

@@ -66,7 +66,7 @@ enum Command {
     Cull(cull::Args),
     /// Write a run step by step, as JSON Lines
     Step(step::Args),
-    /// Write built-in figures as SVG, PDF or PNG
+    /// Write figures as SVG, PDF or PNG: built-in ones, or any step of any scene
     Figure(figure::Args),
     /// Measure the tables of the papers, beside the papers' own figures
     Paper(paper::Args),
@@ -86,7 +86,7 @@ enum Command {
     /// Look into scenes and convert them
     #[command(subcommand)]
     Scene(scene::Command),
-    /// Check recorded runs
+    /// Check recorded runs, and make figures of them
     #[command(subcommand)]
     Trace(trace::Command),
 }

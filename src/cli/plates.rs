@@ -11,12 +11,12 @@ use crate::render::{self, Format, SvgOptions, Theme};
 
 #[derive(clap::Args)]
 pub(super) struct Files {
-    /// File formats, separated by commas
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "svg")]
+    /// File formats, separated by commas [default: svg; pdf for pages, png for an animation]
+    #[arg(long, value_enum, value_delimiter = ',')]
     format: Vec<Format>,
-    /// Colors
-    #[arg(long, value_enum, default_value = "print")]
-    theme: Colors,
+    /// Colors [default: print, or those of the figure that is reopened]
+    #[arg(long, value_enum)]
+    theme: Option<Colors>,
     /// Letters in SVG files; PDF files carry their fonts, PNG files have none
     #[arg(long, value_enum, default_value = "fonts")]
     text: Letters,
@@ -41,19 +41,20 @@ enum Letters {
 }
 
 impl Files {
-    pub fn theme(&self) -> Theme {
-        match self.theme {
+    /// The theme, if one is asked for.
+    pub fn theme(&self) -> Option<Theme> {
+        self.theme.map(|colors| match colors {
             Colors::Light => Theme::Light,
             Colors::Dark => Theme::Dark,
             Colors::Print => Theme::Print,
-        }
+        })
     }
     pub fn outline_text(&self) -> bool {
         self.text == Letters::Paths
     }
-    /// Each format once.
-    pub fn formats(&self) -> BTreeSet<Format> {
-        self.format.iter().copied().collect()
+    /// Each format once; this one if none is asked for.
+    pub fn formats(&self, usual: Format) -> BTreeSet<Format> {
+        if self.format.is_empty() { [usual].into() } else { self.format.iter().copied().collect() }
     }
     /// Makes the folder.
     pub fn prepare(&self) -> Result<(), CliError> {

@@ -144,7 +144,8 @@ fn from_session(
     if let Some(notice) = state.notices.first().filter(|_| state.film().is_none()) {
         return Ok(Err(notice.text.clone()));
     }
-    Ok(state.export_like(&made).and_then(|export| state.figure_with(&export, format, recipe)))
+    let export = state.export_like(&made);
+    Ok(export.and_then(|export| state.figure_with(&export, format, recipe)))
 }
 
 /// Waits for what is asked of the explorer.

@@ -1,5 +1,5 @@
-//! `cullscope trace check`: whether a recorded run keeps to the trace format, and on demand whether it is
-//! true.
+//! `cullscope trace`: whether a recorded run keeps to the trace format, on demand whether it is true, and
+//! what it shows as figures.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
@@ -8,14 +8,17 @@ use std::sync::Arc;
 use serde_json::Value as Json;
 
 use super::methods::find;
+use super::plates::Files;
 use super::progress::Bar;
+use super::snapshot::{Begin, Shot};
 use super::step::FILM_CAP;
 use super::{CliError, World, error::reason, output, scene};
-use crate::geometry::{ViewPath, each};
+use crate::app::{AnyOpened, Opened, State};
+use crate::geometry::{Either, ViewPath, each};
 use crate::method::Settings;
 use crate::scene::{LoadOptions, Motion, Part, Progress, Scene, parse_views};
 use crate::trace::Detail;
-use crate::trace::format::{self, Header, write_film, write_header};
+use crate::trace::format::{self, Header, Summary, write_film, write_header};
 use crate::truth::certificate::check_film;
 
 #[derive(clap::Subcommand)]
@@ -33,12 +36,41 @@ pub(super) enum Command {
         #[arg(long)]
         prove: bool,
     },
+    /// Write figures of a step of a trace, once it is proven
+    #[command(
+        after_help = "Example:\n  cullscope trace figure run.jsonl --first-hidden --picture observer,eye \
+                      --as page"
+    )]
+    Figure(Box<FigureArgs>),
+}
+
+#[derive(clap::Args)]
+pub(super) struct FigureArgs {
+    /// A trace, as `cullscope step` writes it
+    #[arg(id = "scene", value_name = "FILE")]
+    file: String,
+    /// Which of its frames
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frame: usize,
+    #[command(flatten)]
+    files: Files,
+    #[command(flatten)]
+    shot: Shot,
 }
 
 pub(super) fn run(command: &Command) -> Result<(), CliError> {
-    let Command::Check { file, prove } = command;
-    let summary =
-        format::check(read(file)?).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))?;
+    match command {
+        Command::Check { file, prove } => check(file, *prove),
+        Command::Figure(args) => figure(args),
+    }
+}
+
+fn summary(file: &str) -> Result<Summary, CliError> {
+    format::check(read(file)?).map_err(|e| CliError::work(format!("{file}:{}", e.line()), e.why()))
+}
+
+fn check(file: &str, prove: bool) -> Result<(), CliError> {
+    let summary = summary(file)?;
     let (method, scene) = (&summary.header.method, &summary.header.scene);
     let text = format!(
         "{file}: valid: {} events in {} frames of `{method}` on {scene}\n",
@@ -56,6 +88,49 @@ fn read(file: &str) -> Result<BufReader<File>, CliError> {
     File::open(file).map(BufReader::new).map_err(|e| CliError::work(file, reason(&e)))
 }
 
+/// Steps of figures are events of the run in full, also where the trace has the coarse ones only.
+fn figure(args: &FigureArgs) -> Result<(), CliError> {
+    let (file, header) = (args.file.as_str(), summary(&args.file)?.header);
+    let filter = args.shot.filter()?;
+    let begin = match scene::open(&header.scene, &LoadOptions::default())? {
+        Either::Flat(scene) => begin(file, &header, &scene, args.frame, Either::Flat)?,
+        Either::Solid(scene) => begin(file, &header, &scene, args.frame, Either::Solid)?,
+    };
+    let bar = Bar::new();
+    let mut state = State::new();
+    (state.method, state.settings) = (header.method.clone(), parameters(&header));
+    args.shot.stage(&mut state, begin, None, &bar)?;
+    args.shot.write(&mut state, filter.as_ref(), &args.files, &bar)
+}
+
+/// What the explorer begins with for a frame of a trace that is what its method tells.
+fn begin<S: World>(
+    file: &str,
+    header: &Header,
+    scene: &Arc<Scene<S>>,
+    frame: usize,
+    wrap: fn(Opened<S>) -> AnyOpened,
+) -> Result<Begin, CliError> {
+    proven(file, header, scene)?;
+    let path = views(file, header, scene)?;
+    let count = path.views.len();
+    if frame >= count {
+        let said = format!("{file} has frames 0 to {}", count - 1);
+        return Err(CliError::words(format!("--frame {frame}"), said));
+    }
+    Ok(Begin { opened: wrap((scene.clone(), Some(path))), eye: None, path: None, frame })
+}
+
+fn parameters(header: &Header) -> Settings {
+    let text = |value: &Json| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    Settings(header.params.iter().map(|(key, value)| (key.clone(), text(value))).collect())
+}
+
+fn views<S: World>(file: &str, header: &Header, scene: &Scene<S>) -> Result<ViewPath<S>, CliError> {
+    let view = Json::Object(header.view.clone()).to_string();
+    Ok(parse_views(view.as_bytes(), file, scene.origin())?)
+}
+
 /// Runs what the header says, compares it with the file line by line, and checks the certificates of every
 /// frame.
 fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Result<String, CliError> {
@@ -65,10 +140,7 @@ fn proven<S: World>(file: &str, header: &Header, scene: &Arc<Scene<S>>) -> Resul
             format!("{} is not the scene of this trace any more", header.scene),
         ));
     }
-    let text = |value: &Json| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-    let settings = Settings(header.params.iter().map(|(key, value)| (key.clone(), text(value))).collect());
-    let view = Json::Object(header.view.clone()).to_string();
-    let path: ViewPath<S> = parse_views(view.as_bytes(), file, scene.origin())?;
+    let (settings, path) = (parameters(header), views(file, header, scene)?);
     let bar = Bar::new();
     let entry = find::<S>(&header.method)?;
     let mut motion = Motion::new(scene);

@@ -31,8 +31,14 @@ const DOTS: usize = 40;
 /// Charts on a page over two columns; the legend names each series once.
 pub fn chart(title: &str, plots: &[Plot], caption: &str) -> Drawing {
     let (content, legend) = charts(plots);
-    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }
-        .compose(&content)
+    Page {
+        paper: Paper::TwoColumns,
+        title: title.to_owned(),
+        legend,
+        caption: caption.to_owned(),
+        ..Page::default()
+    }
+    .compose(&content)
 }
 
 /// Charts beside and above each other, for a page over two columns, and their legend.

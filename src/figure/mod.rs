@@ -23,7 +23,7 @@ pub use heat::{Heat, heat_map};
 pub use listing::{Row, listing};
 pub use look::{Look, observer_above, role_of, world};
 pub use page::{Entry, Page, Paper, Swatch};
-pub use panels::{Panel, Picture, panels, plate_labels};
+pub use panels::{GRID_GAP_PT, Panel, Picture, grid, grid_cell_pt, labelled, panels, plate_labels};
 pub use pick::{pick, pick_node, pick_segment};
 pub use place::{Sheet, project};
 pub use solved::{Face, solved};

@@ -36,7 +36,9 @@ impl Paper {
             Paper::Column => 84.0,
             Paper::TwoColumns => 175.0,
             Paper::Slide => 254.0,
-            Paper::Custom { width_mm, .. } if width_mm.is_finite() => width_mm.clamp(20.0, 5000.0),
+            Paper::Custom { width_mm, .. } if width_mm.is_finite() => {
+                width_mm.clamp(*SIDES_MM.start(), *SIDES_MM.end())
+            }
             Paper::Custom { .. } => 84.0,
         };
         mm * PT_PER_MM
@@ -47,9 +49,21 @@ impl Paper {
         match self {
             Paper::Column | Paper::TwoColumns => None,
             Paper::Slide => Some(254.0 * 9.0 / 16.0 * PT_PER_MM),
-            Paper::Custom { height_mm, .. } => {
-                height_mm.filter(|h| h.is_finite()).map(|h| h.clamp(20.0, 5000.0) * PT_PER_MM)
-            }
+            Paper::Custom { height_mm, .. } => height_mm
+                .filter(|h| h.is_finite())
+                .map(|h| h.clamp(*SIDES_MM.start(), *SIDES_MM.end()) * PT_PER_MM),
+        }
+    }
+
+    /// Its word in files and on the command line: `column`, `page`, `slide`, or millimeters such as `120` and
+    /// `120x90`.
+    pub fn word(self) -> String {
+        if let Some((word, _)) = WORDS.iter().find(|(_, paper)| *paper == self) {
+            return (*word).to_owned();
+        }
+        match self {
+            Paper::Custom { width_mm, height_mm: Some(height_mm) } => format!("{width_mm}x{height_mm}"),
+            _ => format!("{}", self.width_pt() / PT_PER_MM),
         }
     }
 
@@ -57,6 +71,29 @@ impl Paper {
         match self {
             Paper::Slide => Sizes { margin: 20.0, gap: 10.0, title: 20.0, legend: 12.0, caption: 12.0 },
             _ => Sizes { margin: 3.0, gap: 6.0, title: 9.5, legend: 8.0, caption: 8.0 },
+        }
+    }
+}
+
+/// Sizes that have a word.
+const WORDS: [(&str, Paper); 3] =
+    [("column", Paper::Column), ("page", Paper::TwoColumns), ("slide", Paper::Slide)];
+
+/// Sides of pages in millimeters.
+const SIDES_MM: std::ops::RangeInclusive<f32> = 20.0..=5000.0;
+
+impl std::str::FromStr for Paper {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some((_, paper)) = WORDS.iter().find(|(word, _)| *word == text) {
+            return Ok(*paper);
+        }
+        let side = |t: &str| t.trim().parse::<f32>().ok().filter(|mm| SIDES_MM.contains(mm));
+        let (width, height) = text.split_once(['x', 'X', '×']).map_or((text, None), |(w, h)| (w, Some(h)));
+        match (side(width), height.map(side)) {
+            (Some(width_mm), None) => Ok(Paper::Custom { width_mm, height_mm: None }),
+            (Some(width_mm), Some(Some(mm))) => Ok(Paper::Custom { width_mm, height_mm: Some(mm) }),
+            _ => Err("expected column, page, slide, or 20 to 5000 millimeters such as 120 or 120x90".into()),
         }
     }
 }
@@ -109,6 +146,9 @@ pub struct Page {
     pub legend: Vec<Entry>,
     /// Below the legend: method, scene, parameters and step; may be empty.
     pub caption: String,
+    /// Least height of what stands below the picture: pages of a sequence share one, so that nothing moves
+    /// from one to the next.
+    pub least_below_pt: f32,
 }
 
 impl Page {
@@ -120,6 +160,11 @@ impl Page {
         // 230 mm is the text height of a journal's page.
         let height = self.paper.height_pt().unwrap_or(230.0 * PT_PER_MM);
         vec2(width, (height - layout.above - layout.below).max(8.0))
+    }
+
+    /// Height of what stands below the picture, gaps and margin included.
+    pub fn below_pt(&self) -> f32 {
+        self.layout().below
     }
 
     /// The page with a picture on it. A picture larger than the room is made smaller: its points move
@@ -162,6 +207,7 @@ impl Page {
         let caption_height = line(caption.size, caption.lines.len());
         let below =
             gap(legend.rows) + legend_height + gap(caption.lines.len()) + caption_height + sizes.margin;
+        let below = below.max(self.least_below_pt);
         Layout { page: self, sizes, title, caption, legend, above, below }
     }
 }
@@ -286,7 +332,9 @@ impl Layout<'_> {
     }
 
     fn caption_to(&self, to: &mut Drawing, height: f32) {
-        let top = height - self.sizes.margin - self.caption.size * LEADING * self.caption.lines.len() as f32;
+        let legend = self.legend.size * LEADING * self.legend.rows as f32;
+        let gaps = self.sizes.gap * if self.legend.rows == 0 { 1.0 } else { 2.0 };
+        let top = height - self.below + gaps + legend;
         self.lines_to(&self.caption, Font::Regular, top, to);
     }
 
@@ -403,7 +451,13 @@ mod tests {
         let legend = legend
             .map(|(i, role)| Entry { role: *role, label: random_text(rng, 4), swatch: swatches[i % 3] })
             .collect();
-        Page { paper, title: random_text(rng, 12), legend, caption: random_text(rng, 80) }
+        Page {
+            paper,
+            title: random_text(rng, 12),
+            legend,
+            caption: random_text(rng, 80),
+            least_below_pt: 0.0,
+        }
     }
 
     /// The rectangles of everything but the picture, and of the picture as a whole.

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{Face, Sheet, clip, project, solved};
-use crate::drawing::{Anchor, Drawing, Font, Layer, Mark, Role, Subject, metrics};
+use crate::drawing::{Anchor, Drawing, Font, Item, Layer, Mark, Role, Subject, metrics};
 use crate::geometry::{Aabb, Solid, View};
 
 /// One picture.
@@ -96,6 +96,46 @@ pub fn panels(width_pt: f32, columns: usize, panels: &[Panel]) -> Drawing {
         paper.push(Layer::Labels, Role::Ink, Subject::None, mark);
     }
     paper
+}
+
+/// Distance of the pictures of a [`grid`], points.
+pub const GRID_GAP_PT: f32 = 8.0;
+
+/// Finished pictures in rows of `columns`, each in the middle of its cell, the lower ends of a row in line;
+/// `width_pt` wide in all.
+pub fn grid(width_pt: f32, columns: usize, cells: Vec<Drawing>) -> Drawing {
+    let columns = columns.clamp(1, cells.len().max(1));
+    let cell = grid_cell_pt(width_pt, columns);
+    let mut paper = Drawing { size_pt: Vec2::new(width_pt, -GRID_GAP_PT), ..Drawing::default() };
+    let mut cells = cells.into_iter().peekable();
+    while cells.peek().is_some() {
+        let row: Vec<Drawing> = cells.by_ref().take(columns).collect();
+        let height = row.iter().map(|drawing| drawing.size_pt.y).fold(0.0, f32::max);
+        for (column, drawing) in row.into_iter().enumerate() {
+            let left = column as f32 * (cell + GRID_GAP_PT) + (cell - drawing.size_pt.x) * 0.5;
+            let by = Vec2::new(left, paper.size_pt.y + GRID_GAP_PT + height - drawing.size_pt.y);
+            let moved = drawing.items.into_iter();
+            paper.items.extend(moved.map(|item| Item { mark: item.mark.mapped(|p| p + by), ..item }));
+        }
+        paper.size_pt.y += GRID_GAP_PT + height;
+    }
+    paper
+}
+
+/// Width of a cell of a [`grid`].
+pub fn grid_cell_pt(width_pt: f32, columns: usize) -> f32 {
+    (width_pt - GRID_GAP_PT * (columns - 1) as f32) / columns as f32
+}
+
+/// A picture with a label on one line below it.
+pub fn labelled(mut picture: Drawing, label: &str) -> Drawing {
+    let size = picture.size_pt;
+    let text = metrics::elide(label, Font::Regular, LABEL_PT, size.x);
+    let at = Vec2::new(size.x * 0.5, size.y + LABEL_PT * 1.4);
+    let mark = Mark::Text { at, text, size_pt: LABEL_PT, anchor: Anchor::Middle, font: Font::Regular };
+    picture.push(Layer::Labels, Role::Ink, Subject::None, mark);
+    picture.size_pt.y += LABEL_PT * 2.0;
+    picture
 }
 
 /// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt` and puts a piece of paper under

@@ -98,7 +98,7 @@ impl<'a> Maker<'a> {
         content: &Drawing,
     ) -> Drawing {
         let caption = caption.into() + &self.made();
-        Page { paper, title: title.into(), legend, caption }.compose(content)
+        Page { paper, title: title.into(), legend, caption, ..Page::default() }.compose(content)
     }
     /// What was run and where it departs from its papers, in sentences.
     fn made(&self) -> String {

@@ -50,8 +50,14 @@ impl Field {
 /// Charts on a page over two columns, with a legend and what is to be known for reading them.
 pub fn tradeoffs(title: &str, charts: &[Tradeoff], caption: &str) -> Drawing {
     let (content, legend) = tradeoff_charts(charts);
-    Page { paper: Paper::TwoColumns, title: title.to_owned(), legend, caption: caption.to_owned() }
-        .compose(&content)
+    Page {
+        paper: Paper::TwoColumns,
+        title: title.to_owned(),
+        legend,
+        caption: caption.to_owned(),
+        ..Page::default()
+    }
+    .compose(&content)
 }
 
 /// The charts by themselves, two beside each other, and their legend.

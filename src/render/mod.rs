@@ -5,6 +5,7 @@
 //! in `piece.rs`, so that all readers show the same picture. Every file format carries the recipe of the
 //! figure, which [`recipe`] reads back.
 
+mod animation;
 pub mod color_vision;
 mod export;
 mod face;
@@ -22,11 +23,12 @@ pub mod screen;
 mod svg;
 pub mod theme;
 
+pub use animation::Animation;
 pub use export::{Format, export};
 pub use html::page;
-pub use pdf::pdf;
+pub use pdf::{pages, pdf};
 pub use png::png_pixels;
-pub use raster::{PngSize, pixels, png};
+pub use raster::{PngSize, pixels, png, texts};
 pub use svg::{SvgOptions, svg};
 pub use theme::{Look, Theme};
 

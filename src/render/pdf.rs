@@ -1,4 +1,4 @@
-//! Drawings as PDF 1.5, which pdfTeX takes without a warning: one page, vectors, our fonts embedded, text
+//! Drawings as PDF 1.5, which pdfTeX takes without a warning: a page each, vectors, our fonts embedded, text
 //! that can be searched and copied.
 //!
 //! The same drawing gives the same bytes: no date is written, and the document's id is a hash of its content.
@@ -37,28 +37,42 @@ const LONGEST_PT: f32 = 14_400.0;
 /// # Errors
 /// If PDF allows no page of its size, or the writer refuses it.
 pub fn pdf(drawing: &Drawing, look: impl Into<Look>, metadata: Option<&str>) -> Result<Vec<u8>, RenderError> {
+    pages(std::slice::from_ref(drawing), look, metadata)
+}
+
+/// Drawings as the pages of a PDF file, which has the title and the description of the first.
+///
+/// # Errors
+/// If there is none, PDF allows no page of such a size, or the writer refuses one.
+pub fn pages(
+    drawings: &[Drawing],
+    look: impl Into<Look>,
+    metadata: Option<&str>,
+) -> Result<Vec<u8>, RenderError> {
     let look = look.into();
-    let size = drawing.size_pt;
-    if !(size.is_finite() && size.min_element() >= 1.0 && size.max_element() <= LONGEST_PT) {
-        return Err(RenderError::Page { width_pt: size.x, height_pt: size.y });
-    }
-    let settings = PageSettings::from_wh(size.x, size.y)
-        .ok_or(RenderError::Page { width_pt: size.x, height_pt: size.y })?;
+    let first = drawings.first().ok_or_else(|| RenderError::Pdf("there is no page".into()))?;
     let configuration = ConfigurationBuilder::new()
         .with_version(PdfVersion::Pdf15)
         .finish()
         .map_err(|e| RenderError::Pdf(format!("{e:?}")))?;
     let mut document =
         Document::new_with(SerializeSettings { configuration, ..SerializeSettings::default() });
-    document.set_metadata(about(drawing));
+    document.set_metadata(about(first));
     let fonts = Font::ALL
         .map(|f| PdfFont::new(Data::from(metrics::font_bytes(f)), 0))
         .into_iter()
         .collect::<Option<Vec<_>>>()
         .ok_or_else(|| RenderError::Pdf("a font is unreadable".into()))?;
-    let mut page = document.start_page_with(settings);
-    paint_page(page.surface(), fonts, drawing, look);
-    page.finish();
+    for drawing in drawings {
+        let size = drawing.size_pt;
+        let is_allowed = size.is_finite() && size.min_element() >= 1.0 && size.max_element() <= LONGEST_PT;
+        let settings = PageSettings::from_wh(size.x, size.y)
+            .filter(|_| is_allowed)
+            .ok_or(RenderError::Page { width_pt: size.x, height_pt: size.y })?;
+        let mut page = document.start_page_with(settings);
+        paint_page(page.surface(), fonts.clone(), drawing, look);
+        page.finish();
+    }
     if let Some(recipe) = metadata {
         document.embed_file(recipe_file(recipe));
     }

@@ -62,6 +62,20 @@ pub(super) fn encode(pixels: &Pixels, texts: &[(&str, &str)], dpi: Option<f32>) 
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
+    describe(&mut encoder, texts, dpi);
+    // Writing to memory cannot fail, and the length was made to fit.
+    if let Ok(mut writer) = encoder.write_header() {
+        let _ = writer.write_image_data(if opaque { &rgb } else { data });
+    }
+    out
+}
+
+/// Adds texts and a resolution to a file that is about to be written.
+pub(super) fn describe<W: std::io::Write>(
+    encoder: &mut png::Encoder<'_, W>,
+    texts: &[(&str, &str)],
+    dpi: Option<f32>,
+) {
     if let Some(dpi) = dpi {
         let per_meter = (dpi / 0.0254).round() as u32;
         encoder.set_pixel_dims(Some(png::PixelDimensions {
@@ -74,11 +88,6 @@ pub(super) fn encode(pixels: &Pixels, texts: &[(&str, &str)], dpi: Option<f32>) 
         // Keywords are our own and valid; texts may be anything.
         let _ = encoder.add_itxt_chunk((*key).to_owned(), (*text).to_owned());
     }
-    // Writing to memory cannot fail, and the length was made to fit.
-    if let Ok(mut writer) = encoder.write_header() {
-        let _ = writer.write_image_data(if opaque { &rgb } else { data });
-    }
-    out
 }
 
 /// The recipe in a PNG file.

@@ -35,15 +35,19 @@ pub fn png(
     metadata: Option<&str>,
 ) -> Result<Vec<u8>, RenderError> {
     let (pixels, dpi) = pixels_of(drawing, look.into(), size)?;
-    let texts: Vec<(&str, &str)> = [
+    let texts = texts(drawing, metadata);
+    let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, text.as_str())).collect();
+    Ok(encode(&pixels, &texts, Some(dpi)))
+}
+
+/// What a PNG file says of a drawing, by keyword.
+pub fn texts(drawing: &Drawing, metadata: Option<&str>) -> Vec<(&'static str, String)> {
+    let all = [
         ("Title", drawing.title.as_str()),
         ("Description", drawing.description.as_str()),
         (RECIPE_KEY, metadata.unwrap_or("")),
-    ]
-    .into_iter()
-    .filter(|(_, text)| !text.is_empty())
-    .collect();
-    Ok(encode(&pixels, &texts, Some(dpi)))
+    ];
+    all.into_iter().filter(|(_, text)| !text.is_empty()).map(|(key, text)| (key, text.to_owned())).collect()
 }
 
 /// A drawing as pixels.

@@ -60,7 +60,8 @@ pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: 
     let _ = writeln!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {w} {h}\" role=\"img\" \
+         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"{}mm\" height=\"{}mm\" \
+         viewBox=\"0 0 {w} {h}\" role=\"img\" \
          aria-labelledby=\"title description\">",
         number(size.x * MM_PER_PT),
         number(size.y * MM_PER_PT),
@@ -124,7 +125,12 @@ impl Writer {
             if open != Some(item.layer) {
                 self.end_run();
                 self.body.push_str(if open.is_some() { "</g>\n" } else { "" });
-                let _ = writeln!(self.body, "<g id=\"layer-{}\">", item.layer.name());
+                // Inkscape lists as layers what says that it is one.
+                let name = item.layer.name();
+                let _ = writeln!(
+                    self.body,
+                    "<g id=\"layer-{name}\" inkscape:groupmode=\"layer\" inkscape:label=\"{name}\">"
+                );
                 open = Some(item.layer);
             }
             self.piece(piece, paint, &subject(item.subject));

@@ -19,6 +19,8 @@ pub struct Typing {
     row: usize,
     /// Wrong pixels that advice may have, per cent.
     most_wrong: f32,
+    /// What is chosen for a figure.
+    figure: super::figure::Choice,
     /// The system's dialog.
     pub chooser: Chooser,
 }
@@ -54,8 +56,8 @@ impl Chooser {
     }
 }
 
-/// Shows the open dialog, if there is one.
-pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &mut Answers) {
+/// Shows the open dialog, if there is one. `aspect` is that of the Observer's window.
+pub fn show(state: &State, typing: &mut Typing, aspect: f32, ctx: &egui::Context, answers: &mut Answers) {
     if state.dialog == Dialog::None {
         typing.dialog = Dialog::None;
         return;
@@ -78,6 +80,7 @@ pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &m
             Dialog::GoTo => go_to(state, typing, ui, is_new, answers),
             Dialog::Open => open(typing, ui, is_new, answers),
             Dialog::SaveAs => save(typing, ui, is_new, answers),
+            Dialog::Figure => super::figure::show(state, &mut typing.figure, aspect, ui, answers),
             Dialog::Report => report(state, ui),
             Dialog::About => about(state, ui),
             Dialog::Tables => super::tables::show(state, ui, answers),
@@ -87,7 +90,7 @@ pub fn show(state: &State, typing: &mut Typing, ctx: &egui::Context, answers: &m
         }
         let has_own = matches!(
             state.dialog,
-            Dialog::None | Dialog::Palette | Dialog::GoTo | Dialog::Open | Dialog::SaveAs
+            Dialog::None | Dialog::Palette | Dialog::GoTo | Dialog::Open | Dialog::SaveAs | Dialog::Figure
         );
         if !has_own && ui.button("Close").clicked() {
             answers.push(Command::Dialog(Dialog::None));

@@ -10,6 +10,7 @@ mod code;
 mod dialogs;
 mod dock;
 mod events;
+mod figure;
 mod handles;
 mod icons;
 mod inspector;
@@ -35,7 +36,7 @@ use glam::Vec2;
 
 use crate::app::{Action, Command, State};
 use crate::drawing::{Drawing, Mark};
-use crate::figure;
+use crate::figure as paper;
 
 /// The commands that the person gives in a frame.
 pub type Answers = Vec<Command>;
@@ -89,5 +90,5 @@ fn readable_labels(paper: &mut Drawing) {
         }
     }
     let size = paper.size_pt;
-    figure::plate_labels(paper, Vec2::ZERO, size);
+    paper::plate_labels(paper, Vec2::ZERO, size);
 }

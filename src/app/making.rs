@@ -1,0 +1,110 @@
+//! A figure that is being made, part by part: a window stays alive meanwhile, and a person can stop it.
+//!
+//! A part is one picture of one step. The parts of a page stand beside each other; several pages are those of
+//! a PDF file or the pictures of an animation.
+
+use super::plate::{Export, Form, MOVING_DPI, Picture};
+use crate::drawing::Drawing;
+use crate::drawing::words::count;
+use crate::figure::page::Entry;
+use crate::render::{self, Animation, Format, PngSize, SvgOptions};
+
+/// What stands in one picture: its step and what it shows.
+pub(super) type Part = (usize, Picture);
+
+/// A figure that is being made.
+pub struct Making {
+    pub(super) export: Export,
+    pub(super) format: Format,
+    pub(super) recipe: String,
+    /// The parts of each page.
+    pub(super) pages: Vec<Vec<Part>>,
+    pub(super) columns: usize,
+    pub(super) least_below_pt: f32,
+    /// Pages that are done, and parts of the next one.
+    pub(super) done: usize,
+    pub(super) cells: Vec<(Drawing, Vec<Entry>)>,
+    /// Pages of a PDF file so far.
+    drawn: Vec<Drawing>,
+    animation: Option<Animation>,
+}
+
+impl Making {
+    /// Nothing of these pages yet, whose file carries a text.
+    pub(super) fn new(export: &Export, format: Format, recipe: &str, pages: Vec<Vec<Part>>) -> Self {
+        Self {
+            export: export.clone(),
+            format,
+            recipe: recipe.to_owned(),
+            pages,
+            columns: 1,
+            least_below_pt: 0.0,
+            done: 0,
+            cells: Vec::new(),
+            drawn: Vec::new(),
+            animation: None,
+        }
+    }
+    /// How many parts it has.
+    pub fn parts(&self) -> usize {
+        self.pages.iter().map(Vec::len).sum()
+    }
+    /// How far it is, 0 to 1.
+    pub fn fraction(&self) -> f32 {
+        let done: usize = self.pages[..self.done].iter().map(Vec::len).sum();
+        (done + self.cells.len()) as f32 / self.parts().max(1) as f32
+    }
+    /// Whether only one picture stands on a page.
+    pub(super) fn is_single(&self) -> bool {
+        self.pages[0].len() == 1
+    }
+    /// Whether legend and caption must not move from page to page.
+    pub(super) fn is_sequence(&self) -> bool {
+        self.pages.len() > 1
+    }
+    /// The steps of a page that shows several.
+    pub(super) fn steps(&self) -> Option<String> {
+        let steps = self.export.steps.filter(|s| s.from != s.to && self.export.form == Form::Page)?;
+        let stride = match steps.stride {
+            1 => String::new(),
+            2 => ", every other one,".into(),
+            3 => ", every 3rd,".into(),
+            n => format!(", every {}th,", count(n)),
+        };
+        Some(format!("Steps {} to {}{stride}", count(steps.from), count(steps.to)))
+    }
+    /// Takes the next page; the bytes of the file after the last one.
+    pub(super) fn take(&mut self, drawing: Drawing) -> Result<Option<Vec<u8>>, String> {
+        let is_last = self.done == self.pages.len();
+        let (theme, recipe) = (self.export.theme, self.recipe.as_str());
+        let made = match (self.export.form, self.format) {
+            (Form::Page, Format::Svg) => {
+                let options = SvgOptions { outline_text: self.export.outline_text, metadata: Some(recipe) };
+                Ok(Some(render::svg(&drawing, theme, &options).into_bytes()))
+            }
+            (Form::Page, format) => render::export(&drawing, format, theme, recipe).map(Some),
+            (Form::Pages, _) => {
+                self.drawn.push(drawing);
+                if !is_last {
+                    return Ok(None);
+                }
+                render::pages(&self.drawn, theme, Some(recipe)).map(Some)
+            }
+            (Form::Animation(rate), _) => {
+                let count = self.pages.len();
+                let begin = || Animation::new(count, rate, MOVING_DPI, render::texts(&drawing, Some(recipe)));
+                let mut animation = self.animation.take().unwrap_or_else(begin);
+                let pixels = render::pixels(&drawing, theme, PngSize::Dpi(MOVING_DPI));
+                match pixels.and_then(|pixels| animation.push(pixels)) {
+                    Ok(()) if is_last => animation.finish().map(Some),
+                    Ok(()) => {
+                        self.animation = Some(animation);
+                        Ok(None)
+                    }
+                    Err(why) => Err(why),
+                }
+            }
+        };
+        made.map_err(|e| e.to_string())
+    }
+}
