@@ -40,7 +40,9 @@ fn read(own: &Own) -> Result<(&'static str, &'static str, Snapshot), CliError> {
     }
     // To the parser of a subcommand its name is that of the program.
     let read = Words::try_parse_from(&own.words()[1..]);
-    let why = |error: clap::Error| error.to_string().lines().next().unwrap_or_default().to_owned();
+    let why = |error: clap::Error| {
+        error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned()
+    };
     let read = read.map_err(|error| CliError::words(own.name, why(error)))?;
     Ok((own.name, own.scene, read.own))
 }
