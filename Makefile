@@ -10,6 +10,7 @@ help:
 	@echo "make test         set up, then format, lint, documentation and all tests"
 	@echo "make bench        benchmarks (release, some minutes)"
 	@echo "make screenshots  draw screenshots/ again in a real window"
+	@echo "make figures      write screenshots/figures again: the gallery of the papers' figures"
 
 # With a display the explorer opens; without one the same scenes are stepped headless, and the GUI's
 # crates are not built at all.
@@ -36,3 +37,8 @@ screenshots:
 	.ci/setup test
 	cargo build --release --locked
 	.ci/screenshots target/release/cullscope screenshots
+
+figures:
+	.ci/setup build
+	cargo build --release --locked --no-default-features
+	target/release/cullscope figure --gallery screenshots/figures

@@ -4,6 +4,8 @@
 mod cubes;
 #[path = "cli/figures.rs"]
 mod figures;
+#[path = "cli/gallery.rs"]
+mod gallery;
 #[path = "cli/motion.rs"]
 mod motion;
 #[path = "cli/stability.rs"]

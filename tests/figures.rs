@@ -1,8 +1,9 @@
 //! The figures of the papers: made, the same each time, equal to the files in screenshots/figures, and right
 //! in a program that reads neither embedded fonts nor style sheets and smooths images: librsvg.
 //!
-//! `UPDATE_FIGURES=1 cargo test --test figures` writes the files anew; with `FIGURES_OUT=folder` the
-//! figures are also left there as PNG, to be looked at.
+//! `UPDATE_FIGURES=1 cargo test --test figures` writes the files anew, but for figures of steps, which
+//! `tests/cli/gallery.rs` holds to what the program writes; with `FIGURES_OUT=folder` the figures are also
+//! left there as PNG, to be looked at.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -12,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 
 use cullscope::drawing::{Drawing, Mark, Pixels};
-use cullscope::papers::{figure, figures};
+use cullscope::papers::{figure, figures, index, owns};
 use cullscope::render::{PngSize, SvgOptions, Theme, pdf, png, svg};
 use glam::{Vec2, vec2};
 use rayon::prelude::*;
@@ -35,7 +36,9 @@ fn folder() -> PathBuf {
 #[test]
 fn figures_are_what_is_shown_in_the_documentation() {
     for (name, drawing) in drawn() {
-        let text = svg(drawing, Theme::Print, &SvgOptions::default());
+        let recipe = format!("cullscope figure {name} --theme print");
+        let options = SvgOptions { metadata: Some(&recipe), ..SvgOptions::default() };
+        let text = svg(drawing, Theme::Print, &options);
         let path = folder().join(name).with_extension("svg");
         if let Some(out) = std::env::var_os("FIGURES_OUT") {
             let bytes = png(drawing, Theme::Print, PngSize::Dpi(144.0), None).expect("a picture");
@@ -57,11 +60,32 @@ fn figures_are_what_is_shown_in_the_documentation() {
 }
 
 #[test]
-fn every_file_in_the_folder_is_a_figure() {
-    for entry in fs::read_dir(folder()).expect("screenshots/figures").map(|e| e.expect("an entry").path()) {
-        let stem = entry.file_stem().expect("a name").to_string_lossy().into_owned();
-        assert!(figures().any(|f| f.name == stem), "{} is no figure any more: delete it", entry.display());
+fn the_page_of_the_gallery_lists_what_is_there() {
+    let path = folder().join("README.md");
+    if std::env::var_os("UPDATE_FIGURES").is_some() {
+        fs::write(&path, index()).expect("the page can be written");
     }
+    let page = fs::read_to_string(&path).expect("screenshots/figures/README.md");
+    assert!(
+        page == index(),
+        "{} differs from what is listed now: UPDATE_FIGURES=1 writes it",
+        path.display()
+    );
+    let mut there: Vec<String> =
+        figures().map(|f| f.name).chain(owns().map(|o| o.name)).map(svg_name).collect();
+    for name in &there {
+        assert!(page.contains(&format!("]({name})")), "{name} is not on the page");
+    }
+    there.push("README.md".into());
+    there.sort();
+    let entries = fs::read_dir(folder()).expect("screenshots/figures").map(|e| e.expect("an entry"));
+    let mut files: Vec<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
+    files.sort();
+    assert_eq!(files, there, "`cullscope figure --gallery screenshots/figures` writes what is missing");
+}
+
+fn svg_name(name: &str) -> String {
+    format!("{name}.svg")
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The only way that anything changes.
 
 use super::any::{AnyStage, AnyView};
+use super::camera::ObserverCamera;
 use super::command::{Action, Command};
 use super::open::{AnyOpened, Wanted};
 use super::session::{Session, write_file};
@@ -28,25 +29,18 @@ impl State {
         match command {
             Command::Do(action) => self.act(action),
             Command::Open(source) => self.open(&source, None),
-            Command::GoTo(step) => {
-                self.is_playing = false;
-                self.go_to(step);
-            }
+            Command::GoTo(step) => self.jump_to(step),
             Command::Select(subject) => self.select(subject),
             Command::Method(key) => self.change(0, |s| {
                 s.settings.0.clear();
                 s.method = key;
             }),
-            Command::Set(name, value, gesture) => self.change(gesture, |s| {
-                s.settings.0.insert(name, value);
-            }),
+            Command::Set(name, value, gesture) => {
+                self.change(gesture, |s| drop(s.settings.0.insert(name, value)));
+            }
             Command::Eye(view, gesture) => self.move_eye(&view, gesture),
             Command::Frame(path, frame) => self.go_frame(path, frame, 0),
-            Command::Observe(camera) if camera.is_sound() => {
-                self.observer = camera;
-                self.is_to_frame = false;
-            }
-            Command::Observe(_) => {}
+            Command::Observe(camera) => self.observe(camera),
             Command::Picture(name) => self.show_picture(&name),
             Command::Depths(scale) => self.depths = scale,
             Command::Filter(text) => self.filter = text,
@@ -57,9 +51,7 @@ impl State {
             Command::BreakLine(line) => self.flip(Breakpoint::Line(line)),
             Command::BreakVerdict(verdict) => self.flip(Breakpoint::Verdict(verdict)),
             Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
-            Command::Note(i, text) => {
-                self.bookmarks.iter_mut().skip(i).take(1).for_each(|m| m.note.clone_from(&text))
-            }
+            Command::Note(i, text) => self.write_note(i, text),
             Command::Bookmark(i) => self.go_bookmark(i),
             Command::Unmark(i) => drop((i < self.bookmarks.len()).then(|| self.bookmarks.remove(i))),
             Command::Surface(_) | Command::LookIn(_) | Command::Layout(_) | Command::Scale(_) => {
@@ -74,6 +66,24 @@ impl State {
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    fn observe(&mut self, camera: ObserverCamera) {
+        if camera.is_sound() {
+            self.observer = camera;
+            self.is_to_frame = false;
+        }
+    }
+
+    fn write_note(&mut self, bookmark: usize, text: String) {
+        if let Some(mark) = self.bookmarks.get_mut(bookmark) {
+            mark.note = text;
+        }
+    }
+
+    fn jump_to(&mut self, step: usize) {
+        self.is_playing = false;
+        self.go_to(step);
     }
 
     fn set_look(&mut self, command: &Command) {

@@ -3,20 +3,18 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::plates::{self, Files, Plate};
-use super::progress::Bar;
+use super::plates::{self, Files};
 use super::snapshot::{self, Snapshot};
-use super::{CliError, output, remake, suggest};
+use super::{CliError, gallery, output, remake, suggest};
 use crate::papers::{self, Figure};
-use crate::render::{Format, Theme};
-use crate::scene::Progress;
 
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  cullscope figure coorg-teller-figure-4 --format svg,pdf --out figures\n  \
                   cullscope figure --list\n  cullscope figure --all\n  \
                   cullscope figure --scene scenes2d/street.json --method hierarchical-z --first-hidden \
-                  --picture all --paper column\n  cullscope figure --check figures\n\n\
+                  --picture all --paper column\n  cullscope figure --check figures\n  \
+                  cullscope figure --gallery gallery\n\n\
                   Every file carries how it was made: the explorer opens it where it was, and its text has \
                   the command that makes it again in its folder.\n\n\
                   For LaTeX write pdf and use \\includegraphics. With the svg package TeX sets the text: \
@@ -35,6 +33,13 @@ pub(super) struct Args {
     /// Make every figure in a folder again, and name those that differ
     #[arg(long, value_name = "DIR", conflicts_with_all = ["names", "all", "list", "scene"])]
     check: Option<PathBuf>,
+    /// Write all figures of the papers into a folder, with a page that lists what each paper shows
+    #[arg(
+        long,
+        value_name = "DIR",
+        conflicts_with_all = ["names", "all", "list", "check", "scene", "format", "theme", "text", "out"]
+    )]
+    gallery: Option<PathBuf>,
     #[command(flatten)]
     files: Files,
     #[command(flatten)]
@@ -61,23 +66,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
                 .with_help("built-in figures have scenes of their own: give names, or a scene")),
         };
     }
-    let figures = chosen(args)?;
-    args.files.prepare()?;
-    let bar = Bar::new();
-    for (i, figure) in figures.iter().enumerate() {
-        bar.report(i as f32 / figures.len() as f32, "making figures");
-        if bar.cancelled() {
-            return Err(CliError::Interrupted);
-        }
-        let plate = Plate {
-            theme: args.files.theme().unwrap_or(Theme::Print),
-            outline_text: args.files.outline_text(),
-        };
-        for format in args.files.formats(Format::Svg) {
-            plates::write(&args.files.path(figure.name, format), &plate.built_in(figure, format)?)?;
-        }
+    if let Some(folder) = &args.gallery {
+        return gallery::run(folder);
     }
-    Ok(())
+    plates::write_built_in(&chosen(args)?, &args.files)
 }
 
 fn chosen(args: &Args) -> Result<Vec<&'static Figure>, CliError> {

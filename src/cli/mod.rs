@@ -11,6 +11,7 @@ mod cull;
 mod error;
 mod explore;
 mod figure;
+mod gallery;
 mod methods;
 mod output;
 mod paper;

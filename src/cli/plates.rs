@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use super::error::reason;
+use super::progress::Bar;
 use super::{CliError, output};
 use crate::papers::Figure;
 use crate::render::{self, Format, SvgOptions, Theme};
+use crate::scene::Progress;
 
 #[derive(clap::Args)]
 pub(super) struct Files {
@@ -23,6 +25,9 @@ pub(super) struct Files {
     /// Folder for the files; it is made if it is missing
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
+    /// The name of the only file, where it has one of its own.
+    #[arg(skip)]
+    name: Option<&'static str>,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -41,6 +46,10 @@ enum Letters {
 }
 
 impl Files {
+    /// SVG files for documents in a folder, as with no other options; with a name for the only one.
+    pub fn svg_in(folder: &Path, name: Option<&'static str>) -> Self {
+        Self { format: vec![Format::Svg], theme: None, text: Letters::Fonts, out: folder.to_owned(), name }
+    }
     /// The theme, if one is asked for.
     pub fn theme(&self) -> Option<Theme> {
         self.theme.map(|colors| match colors {
@@ -66,7 +75,7 @@ impl Files {
     }
     /// Where a file of this name goes.
     pub fn path(&self, name: &str, format: Format) -> PathBuf {
-        self.out.join(format!("{name}.{}", format.name()))
+        self.out.join(format!("{}.{}", self.name.unwrap_or(name), format.name()))
     }
 }
 
@@ -91,6 +100,23 @@ impl Plate {
         render::export(&drawing, format, theme, &recipe)
             .map_err(|e| CliError::work(figure.name, e.to_string()))
     }
+}
+
+/// Writes built-in figures.
+pub(super) fn write_built_in(figures: &[&Figure], files: &Files) -> Result<(), CliError> {
+    files.prepare()?;
+    let bar = Bar::new();
+    let plate = Plate { theme: files.theme().unwrap_or(Theme::Print), outline_text: files.outline_text() };
+    for (i, figure) in figures.iter().enumerate() {
+        bar.report(i as f32 / figures.len() as f32, "making figures");
+        if bar.cancelled() {
+            return Err(CliError::Interrupted);
+        }
+        for format in files.formats(Format::Svg) {
+            write(&files.path(figure.name, format), &plate.built_in(figure, format)?)?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes a file whole and prints its path.

@@ -3,20 +3,24 @@
 //! times, and draw no worlds.
 //!
 //! A paper's numbers stand where they are compared, with its figures and tables; its title and DOI stand on
-//! the card of its method.
+//! the card of its method. `shown` lists all that it prints, with what of that is ours: the gallery.
 
 mod baselines;
 mod chamberlain;
 mod coorg_teller;
+mod gallery;
 mod georges;
 pub mod keys;
 mod klosowski_silva;
 mod paper;
+mod shown;
 #[cfg(test)]
 mod tests;
 mod zhang;
 
+pub use gallery::{index, owns};
 pub use paper::{Figure, Paper, Source};
+pub use shown::{Ours, Own, Shown};
 
 use crate::measure::Experiment;
 

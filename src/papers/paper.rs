@@ -1,5 +1,6 @@
 //! What a paper is here: the methods that it is about, its figures made anew, its tables measured anew.
 
+use super::shown::Shown;
 use crate::culling::Methods;
 use crate::drawing::Drawing;
 use crate::figure::tools::{Maker, Tint};
@@ -15,9 +16,11 @@ pub struct Paper {
     pub key: &'static str,
     /// Keys of the methods that it is about, one at least.
     pub methods: &'static [&'static str],
-    /// Its figures, in its own order.
+    /// All figures, plates and tables that it prints, in its own order, each once.
+    pub shown: &'static [Shown],
+    /// Its figures made anew, in its own order.
     pub figures: &'static [Figure],
-    /// Its tables, in its own order.
+    /// Its tables measured anew, in its own order.
     pub tables: &'static [Experiment],
 }
 

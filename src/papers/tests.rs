@@ -7,7 +7,7 @@ use crate::figure::tools::Maker;
 use crate::geometry::{Flat, Solid, ViewPath};
 use crate::measure::{Cell, ExperimentError, Report, Setup, harness};
 use crate::method::{Settings, When};
-use crate::scene::{AnyScene, LoadOptions, Progress, Quiet, example, load};
+use crate::scene::{AnyScene, LoadOptions, Progress, Quiet, example, generators, load};
 use std::collections::BTreeSet;
 
 fn small(source: &str) -> AnyScene {
@@ -501,6 +501,64 @@ fn names_begin_with_their_papers_key_and_are_taken_once() {
     }
     let [now, before] = ["coorg-teller-figure-4", "large-occluders-4"].map(|n| figure(n).expect("a figure"));
     assert!(now.name == "coorg-teller-figure-4" && before.name == now.name);
+}
+
+/// Kinds of things that a paper numbers, and how many it has of each.
+type Numbered<'a> = (&'a str, &'a [(&'a str, usize)]);
+
+/// As counted in the papers by hand.
+const PRINTED: [Numbered<'_>; 6] = [
+    ("baselines", &[]),
+    ("coorg-teller", &[("Figure", 13), ("Table", 3)]),
+    ("georges", &[("Figure", 2)]),
+    ("klosowski-silva", &[("Figure", 15), ("Table", 1)]),
+    ("zhang", &[("Figure", 13)]),
+    ("chamberlain", &[("Figure", 5), ("Plate", 5), ("Table", 2)]),
+];
+
+#[test]
+fn the_gallery_has_everything_that_a_paper_numbers_once() {
+    assert_eq!(PRINTED.len(), PAPERS.len());
+    for (paper, (key, kinds)) in PAPERS.iter().zip(PRINTED) {
+        let all = kinds.iter().flat_map(|(kind, count)| (1..=*count).map(move |n| format!("{kind} {n}")));
+        let numbers = paper.shown.iter().map(|s| s.number.trim_end_matches(" (color plate)").to_owned());
+        assert_eq!((paper.key, numbers.collect::<Vec<_>>()), (key, all.collect()));
+        for Shown { number, what, ours, instead } in paper.shown {
+            assert!(!ours.is_empty() || !instead.is_empty(), "{key}: {number} is neither ours nor excused");
+            for text in [what, instead] {
+                assert!(!text.ends_with('.') && !text.contains(['|', '"', '<']), "{key}: {number}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_the_gallery_names_exists() {
+    let mut names: BTreeSet<&str> = figures().map(|f| f.name).chain(tables().map(|t| t.name)).collect();
+    for (paper, ours) in PAPERS.iter().flat_map(|p| p.shown.iter().flat_map(|s| s.ours).map(move |o| (p, o)))
+    {
+        match ours {
+            Ours::Figure(name) => assert!(paper.figures.iter().any(|f| f.name == *name), "{name}"),
+            Ours::Table(name) => assert!(paper.tables.iter().any(|t| t.name == *name), "{name}"),
+            Ours::Own(own) => {
+                let rest = own.name.strip_prefix(paper.key);
+                assert!(rest.is_some_and(|rest| rest.starts_with('-')), "{}", own.name);
+                assert!(names.insert(own.name), "{} is taken twice", own.name);
+                assert!(paper.methods.contains(&own.method), "{}", own.name);
+            }
+        }
+    }
+    for own in owns() {
+        let generated = own.scene.strip_prefix("generate:").map(|rest| rest.split('?').next());
+        let exists = match generated {
+            Some(name) => generators().iter().any(|g| Some(g.name) == name),
+            None => std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(own.scene).is_file(),
+        };
+        assert!(exists, "{}: there is no scene {}", own.name, own.scene);
+        let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
+        let quoted = own.words().into_iter().find(|word| !word.chars().all(is_plain));
+        assert_eq!(quoted, None, "{}: a shell needs quotes", own.name);
+    }
 }
 
 #[test]

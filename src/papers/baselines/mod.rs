@@ -9,6 +9,7 @@ use super::paper::Paper;
 pub const PAPER: Paper = Paper {
     key: "baselines",
     methods: &[Z_BUFFER, FRUSTUM, CENTROID],
+    shown: &[],
     figures: figures::FIGURES,
     tables: &[],
 };

@@ -2,6 +2,7 @@
 //! faces are composed (3), forests (Plate 5), and how time grows with them (Figure 5).
 
 mod figures;
+mod shown;
 mod tables;
 mod views;
 
@@ -9,5 +10,10 @@ use super::keys::COLOR_CUBES;
 use super::paper::Paper;
 
 /// The paper.
-pub const PAPER: Paper =
-    Paper { key: "chamberlain", methods: &[COLOR_CUBES], figures: figures::FIGURES, tables: tables::TABLES };
+pub const PAPER: Paper = Paper {
+    key: "chamberlain",
+    methods: &[COLOR_CUBES],
+    shown: shown::SHOWN,
+    figures: figures::FIGURES,
+    tables: tables::TABLES,
+};

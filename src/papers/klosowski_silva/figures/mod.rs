@@ -1,6 +1,6 @@
 //! The figures of Klosowski and Silva, "The Prioritized-Layered Projection Algorithm for Visible Set
-//! Estimation", IEEE TVCG 6(2), 2000, made anew by running the method: Figures 2, 3, 6, 7, 9, 13 and 14, in
-//! flatland where that shows it better. They follow the paper's rules (`rules=paper`) unless they say
+//! Estimation", IEEE TVCG 6(2), 2000, made anew by running the method: Figures 1 to 3, 6, 7, 9 to 11, 13 and
+//! 14, in flatland where that shows it better. They follow the paper's rules (`rules=paper`) unless they say
 //! otherwise.
 
 mod cells;
@@ -51,6 +51,18 @@ pub const FIGURES: &[Figure] = &[
         former: Some("layered-projection-9"),
         summary: "Neighbors across levels of a quadtree, in both directions",
         make: cells::neighbors,
+    },
+    Figure {
+        name: "klosowski-silva-figure-10",
+        former: None,
+        summary: "A city from above: all that is visible, and what a budget shows of it",
+        make: missed::city,
+    },
+    Figure {
+        name: "klosowski-silva-figure-11",
+        former: None,
+        summary: "Five cars: all that is visible, and what a budget shows of it",
+        make: missed::cars,
     },
     Figure {
         name: "klosowski-silva-figure-14",

@@ -41,7 +41,7 @@ pub const FIGURES: &[Figure] = &[
     Figure {
         name: "zhang-figure-3",
         former: None,
-        summary: "The hierarchy of occlusion maps over an office",
+        summary: "The hierarchy of occlusion maps over a street",
         make: hierarchy,
     },
     Figure {
