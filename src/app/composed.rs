@@ -5,10 +5,11 @@ use glam::Vec2;
 use super::making::Making;
 use super::plate::{Export, Form, Picture};
 use super::state::State;
+use super::twin::Twin;
 use crate::drawing::words::{self, capitalized, count};
 use crate::drawing::{Drawing, Role, Subject};
-use crate::figure::page::{Entry, Swatch};
-use crate::figure::{GRID_GAP_PT, Page, grid, grid_cell_pt};
+use crate::figure::page::{Entry, Swatch, legend};
+use crate::figure::{self, GRID_GAP_PT, Look, Page, Panel, grid, grid_cell_pt, panels};
 use crate::geometry::Either;
 use crate::render::Format;
 
@@ -52,6 +53,12 @@ impl State {
             _ => steps.into_iter().map(|step| of(step).collect()).collect(),
         };
         let mut making = Making::new(export, format, recipe, pages);
+        if export.shown().contains(&Picture::Twin) {
+            let Some(Either::Solid(stage)) = &self.stage else {
+                return Err("flatland is its own twin".into());
+            };
+            making.twin = Some(Twin::of(stage.posed(), &stage.view, &self.method, &self.settings)?);
+        }
         if making.is_sequence() {
             let firsts: Vec<usize> = making.pages.iter().map(|page| page[0].0).collect();
             let below = firsts.iter().map(|step| self.at(*step, |s| s.blank(&making).below_pt()));
@@ -125,9 +132,37 @@ impl State {
             paper: making.export.paper,
             title: card.map_or(String::new(), |card| card.name.to_owned()),
             legend: if has_states { states.map(entry).collect() } else { Vec::new() },
-            caption: self.caption(shown, making.steps().as_deref()).unwrap_or_default(),
+            caption: self.caption(shown, making.steps().as_deref()).unwrap_or_default()
+                + &self.of_twin(making),
             least_below_pt: making.least_below_pt,
         }
+    }
+
+    /// What the caption says of the twin at this step.
+    fn of_twin(&self, making: &Making) -> String {
+        let twin = making.twin.as_ref().filter(|_| making.steps().is_none());
+        let said = twin.map(|twin| format!(" {}", twin.caption(twin.moment(self.events(), self.step))));
+        said.unwrap_or_default()
+    }
+
+    /// A picture as large as the room, with its label, and its legend.
+    fn pictured(
+        &self,
+        making: &Making,
+        picture: Picture,
+        room: Vec2,
+        label: &str,
+    ) -> Option<(Drawing, Vec<Entry>)> {
+        let Some(twin) = making.twin.as_ref().filter(|_| picture == Picture::Twin) else {
+            return self.content(&making.export, picture, room, label);
+        };
+        let look = Look { selected: Subject::None, current: Subject::None, ..self.look() };
+        let picture = twin.picture(twin.moment(self.events(), self.step), &look);
+        let figure::Picture::Flat(world, bounds) = &picture else { return None };
+        let (marks, size) = (legend(world), bounds.size());
+        let width = room.x.min((room.y - LABEL_PT) * size.x / size.y.max(1e-6)).max(LEAST_PART_PT);
+        let panel = Panel { label: label.to_owned(), picture };
+        Some((panels(width, 1, &[panel]), self.entries(marks)))
     }
 
     /// One picture at this step.
@@ -142,10 +177,10 @@ impl State {
             };
             let room = page.room_pt();
             if making.is_sequence() {
-                return self.content(&making.export, picture, room, &label);
+                return self.pictured(making, picture, room, &label);
             }
             page.legend.clear();
-            let (content, entries) = self.content(&making.export, picture, page.room_pt(), &label)?;
+            let (content, entries) = self.pictured(making, picture, page.room_pt(), &label)?;
             page.legend.clone_from(&entries);
             // The legend takes room that only a slide, or a high picture, has not.
             let room = page.room_pt();
@@ -153,7 +188,7 @@ impl State {
             return if fits {
                 Some((content, entries))
             } else {
-                self.content(&making.export, picture, room, &label)
+                self.pictured(making, picture, room, &label)
             };
         }
         let room = self.cell(making, making.columns);
@@ -162,6 +197,7 @@ impl State {
             Picture::Observer => "Observer view".into(),
             Picture::Eye => "Eye view".into(),
             Picture::Code => "pseudocode".into(),
+            Picture::Twin => "flatland twin".into(),
             Picture::Own(which) => capitalized(self.film()?.reel.pictures().get(which)?),
         };
         let step = if is_narrow { count(self.step) } else { format!("step {}", count(self.step)) };
@@ -170,7 +206,7 @@ impl State {
             (Some(_), 1) => step,
             (Some(_), _) => format!("{step}: {name}"),
         };
-        self.content(&making.export, picture, room, &label)
+        self.pictured(making, picture, room, &label)
     }
 
     /// The room of a part among others.
@@ -189,7 +225,7 @@ impl State {
         // Height for a width, of the highest of them.
         let width = grid_cell_pt(room.x, 2);
         let proportion = |s: &Self| {
-            let measure = |picture: &Picture| s.content(export, *picture, Vec2::new(width, f32::MAX), "");
+            let measure = |picture: &Picture| s.pictured(making, *picture, Vec2::new(width, f32::MAX), "");
             let found = export.shown().iter().filter_map(measure);
             found.map(|(drawing, _)| drawing.size_pt.y / width).fold(0.05, f32::max)
         };
@@ -245,8 +281,8 @@ impl State {
         } else {
             page.legend = entries;
         }
-        if making.steps().is_some() {
-            // Counts are those of a step.
+        if making.steps().is_some() || making.twin.is_some() {
+            // Counts are those of one step of one run.
             for entry in &mut page.legend {
                 if let Some((_, word)) = words.iter().find(|(role, _)| *role == entry.role) {
                     entry.label.clone_from(word);

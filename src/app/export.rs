@@ -43,7 +43,8 @@ impl State {
         let own = self.film().map_or(&[][..], |f| f.reel.pictures());
         let own = own.iter().enumerate().map(|(i, name)| (Picture::Own(i), word(name)));
         let shared = [(Picture::Observer, "observer"), (Picture::Eye, "eye"), (Picture::Code, "pseudocode")];
-        shared.into_iter().map(|(picture, name)| (picture, name.to_owned())).chain(own).collect()
+        let twin = matches!(self.stage, Some(Either::Solid(_))).then_some((Picture::Twin, "flatland-twin"));
+        shared.into_iter().chain(twin).map(|(picture, name)| (picture, name.to_owned())).chain(own).collect()
     }
 
     /// The shape that suits the Observer's picture, width over height.
@@ -83,6 +84,8 @@ impl State {
                 let entries = self.entries_of(&drawing);
                 Some((below(drawing), entries))
             }
+            // The run beside this one draws it.
+            Picture::Twin => None,
             Picture::Own(which) => {
                 let reel = self.film()?.reel;
                 reel.pictures().get(which)?;

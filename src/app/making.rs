@@ -4,6 +4,7 @@
 //! a PDF file or the pictures of an animation.
 
 use super::plate::{Export, Form, MOVING_DPI, Picture};
+use super::twin::Twin;
 use crate::drawing::Drawing;
 use crate::drawing::words::count;
 use crate::figure::page::Entry;
@@ -27,6 +28,8 @@ pub struct Making {
     /// Pages of a PDF file so far.
     drawn: Vec<Drawing>,
     animation: Option<Animation>,
+    /// The run of the flatland twin, where it is shown.
+    pub(super) twin: Option<Twin>,
 }
 
 impl Making {
@@ -43,6 +46,7 @@ impl Making {
             cells: Vec::new(),
             drawn: Vec::new(),
             animation: None,
+            twin: None,
         }
     }
     /// How many parts it has.

@@ -42,6 +42,7 @@ mod surfaces;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod twin;
 mod undo;
 mod why;
 mod worker;

@@ -19,6 +19,8 @@ pub enum Picture {
     Eye,
     /// The pseudocode.
     Code,
+    /// In space: the flatland twin.
+    Twin,
     /// A picture of the method, by its number.
     Own(usize),
 }

@@ -25,6 +25,8 @@ use crate::trace::Counts;
 /// Words of pictures that every method has, and of all that there are.
 const SHARED: [&str; 3] = ["observer", "eye", "pseudocode"];
 const ALL: &str = "all";
+/// In space only.
+const TWIN: &str = "flatland-twin";
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "A step of a run, as the explorer shows it")]
@@ -63,7 +65,8 @@ pub(super) struct Shot {
     /// After the first event that passes a filter of the explorer, such as `verdict:hidden under:12`
     #[arg(long = "where", value_name = "FILTER", group = "moment", requires = "scene")]
     filter: Option<String>,
-    /// observer, eye, pseudocode, a picture of the method by name, or all; several with commas
+    /// observer, eye, pseudocode, flatland-twin (of space: the level plane through the Eye, culled the same way),
+    /// a picture of the method by name, or all; several with commas
     /// [default: observer]
     #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "scene")]
     picture: Vec<String>,
@@ -181,8 +184,9 @@ impl Snapshot {
         let entry = find::<S>(key)?;
         refuse_clock(&entry.knobs(settings)?)?;
         let own: Vec<String> = entry.pictures().iter().map(|name| word(name)).collect();
+        let twin = (S::CORNERS == 3).then_some(TWIN);
         let known: Vec<&str> =
-            SHARED.into_iter().chain(own.iter().map(String::as_str)).chain([ALL]).collect();
+            SHARED.into_iter().chain(twin).chain(own.iter().map(String::as_str)).chain([ALL]).collect();
         self.shot.refuse_unknown(&known, key)?;
         let (views, eye, path) = match self.view.asked(scene)? {
             Asked::Nothing => (None, None, None),
@@ -394,7 +398,9 @@ impl Shot {
         let there = state.pictures();
         let known: Vec<&str> = there.iter().map(|(_, name)| name.as_str()).chain([ALL]).collect();
         self.refuse_unknown(&known, &state.method)?;
-        let is_wanted = |name: &str| self.picture.iter().any(|w| word(w) == name || word(w) == ALL);
+        // The twin is another run.
+        let is_wanted =
+            |name: &str| self.picture.iter().any(|w| word(w) == name || word(w) == ALL && name != TWIN);
         Ok(there.iter().filter(|(_, name)| is_wanted(name)).map(|(p, _)| *p).collect())
     }
 

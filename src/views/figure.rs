@@ -92,10 +92,11 @@ fn pictures(state: &State, export: &mut Export, ui: &mut egui::Ui) {
     let own = state.film().map_or(&[][..], |film| film.reel.pictures());
     let shared =
         [(Picture::Observer, "Observer view"), (Picture::Eye, "Eye view"), (Picture::Code, "pseudocode")];
+    let twin = matches!(state.stage, Some(Either::Solid(_))).then_some((Picture::Twin, "flatland twin"));
     let own = own.iter().enumerate().map(|(i, name)| (Picture::Own(i), *name));
     ui.horizontal_wrapped(|ui| {
         ui.set_max_width(440.0);
-        for (picture, name) in shared.into_iter().chain(own) {
+        for (picture, name) in shared.into_iter().chain(twin).chain(own) {
             let mut is_shown = export.shown().contains(&picture);
             if ui.checkbox(&mut is_shown, name).changed() {
                 let mut pictures = export.shown().to_vec();

@@ -376,3 +376,21 @@ fn vectors_hide_what_is_behind() {
     let said = refused(&here, &large, 1);
     assert!(said.contains("too many for vectors") && said.lines().count() <= 2, "{said}");
 }
+
+#[test]
+fn the_flatland_twin_is_culled_by_the_same_method_from_the_same_place() {
+    let here = folder("twin");
+    let room = shipped("scenes3d/corner_hole/corner_hole.obj");
+    let views = ["--eye", "-6,1,0.4", "--target", "0,1,0.4", "--size", "200x150"];
+    let solid = with(&["figure", "--scene", "boxes.obj", "--method", "large-occluders"], &views);
+    let said = done(&here, &with(&solid, &["--picture", "observer,flatland-twin", "--as", "page"]));
+    let file = here.join(said.trim());
+    let svg = fs::read_to_string(&file).expect("a figure");
+    assert!(svg.contains("Flatland twin: what the level plane through the Eye cuts, "), "{said}");
+    assert!(svg.contains(">flatland twin<"), "its label");
+    made_again(&file);
+    let down = ["--eye", "0,9,0", "--target", "0,0,0", "--up", "1,0,0", "--picture", "flatland-twin"];
+    let task = ["figure", "--scene", &room, "--method", "frustum"];
+    assert!(refused(&here, &with(&task, &down), 1).contains("straight up or down"));
+    assert!(refused(&here, &with(&OWN, &["--picture", "flatland-twin"]), 2).contains("no picture"));
+}
