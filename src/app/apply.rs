@@ -9,6 +9,7 @@ use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
 use super::state::{Effect, State};
 use super::undo::Inputs;
+use super::why::Why;
 use super::worker::{Done, Job, Request};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
@@ -98,10 +99,15 @@ impl State {
         });
     }
 
-    /// Updates what is derived from the rest: the rows of the event tree.
+    /// Updates what is derived from the rest: the rows of the event tree, and why the selected thing ends as
+    /// it does.
     pub(super) fn refresh(&mut self) {
-        if let Some(stage) = &self.stage {
-            self.outline.refresh(stage.get(), self.detail, &self.filter);
+        let stage = self.stage.as_ref().map(|s| s.get());
+        if let Some(stage) = stage {
+            self.outline.refresh(stage, self.detail, &self.filter);
+        }
+        if !self.why.is_of(stage, self.selection) {
+            self.why = stage.map_or_else(Why::default, |stage| Why::of(stage, self.selection));
         }
     }
 
@@ -260,15 +266,10 @@ impl State {
                     None => self.tell("There is no node above it."),
                 }
             }
-            Action::Why => {
-                let Some(stage) = self.staged() else { return true };
-                let step =
-                    super::why::why(stage, self.selection, usize::MAX).into_iter().find_map(|b| b.step);
-                match step {
-                    Some(step) => self.go_to(step),
-                    None => self.tell("Nothing was decided about it in this film."),
-                }
-            }
+            Action::Why => match self.staged().and_then(|stage| self.why.decided(stage)) {
+                Some(step) => self.go_to(step),
+                None => self.tell("Nothing was decided about it in this film."),
+            },
             Action::CopyEye => {
                 let text = self.staged().map(|s| s.eye_text()).unwrap_or_default();
                 self.effects.push(Effect::Copy(text));

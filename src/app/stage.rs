@@ -14,6 +14,7 @@ use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel, settings_for};
+use crate::raster::Drawable;
 use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
 use crate::trace::{Moves, Stamps};
 use crate::truth::Judgement;
@@ -263,6 +264,17 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
 }
 
+/// What hides a thing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HiddenBy {
+    /// A sentence or two; empty where the evidence names it already.
+    pub text: String,
+    /// The things that hide it, what hides most of it first, with their names.
+    pub by: Vec<(Subject, String)>,
+    /// Whether there are more than these.
+    pub is_part: bool,
+}
+
 /// A recorded film as panels read it that do not care about the space.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
@@ -301,6 +313,11 @@ pub trait Staged {
     fn prims_below(&self, node: NodeId) -> usize;
     /// Smallest node that holds a primitive.
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId>;
+    /// Primitives at and below a node.
+    fn prims_of_node(&self, node: NodeId) -> Vec<PrimId>;
+    /// What hides primitives that are left out as hidden on the ground of the evidence that is event `at`;
+    /// `None` where the method cannot tell.
+    fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy>;
     /// Facts about a thing, by name.
     fn facts(&self, subject: Subject) -> Vec<(&'static str, String)>;
     /// Names and lengths of the view paths.
@@ -326,7 +343,7 @@ pub trait Staged {
     fn methods(&self) -> Vec<&'static Card>;
 }
 
-impl<S: Methods> Staged for Stage<S> {
+impl<S: Methods + Drawable> Staged for Stage<S> {
     fn scene(&self) -> &dyn SceneFacts {
         &*self.scene
     }
@@ -347,6 +364,12 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn prims_below(&self, node: NodeId) -> usize {
         self.hierarchy().map_or(0, |h| h.prims(node).len())
+    }
+    fn prims_of_node(&self, node: NodeId) -> Vec<PrimId> {
+        self.hierarchy().map_or(vec![], |h| h.prims(node).to_vec())
+    }
+    fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy> {
+        self.hiders_of(at, prims)
     }
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId> {
         let hierarchy = self.hierarchy()?;
@@ -437,7 +460,7 @@ fn degrees(radians: f32) -> String {
     (0..12).map(|decimals| format!("{exact:.decimals$}")).find(is_it).unwrap_or_else(|| exact.to_string())
 }
 
-impl<S: Methods> Stage<S> {
+impl<S: Methods + Drawable> Stage<S> {
     fn box_text(bounds: &Aabb<S::Vector>) -> String {
         format!("{} to {}", Self::vector(bounds.min), Self::vector(bounds.max))
     }

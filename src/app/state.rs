@@ -14,6 +14,7 @@ use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Reading, Staged};
 use super::undo::History;
+use super::why::Why;
 use super::worker::{Busy, FILM_CAP_EVENTS, Worker};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
@@ -99,6 +100,8 @@ pub struct State {
     pub filter: String,
     /// Rows of the event tree.
     pub outline: Outline,
+    /// Why the selected thing ends as it does.
+    pub why: Why,
     /// The table that was measured last.
     pub measured: Option<Arc<Measured>>,
     /// What was found in the laboratory.
@@ -164,6 +167,7 @@ impl State {
             dialog: Dialog::None,
             filter: String::new(),
             outline: Outline::default(),
+            why: Why::default(),
             measured: None,
             findings: Findings::default(),
             notices: vec![],
