@@ -44,6 +44,9 @@ impl State {
                 self.is_to_frame = false;
             }
             Command::Observe(_) => {}
+            Command::List(listing) => self.listing = listing,
+            Command::FlipShown(object) => self.flip_shown(object),
+            Command::Pixel(at) => self.look_into(at),
             Command::Picture(name) => self.show_picture(&name),
             Command::Depths(scale) => self.depths = scale,
             Command::Filter(text) => self.filter = text,
@@ -54,11 +57,7 @@ impl State {
             Command::BreakLine(line) => self.flip(Breakpoint::Line(line)),
             Command::BreakVerdict(verdict) => self.flip(Breakpoint::Verdict(verdict)),
             Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
-            Command::Note(i, text) => {
-                if let Some(mark) = self.bookmarks.get_mut(i) {
-                    mark.note = text;
-                }
-            }
+            Command::Note(i, text) => self.write_note(i, text),
             Command::Bookmark(i) => self.go_bookmark(i),
             Command::Unmark(i) if i < self.bookmarks.len() => {
                 self.bookmarks.remove(i);
@@ -78,6 +77,17 @@ impl State {
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    fn write_note(&mut self, bookmark: usize, text: String) {
+        if let Some(mark) = self.bookmarks.get_mut(bookmark) {
+            mark.note = text;
+        }
+    }
+
+    fn look_into(&mut self, pixel: Option<[u32; 2]>) {
+        self.pixel.look_at(pixel);
+        self.effects.extend(pixel.map(|_| Effect::ShowPixel));
     }
 
     fn show_picture(&mut self, name: &str) {
@@ -106,6 +116,7 @@ impl State {
         if let Some(stage) = stage {
             self.outline.refresh(stage, self.detail, &self.filter);
         }
+        self.pixel.refresh(stage);
         if !self.why.is_of(stage, self.selection) {
             self.why = stage.map_or_else(Why::default, |stage| Why::of(stage, self.selection));
         }
@@ -126,6 +137,8 @@ impl State {
             | Action::PreviousOnSelected
             | Action::RunToCursor
             | Action::BackToCursor => self.selection != Subject::None,
+            Action::HideObject | Action::IsolateObject => self.selected_object().is_some(),
+            Action::ShowObjects => !self.unshown().is_empty(),
             Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
             Action::SelectCurrent => self.current_subject() != Subject::None,
             Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
@@ -189,7 +202,8 @@ impl State {
     }
 
     fn act(&mut self, action: Action) {
-        if !self.can(action) || self.do_step(action) || self.edit(action) || self.show(action) {
+        let is_done = |s: &mut Self| s.do_step(action) || s.edit(action) || s.show_objects(action);
+        if !self.can(action) || is_done(self) || self.show(action) {
             return;
         }
         match action {

@@ -52,14 +52,18 @@ pub struct Stage<S: Space> {
     pub frame: usize,
     /// The view that culling uses: that of the path until the Eye is moved.
     pub view: View<S>,
+    /// Objects that are not shown.
+    pub unshown: BTreeSet<ObjectId>,
+    /// Changes with these; for caches.
+    pub(super) shown_serial: u64,
     /// The recorded film; `None` until the first recording is done.
     pub recorded: Option<Recorded<S>>,
     /// The views of a flight that is being recorded.
     flight: Option<Vec<View<S>>>,
 }
 
-/// A scene on stage by [`Stage::serial`], and its frame.
-pub type PoseKey = (u64, Option<usize>);
+/// A scene on stage by [`Stage::serial`], its frame, and what of it is shown.
+pub type PoseKey = (u64, Option<usize>, u64);
 
 /// What became of a flight.
 pub enum Flight {
@@ -89,7 +93,9 @@ impl<S: Space> Stage<S> {
             paths.push(ViewPath { name: "overview".into(), views: vec![first] });
         }
         let view = paths[0].views[0];
-        Self { scene, serial, paths, path: 0, frame: 0, view, recorded: None, flight: None }
+        let (unshown, shown_serial) = (BTreeSet::new(), 0);
+        let (path, frame, recorded, flight) = (0, 0, None, None);
+        Self { scene, serial, paths, path, frame, view, unshown, shown_serial, recorded, flight }
     }
     /// The scene as the film knows it: where objects move, in the frame of the film. As it was loaded before
     /// there is a film.
@@ -98,7 +104,7 @@ impl<S: Space> Stage<S> {
     }
     /// What the pictures of the scene depend on; for caches.
     pub fn pose_key(&self) -> PoseKey {
-        (self.serial, self.posed().frame())
+        (self.serial, self.posed().frame(), self.shown_serial)
     }
     /// The path that is followed.
     pub fn views(&self) -> &[View<S>] {
@@ -264,6 +270,17 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
 }
 
+/// A primitive at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtPixel {
+    /// Which.
+    pub prim: PrimId,
+    /// View depth there, world units.
+    pub depth: f32,
+    /// Whether one sees through it.
+    pub is_through: bool,
+}
+
 /// What hides a thing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiddenBy {
@@ -318,6 +335,10 @@ pub trait Staged {
     /// What hides primitives that are left out as hidden on the ground of the evidence that is event `at`;
     /// `None` where the method cannot tell.
     fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy>;
+    /// What covers the center of a pixel of the film's image, if nothing is culled, front to back.
+    fn layers_at(&self, pixel: [u32; 2]) -> Vec<AtPixel>;
+    /// Columns and rows of the film's image.
+    fn image_size(&self) -> Option<[u32; 2]>;
     /// Facts about a thing, by name.
     fn facts(&self, subject: Subject) -> Vec<(&'static str, String)>;
     /// Names and lengths of the view paths.
@@ -370,6 +391,12 @@ impl<S: Methods + Drawable> Staged for Stage<S> {
     }
     fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy> {
         self.hiders_of(at, prims)
+    }
+    fn layers_at(&self, pixel: [u32; 2]) -> Vec<AtPixel> {
+        self.covering(pixel)
+    }
+    fn image_size(&self) -> Option<[u32; 2]> {
+        self.recorded.as_ref().map(|r| [r.film.view().width, r.film.view().height])
     }
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId> {
         let hierarchy = self.hierarchy()?;

@@ -8,7 +8,9 @@ use super::any::AnyStage;
 use super::camera::ObserverCamera;
 use super::findings::Findings;
 use super::measured::Measured;
+use super::objects::Listing;
 use super::outline::Outline;
+use super::pixel::PixelHistory;
 use super::plate::Picture;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
@@ -43,6 +45,8 @@ pub enum Effect {
     FullScreen,
     /// Put every panel back.
     ResetLayout,
+    /// Bring the history of the pixel to the front.
+    ShowPixel,
     /// Put the cursor into the filter.
     FocusFilter,
     /// Close.
@@ -102,6 +106,10 @@ pub struct State {
     pub outline: Outline,
     /// Why the selected thing ends as it does.
     pub why: Why,
+    /// Which objects are listed.
+    pub listing: Listing,
+    /// The pixel that is looked into.
+    pub pixel: PixelHistory,
     /// The table that was measured last.
     pub measured: Option<Arc<Measured>>,
     /// What was found in the laboratory.
@@ -168,6 +176,8 @@ impl State {
             filter: String::new(),
             outline: Outline::default(),
             why: Why::default(),
+            listing: Listing::default(),
+            pixel: PixelHistory::default(),
             measured: None,
             findings: Findings::default(),
             notices: vec![],

@@ -73,7 +73,7 @@ fn actions(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
         }
         if let Some(filter) = Filter::about(state.selection) {
             super::action_button(state, ui, Action::Breakpoint, "Break", answers);
-            let button = ui.button("Events").on_hover_text("List only what happens to it");
+            let button = ui.button("Filter").on_hover_text("List only what happens to it");
             if button.clicked() {
                 answers.push(Command::Filter(filter));
             }
