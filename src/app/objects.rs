@@ -103,12 +103,29 @@ pub fn object_title(scene: &dyn SceneFacts, object: ObjectId) -> String {
     }
 }
 
+/// A name as it is sorted: `door_9` before `door_10`.
+fn sorted_as(name: &str) -> String {
+    let (mut key, mut digits) = (String::new(), String::new());
+    for c in name.chars().chain(['\0']) {
+        if c.is_ascii_digit() {
+            digits.push(c);
+            continue;
+        }
+        if !digits.is_empty() {
+            key += &format!("{:0>20}", std::mem::take(&mut digits));
+        }
+        key.push(c);
+    }
+    key
+}
+
 /// Where in `rows` those stand that are listed, in the order of the list.
 pub fn listed(rows: &[ObjectRow], scene: &dyn SceneFacts, listing: &Listing) -> Vec<u32> {
     let wanted = listing.text.trim().to_lowercase();
     let named =
         rows.iter().enumerate().map(|(i, row)| (object_title(scene, row.id).to_lowercase(), i as u32));
-    let mut found: Vec<(String, u32)> = named.filter(|(name, _)| name.contains(&wanted)).collect();
+    let mut found: Vec<(String, u32)> =
+        named.filter(|(name, _)| name.contains(&wanted)).map(|(name, i)| (sorted_as(&name), i)).collect();
     let row = |i: u32| &rows[i as usize];
     // Shares are compared as products, so that they are exact.
     let drawn = |a: &ObjectRow, b: &ObjectRow| (b.drawn * a.prims).cmp(&(a.drawn * b.prims));
@@ -183,6 +200,10 @@ mod tests {
         let name = object_title(stage.scene(), all[0].id);
         let found = list(&name.to_uppercase(), By::Name, false);
         assert!(found.contains(&all[0]) && found.len() < rows.len());
+        let doors = list("door_", By::Name, false);
+        let number =
+            |row: &ObjectRow| object_title(stage.scene(), row.id)[5..].parse::<u32>().expect("a number");
+        assert!(doors.len() > 5 && doors.windows(2).all(|w| number(&w[0]) < number(&w[1])));
         assert!(list("no object is called so", By::Name, false).is_empty());
     }
 }

@@ -117,6 +117,8 @@ fn line(
             None => super::legend::mark(state, ui, Role::Scene),
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            // Beside the bar by which the list is scrolled.
+            ui.add_space(6.0);
             ui.label(RichText::new(&counts).weak())
                 .on_hover_text(format!("{counts} {}s drawn", scene.prim_name()));
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
