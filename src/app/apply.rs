@@ -59,10 +59,7 @@ impl State {
             Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
             Command::Note(i, text) => self.write_note(i, text),
             Command::Bookmark(i) => self.go_bookmark(i),
-            Command::Unmark(i) if i < self.bookmarks.len() => {
-                self.bookmarks.remove(i);
-            }
-            Command::Unmark(_) => {}
+            Command::Unmark(i) => self.unmark(i),
             Command::Surface(surface) => self.shown.surface = surface,
             Command::LookIn(way) => self.shown.look_in = way,
             Command::Layout(layout) => self.set_layout(layout),
@@ -70,10 +67,7 @@ impl State {
             Command::SaveTo(path) => self.save(&path),
             Command::Tables(asked) => self.tables(asked),
             Command::Laboratory(asked) => self.laboratory(asked),
-            Command::Dismiss(i) if i < self.notices.len() => {
-                self.notices.remove(i);
-            }
-            Command::Dismiss(_) => {}
+            Command::Dismiss(i) => self.dismiss(i),
         }
         self.is_dirty = true;
         self.refresh();
@@ -82,6 +76,18 @@ impl State {
     fn write_note(&mut self, bookmark: usize, text: String) {
         if let Some(mark) = self.bookmarks.get_mut(bookmark) {
             mark.note = text;
+        }
+    }
+
+    fn dismiss(&mut self, notice: usize) {
+        if notice < self.notices.len() {
+            self.notices.remove(notice);
+        }
+    }
+
+    fn unmark(&mut self, bookmark: usize) {
+        if bookmark < self.bookmarks.len() {
+            self.bookmarks.remove(bookmark);
         }
     }
 
