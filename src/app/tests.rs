@@ -524,7 +524,7 @@ fn an_object_keeps_its_reasons(mut state: State, walls: ObjectId, said: &[Becaus
         let film = state.film().expect("a film");
         if let Some(ground) = film.reel.evidence_of(step - 1) {
             state.apply(Action::PreviousOnSelected);
-            assert!(state.step > ground, "{} {ground}", state.step);
+            assert!(state.step > ground && state.step < step, "{} {ground} {step}", state.step);
         }
     }
 }
