@@ -149,7 +149,7 @@ impl Stage {
     fn new(scene: &Arc<Scene<Solid>>) -> Option<Self> {
         let gpu = device()?;
         let mut layer = SpaceLayer::new(&gpu.device, wgpu::TextureFormat::Rgba8Unorm);
-        layer.set_scene(&gpu.device, scene);
+        layer.set_scene(&gpu.device, scene, scene.live().to_vec());
         Some(Self { gpu, layer })
     }
     fn show(&mut self, film: &Arc<dyn Film<Solid>>, wrong: &[PrimId]) -> Stamps {
@@ -376,7 +376,7 @@ fn a_viewport_is_copied_into_the_rect_of_a_pass() {
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
         let Some(gpu) = device() else { return };
         let mut layer = SpaceLayer::new(&gpu.device, format);
-        layer.set_scene(&gpu.device, &scene);
+        layer.set_scene(&gpu.device, &scene, scene.live().to_vec());
         let extent = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
         let window = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,

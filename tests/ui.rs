@@ -160,6 +160,70 @@ fn a_click_in_the_picture_selects() {
     assert!(h.state().state.is_swapped);
 }
 
+/// What decided is in sight as soon as a thing is selected, as are the buttons below it.
+#[test]
+fn the_reason_is_seen_without_scrolling() {
+    let mut h = window("generate:building?polygons=2000&seed=3");
+    h.state_mut().state.apply(Command::Method("hierarchical-z".into()));
+    settle(&mut h);
+    press(&mut h, Modifiers::NONE, Key::End);
+    for prim in [108, 40, 700] {
+        h.state_mut().state.apply(Command::Select(Subject::Prim(PrimId(prim))));
+        settle(&mut h);
+        let reason = h.state().state.why.reasons()[0].text.clone();
+        let (reason, below) = (h.get_by_label(&reason).rect(), h.get_by_label("Toggle breakpoint").rect());
+        assert!(reason.bottom() <= below.top(), "{prim}: {reason} {below}");
+        // The answer stays where it is while one goes to what it names.
+        let step = h.state().state.why.reasons()[0].step.expect("a step");
+        h.state_mut().state.apply(Command::GoTo(step));
+        settle(&mut h);
+        h.get_by_label("This is the present step.");
+    }
+}
+
+#[test]
+fn objects_are_listed_searched_selected_and_hidden() {
+    let mut h = window(FLAT);
+    press(&mut h, Modifiers::NONE, Key::End);
+    click(&mut h, "Objects");
+    h.get_by_label("Search objects").focus();
+    h.run_steps(2);
+    h.get_by_label("Search objects").type_text("sector_60");
+    settle(&mut h);
+    assert_eq!(h.state().state.listing.text, "sector_60");
+    h.get_by_label_contains("sector_60: ").click();
+    settle(&mut h);
+    let Subject::Object(object) = h.state().state.selection else { panic!("an object is selected") };
+    click(&mut h, "Show sector_60");
+    assert!(h.state().state.unshown().contains(&object));
+    h.get_by_label_contains("1 object not shown");
+    click(&mut h, "Show all objects");
+    assert!(h.state().state.unshown().is_empty());
+}
+
+#[test]
+fn a_pixel_of_the_eye_tells_its_history() {
+    let mut h = window(FLAT);
+    let picture = "Eye view: the one line of pixels that the Eye sees";
+    h.get_by_label(picture).click_modifiers(Modifiers::COMMAND);
+    settle(&mut h);
+    let [x, _] = h.state().state.pixel.at().expect("Ctrl and a click ask for the pixel");
+    h.state_mut().state.apply(Command::Pixel(None));
+    settle(&mut h);
+    h.get_by_label(picture).click_secondary();
+    settle(&mut h);
+    click(&mut h, &format!("History of pixel ({x}, 0)"));
+    assert_eq!(h.state().state.pixel.at(), Some([x, 0]));
+    h.state_mut().state.apply(Command::Pixel(Some([3, 0])));
+    settle(&mut h);
+    h.get_by_label_contains("Pixel (3, 0): ");
+    let layer = h.state().state.pixel.layers()[0];
+    let title = layer.title(h.state().state.staged().expect("a stage"));
+    click(&mut h, &title);
+    assert_eq!(h.state().state.selection, Subject::Prim(layer.prim));
+    h.get_by_label_contains("Pixel (3, 0): ");
+}
+
 /// The view that culling sees with, and where its eye stands on the screen.
 fn flat_eye(h: &Harness<'_, App>) -> (View<Flat>, egui::Pos2, f32) {
     let rect = h.get_by_label_contains("Observer view.").rect();

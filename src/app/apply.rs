@@ -9,6 +9,7 @@ use super::shown::{Breakpoint, Dialog, Gesture, Layout, LookIn, Surface, Theme};
 use super::stage::{Flight, Stage};
 use super::state::{Effect, State};
 use super::undo::Inputs;
+use super::why::Why;
 use super::worker::{Done, Job, Request};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
@@ -41,8 +42,9 @@ impl State {
             Command::Eye(view, gesture) => self.move_eye(&view, gesture),
             Command::Frame(path, frame) => self.go_frame(path, frame, 0),
             Command::Observe(camera) => self.observe(camera),
-            Command::Picture(name) => self.show_picture(&name),
-            Command::Depths(scale) => self.depths = scale,
+            Command::List(listing) => self.listing = listing,
+            Command::FlipShown(object) => self.flip_shown(object),
+            Command::Pixel(at) => self.look_into(at),
             Command::Filter(text) => self.filter = text,
             Command::Fold(at) => self.outline.toggle(at),
             Command::Detail(detail) => self.detail = detail,
@@ -53,19 +55,40 @@ impl State {
             Command::BreakNode(node) => self.flip(Breakpoint::Node(node)),
             Command::Note(i, text) => self.write_note(i, text),
             Command::Bookmark(i) => self.go_bookmark(i),
-            Command::Unmark(i) => drop((i < self.bookmarks.len()).then(|| self.bookmarks.remove(i))),
-            Command::Surface(_) | Command::LookIn(_) | Command::Layout(_) | Command::Scale(_) => {
-                self.set_look(&command);
-            }
+            Command::Unmark(i) => self.unmark(i),
+            look @ (Command::Picture(_)
+            | Command::Depths(_)
+            | Command::Surface(_)
+            | Command::LookIn(_)
+            | Command::Layout(_)
+            | Command::Scale(_)) => self.set_look(&look),
             Command::SaveTo(path) => self.save(&path),
             Command::Figures(export) => self.exporting = *export,
             Command::WriteFigure(export, path) => self.export_to(&export, &self.path_of(&path)),
             Command::Tables(asked) => self.tables(asked),
             Command::Laboratory(asked) => self.laboratory(asked),
-            Command::Dismiss(i) => drop((i < self.notices.len()).then(|| self.notices.remove(i))),
+            Command::Dismiss(i) => self.dismiss(i),
         }
         self.is_dirty = true;
         self.refresh();
+    }
+
+    /// Carries out a command about how things are shown.
+    fn set_look(&mut self, command: &Command) {
+        match command {
+            Command::Picture(name) => self.show_picture(name),
+            Command::Depths(scale) => self.depths = *scale,
+            Command::Surface(surface) => self.shown.surface = *surface,
+            Command::LookIn(way) => self.shown.look_in = *way,
+            Command::Layout(layout) => self.set_layout(*layout),
+            Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
+            _ => {}
+        }
+    }
+
+    fn jump_to(&mut self, step: usize) {
+        self.is_playing = false;
+        self.go_to(step);
     }
 
     fn observe(&mut self, camera: ObserverCamera) {
@@ -81,19 +104,21 @@ impl State {
         }
     }
 
-    fn jump_to(&mut self, step: usize) {
-        self.is_playing = false;
-        self.go_to(step);
+    fn dismiss(&mut self, notice: usize) {
+        if notice < self.notices.len() {
+            self.notices.remove(notice);
+        }
     }
 
-    fn set_look(&mut self, command: &Command) {
-        match *command {
-            Command::Surface(surface) => self.shown.surface = surface,
-            Command::LookIn(way) => self.shown.look_in = way,
-            Command::Layout(layout) => self.set_layout(layout),
-            Command::Scale(scale) => self.shown.scale = scale.clamp(0.5, 4.0),
-            _ => {}
+    fn unmark(&mut self, bookmark: usize) {
+        if bookmark < self.bookmarks.len() {
+            self.bookmarks.remove(bookmark);
         }
+    }
+
+    fn look_into(&mut self, pixel: Option<[u32; 2]>) {
+        self.pixel.look_at(pixel);
+        self.effects.extend(pixel.map(|_| Effect::ShowPixel));
     }
 
     fn show_picture(&mut self, name: &str) {
@@ -115,10 +140,16 @@ impl State {
         });
     }
 
-    /// Updates what is derived from the rest: the rows of the event tree.
+    /// Updates what is derived from the rest: the rows of the event tree, and why the selected thing ends as
+    /// it does.
     pub(super) fn refresh(&mut self) {
-        if let Some(stage) = &self.stage {
-            self.outline.refresh(stage.get(), self.detail, &self.filter);
+        let stage = self.stage.as_ref().map(|s| s.get());
+        if let Some(stage) = stage {
+            self.outline.refresh(stage, self.detail, &self.filter);
+        }
+        self.pixel.refresh(stage);
+        if !self.why.is_of(stage, self.selection) {
+            self.why = stage.map_or_else(Why::default, |stage| Why::of(stage, self.selection));
         }
     }
 
@@ -137,6 +168,8 @@ impl State {
             | Action::PreviousOnSelected
             | Action::RunToCursor
             | Action::BackToCursor => self.selection != Subject::None,
+            Action::HideObject | Action::IsolateObject => self.selected_object().is_some(),
+            Action::ShowObjects => !self.unshown().is_empty(),
             Action::SelectParent => matches!(self.selection, Subject::Node(_) | Subject::Prim(_)),
             Action::SelectCurrent => self.current_subject() != Subject::None,
             Action::EyeHome => self.staged().is_some_and(|s| s.is_eye_moved()),
@@ -195,7 +228,8 @@ impl State {
     }
 
     fn act(&mut self, action: Action) {
-        if !self.can(action) || self.do_step(action) || self.edit(action) || self.show(action) {
+        let is_done = |s: &mut Self| s.do_step(action) || s.edit(action) || s.show_objects(action);
+        if !self.can(action) || is_done(self) || self.show(action) {
             return;
         }
         match action {
@@ -269,15 +303,10 @@ impl State {
                     None => self.tell("There is no node above it."),
                 }
             }
-            Action::Why => {
-                let Some(stage) = self.staged() else { return true };
-                let step =
-                    super::why::why(stage, self.selection, usize::MAX).into_iter().find_map(|b| b.step);
-                match step {
-                    Some(step) => self.go_to(step),
-                    None => self.tell("Nothing was decided about it in this film."),
-                }
-            }
+            Action::Why => match self.staged().and_then(|stage| self.why.decided(stage)) {
+                Some(step) => self.go_to(step),
+                None => self.tell("Nothing was decided about it in this film."),
+            },
             Action::CopyEye => {
                 let text = self.staged().map(|s| s.eye_text()).unwrap_or_default();
                 self.effects.push(Effect::Copy(text));

@@ -5,10 +5,11 @@ use super::any::AnyView;
 use super::camera::ObserverCamera;
 use super::findings::Laboratory;
 use super::measured::Tables;
+use super::objects::Listing;
 use super::plate::Export;
 use super::shown::{Detail, Dialog, Gesture, Layout, LookIn, Surface};
 use crate::drawing::Subject;
-use crate::geometry::NodeId;
+use crate::geometry::{NodeId, ObjectId};
 use crate::method::Verdict;
 use crate::raster::DepthScale;
 
@@ -192,6 +193,11 @@ actions! {
     View ShowNodes "show-nodes" "Show node boxes" ["B"] "Shows or hides the boxes of the index.";
     View ShowEye "show-eye" "Show the Eye" [] "Shows or hides the Eye and its frustum.";
     View ShowEvidence "show-evidence" "Show evidence" [] "Shows or hides what the current test used.";
+    View HideObject "hide-object" "Hide the selected object" ["H"] "Shows the selected object no longer, or \
+        again; it is culled as before.";
+    View IsolateObject "isolate-object" "Show only the selected object" ["Shift+H"] "Shows no other object; \
+        they are culled as before.";
+    View ShowObjects "show-objects" "Show all objects" ["Alt+H"] "Shows every object again.";
     View SurfaceSolid "surface-solid" "Solid" [] "Draws surfaces.";
     View SurfaceWire "surface-wire" "Wireframe" [] "Draws edges.";
     View SurfaceClear "surface-translucent" "Translucent" [] "Draws surfaces that one sees through.";
@@ -259,6 +265,12 @@ pub enum Command {
     Frame(usize, usize),
     /// Moves the Observer.
     Observe(ObserverCamera),
+    /// Lists objects.
+    List(Listing),
+    /// Shows an object no longer, or again.
+    FlipShown(ObjectId),
+    /// Looks into a pixel of the Eye's image, by column and row; or into none.
+    Pixel(Option<[u32; 2]>),
     /// Shows a picture of the method, by its word.
     Picture(String),
     /// Shades depths in it on this scale.

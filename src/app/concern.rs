@@ -1,5 +1,6 @@
 //! Which events of a film are about a thing: a primitive with the object that it belongs to, an object with
-//! all of its primitives; and the decisions that took them in without naming them.
+//! all of its primitives; and the decisions that took them in without naming them, with the evidence on which
+//! these rest.
 
 use super::stage::{Reading, SceneFacts};
 use crate::drawing::Subject;
@@ -9,7 +10,7 @@ pub struct Concern<'a> {
     film: Reading<'a>,
     scene: &'a dyn SceneFacts,
     subject: Subject,
-    /// Events that decided the primitive, or a primitive of the object; ascending.
+    /// Events that decided the primitive, or a primitive of the object, and what they rest on; ascending.
     decisions: Vec<usize>,
 }
 
@@ -23,6 +24,10 @@ impl<'a> Concern<'a> {
         };
         let decided = |&p: &_| film.stamps.prim_decision(p).map(|(at, _)| at - 1);
         let mut decisions: Vec<usize> = prims.iter().filter_map(decided).collect();
+        decisions.sort_unstable();
+        decisions.dedup();
+        let grounds: Vec<usize> = decisions.iter().filter_map(|&at| film.reel.evidence_of(at)).collect();
+        decisions.extend(grounds);
         decisions.sort_unstable();
         decisions.dedup();
         Self { film, scene, subject, decisions }

@@ -108,10 +108,9 @@ impl State {
         let look = self.look();
         Some(match self.stage.as_ref()? {
             Either::Flat(s) => {
-                let film = s.recorded.as_ref()?;
                 let half = Vec2::new(self.observer.distance * aspect, self.observer.distance);
                 let center = Vec2::new(self.observer.pivot[0], self.observer.pivot[1]);
-                let world = figure::world(&*film.film, &film.stamps, self.step, &look);
+                let world = s.world(self.step, &look)?;
                 let marks = page::legend(&world);
                 (figure::Picture::Flat(world, Aabb { min: center - half, max: center + half }), marks)
             }

@@ -1,7 +1,8 @@
 //! Which events are listed: `kind:node verdict:outside under:12 depth>3 -line`.
 //!
 //! All words must hold; a word after `-` must not hold, `+` before a word changes nothing.
-//! Words without a colon are looked for in the kind, the verdict and the number of the event.
+//! Words without a colon are looked for in the kind, the verdict and the number of the event. Quotes hold
+//! together what has spaces: `under:"wall A"`.
 
 use std::fmt;
 
@@ -24,6 +25,7 @@ enum Term {
     Verdict(String),
     Node(u32),
     Prim(u32),
+    Object(u32),
     UnderNode(u32),
     UnderObject(String),
     Line(String),
@@ -49,16 +51,25 @@ impl Filter {
     /// Names the word that makes no sense and what would.
     pub fn parse(text: &str) -> Result<Self, FilterError> {
         let mut filter = Self::default();
-        for word in text.split_whitespace() {
+        for word in words(text) {
             let (wanted, word) = match word.strip_prefix('-') {
                 Some(rest) => (false, rest),
-                None => (true, word.strip_prefix('+').unwrap_or(word)),
+                None => (true, word.strip_prefix('+').unwrap_or(&word)),
             };
             if !word.is_empty() {
                 filter.terms.push((wanted, Term::parse(word)?));
             }
         }
         Ok(filter)
+    }
+    /// The filter of all that happens to a thing; `None` of what nothing happens to.
+    pub fn about(subject: Subject) -> Option<String> {
+        match subject {
+            Subject::Prim(prim) => Some(format!("prim:{prim}")),
+            Subject::Object(object) => Some(format!("object:{object}")),
+            Subject::Node(node) => Some(format!("under:{node}")),
+            _ => None,
+        }
     }
     /// Whether everything passes.
     pub fn is_empty(&self) -> bool {
@@ -70,6 +81,19 @@ impl Filter {
         let things = self.terms.iter().map(|(_, term)| term.things(scene, film)).collect();
         Applied { filter: self, film, ranges, things }
     }
+}
+
+/// The words of a filter, without the quotes.
+fn words(text: &str) -> Vec<String> {
+    let (mut words, mut is_quoted) = (vec![String::new()], false);
+    for c in text.chars() {
+        match c {
+            '"' => is_quoted = !is_quoted,
+            c if c.is_whitespace() && !is_quoted => words.push(String::new()),
+            c => words.last_mut().into_iter().for_each(|word| word.push(c)),
+        }
+    }
+    words
 }
 
 impl Term {
@@ -88,19 +112,22 @@ impl Term {
             "verdict" => Ok(Self::Verdict(value.to_lowercase())),
             "node" => number(value).map(Self::Node),
             "prim" | "triangle" | "segment" => number(value).map(Self::Prim),
+            "object" => number(value).map(Self::Object),
             "under" => {
                 Ok(value.parse().map_or_else(|_| Self::UnderObject(value.to_lowercase()), Self::UnderNode))
             }
             "line" => Ok(Self::Line(value.to_lowercase())),
             _ => Err(FilterError(format!(
-                "`{key}:` is not known; there are kind: verdict: node: prim: under: line: depth> depth<"
+                "`{key}:` is not known; there are kind: verdict: node: prim: object: under: line: depth> \
+                 depth<"
             ))),
         }
     }
-    /// The things that a term names: a primitive, or every object with that name.
+    /// The things that a term names: a primitive, an object, or every object with that name.
     fn things<'a>(&self, scene: &'a dyn SceneFacts, film: Reading<'a>) -> Vec<Concern<'a>> {
         let named: Vec<Subject> = match self {
             Self::Prim(prim) => vec![Subject::Prim(PrimId(*prim))],
+            Self::Object(object) => vec![Subject::Object(ObjectId(*object))],
             Self::UnderObject(name) => (0..scene.object_count() as u32)
                 .map(ObjectId)
                 .filter(|&o| scene.object_name(o).to_lowercase().contains(name))
@@ -157,7 +184,7 @@ impl Applied<'_> {
             Term::Kind(kind) => has(reel.kind(at), kind),
             Term::Verdict(verdict) => event.verdict().is_some_and(|v| v.name().starts_with(verdict.as_str())),
             Term::Node(n) => subject == Subject::Node(NodeId(*n)),
-            Term::Prim(_) | Term::UnderObject(_) => things.iter().any(|t| t.holds(at)),
+            Term::Prim(_) | Term::Object(_) | Term::UnderObject(_) => things.iter().any(|t| t.holds(at)),
             Term::UnderNode(_) => range.is_some_and(|(from, to)| (from..to).contains(&at)),
             Term::Line(text) => match event {
                 Event::Line(i) => reel.card().code[i as usize].label.to_lowercase().contains(text),

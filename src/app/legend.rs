@@ -59,6 +59,7 @@ impl State {
                 },
             ))
         };
-        STATES.into_iter().filter_map(entry).collect()
+        let unshown = self.unshown_words().map(|words| (Role::Paper, words));
+        STATES.into_iter().filter_map(entry).chain(unshown).collect()
     }
 }

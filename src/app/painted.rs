@@ -22,7 +22,9 @@ impl<S: Drawable> Stage<S> {
     /// What has been drawn up to a step, of a method that stands something for primitives; `None` of others,
     /// and without a film.
     pub fn drawn(&self, step: usize) -> Option<DrawList<S>> {
-        self.recorded.as_ref()?.film.drawn(step)
+        let mut list = self.recorded.as_ref()?.film.drawn(step)?;
+        list.prims.retain(|&prim| self.shows(prim));
+        Some(list)
     }
     /// The image of such a list from where the film's Eye is, over a background (linear).
     pub fn painted(&self, list: &DrawList<S>, background: [f32; 3]) -> Option<Pixels> {

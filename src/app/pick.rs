@@ -11,7 +11,7 @@ use crate::raster::{self, Target};
 impl Stage<Flat> {
     /// The segment within `reach` of a point, else the deepest node visited by `step` that holds the point.
     pub fn pick(&self, at: Vec2, reach: f32, step: usize) -> Subject {
-        if let Some((prim, _)) = figure::pick_segment(self.posed(), at, reach, |_| true) {
+        if let Some((prim, _)) = figure::pick_segment(self.posed(), at, reach, |prim| self.shows(prim)) {
             return Subject::Prim(prim);
         }
         let Some(recorded) = &self.recorded else { return Subject::None };
@@ -45,7 +45,7 @@ impl Stage<Flat> {
     }
     /// What each column of the Eye's image shows, from left to right.
     pub fn image(&self) -> Vec<Column> {
-        let target = raster::render(&**self.posed(), &self.view, self.scene.live());
+        let target = raster::render(&**self.posed(), &self.view, &self.shown_prims());
         let nearest = |(&item, &depth): (&u32, &f32)| {
             let opaque = (item != Target::NONE).then(|| (PrimId(item), 1.0 / depth));
             Column { opaque, through: Vec::new() }

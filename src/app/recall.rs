@@ -49,6 +49,7 @@ impl State {
             bookmarks: self.bookmarks.clone(),
             breakpoints: self.breakpoints.iter().filter_map(|b| self.stop(*b)).collect(),
             filter: self.filter.clone(),
+            unshown: self.unshown().into_iter().map(|object| object.0).collect(),
             shown: Kept {
                 prims: s.prims,
                 nodes: s.nodes,
@@ -178,7 +179,7 @@ impl State {
     /// What refers to the film, once it is there.
     pub(super) fn recall_rest(&mut self, session: &Session) {
         let Some(stage) = self.staged() else { return };
-        let nodes = stage.film().map_or(0, |f| f.node_count());
+        let (objects, nodes) = (stage.scene().object_count(), stage.film().map_or(0, |f| f.node_count()));
         self.selection = match session.selected {
             Picked::Prim(p) if stage.scene().has_prim(PrimId(p)) => Subject::Prim(PrimId(p)),
             Picked::Node(n) if (n as usize) < nodes => Subject::Node(NodeId(n)),
@@ -189,6 +190,8 @@ impl State {
         self.own_picture = self.own_named(&session.shown.picture).unwrap_or_default();
         self.detail = if session.coarse { Detail::Coarse } else { Detail::Full };
         self.filter = session.filter.clone();
+        let unshown = session.unshown.iter().map(|&id| ObjectId(id)).filter(|id| id.at() < objects);
+        self.show_without(unshown.collect());
         let end = self.len();
         self.bookmarks =
             session.bookmarks.iter().filter(|b| b.step <= end && b.observer.is_sound()).cloned().collect();
@@ -274,6 +277,10 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
             None if value == "map" => Laboratory::Map,
             None => return None,
         }),
+        "pixel" => {
+            let (x, y) = value.split_once(',')?;
+            Command::Pixel(Some([x.parse().ok()?, y.parse().ok()?]))
+        }
         "scale" => Command::Scale(value.parse().ok()?),
         "set" => {
             let (name, value) = value.split_once('=')?;

@@ -151,6 +151,9 @@ pub struct Session {
     /// Filter of the event tree.
     #[serde(default)]
     pub filter: String,
+    /// Objects that are not shown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unshown: Vec<u32>,
     /// What is shown.
     #[serde(default)]
     pub shown: Shown,

@@ -14,7 +14,7 @@ use crate::drawing::words::count;
 use crate::drawing::{Anchor, Drawing, Layer, Mark, Pixels, Role, Subject};
 use crate::figure::page::{self, Entry, Swatch};
 use crate::figure::{Panel, Picture, panels, role_of};
-use crate::geometry::{Either, Flat, PrimId, Solid};
+use crate::geometry::{Either, Flat, PrimId, Solid, each};
 use crate::method::Verdict;
 use crate::render::theme::{Rgb, Theme};
 use crate::trace::State as Known;
@@ -44,6 +44,10 @@ struct Band {
 }
 
 impl State {
+    /// Whether the method stands something for primitives.
+    pub fn has_stand_ins(&self) -> bool {
+        self.stage.as_ref().is_some_and(|stage| each!(stage, s => s.drawn(0).is_some()))
+    }
     /// The Eye's picture with a label below it, no larger than the room apart from the label, and its
     /// legend.
     pub(super) fn seen(&self, export: &Export, room: Vec2, label: String) -> Option<(Drawing, Vec<Entry>)> {
@@ -80,7 +84,7 @@ impl State {
         // What was left out is not in this picture; what stands for something has colors of its own.
         entries.retain(|e| match e.role {
             Role::Scene | Role::Visible => !is_painted,
-            role => matches!(role, Role::Current | Role::Selected | Role::Evidence),
+            role => matches!(role, Role::Current | Role::Selected | Role::Evidence | Role::Paper),
         });
         Some((panels(width, 1, &[Panel { label, picture }]), entries))
     }

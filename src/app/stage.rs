@@ -14,6 +14,7 @@ use crate::drawing::{Drawing, Role, Subject};
 use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, ViewPath};
 use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel, settings_for};
+use crate::raster::Drawable;
 use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
 use crate::trace::{Moves, Stamps};
 use crate::truth::Judgement;
@@ -51,14 +52,18 @@ pub struct Stage<S: Space> {
     pub frame: usize,
     /// The view that culling uses: that of the path until the Eye is moved.
     pub view: View<S>,
+    /// Objects that are not shown.
+    pub unshown: BTreeSet<ObjectId>,
+    /// Changes with these; for caches.
+    pub(super) shown_serial: u64,
     /// The recorded film; `None` until the first recording is done.
     pub recorded: Option<Recorded<S>>,
     /// The views of a flight that is being recorded.
     flight: Option<Vec<View<S>>>,
 }
 
-/// A scene on stage by [`Stage::serial`], and its frame.
-pub type PoseKey = (u64, Option<usize>);
+/// A scene on stage by [`Stage::serial`], its frame, and what of it is shown.
+pub type PoseKey = (u64, Option<usize>, u64);
 
 /// What became of a flight.
 pub enum Flight {
@@ -88,7 +93,9 @@ impl<S: Space> Stage<S> {
             paths.push(ViewPath { name: "overview".into(), views: vec![first] });
         }
         let view = paths[0].views[0];
-        Self { scene, serial, paths, path: 0, frame: 0, view, recorded: None, flight: None }
+        let (unshown, shown_serial) = (BTreeSet::new(), 0);
+        let (path, frame, recorded, flight) = (0, 0, None, None);
+        Self { scene, serial, paths, path, frame, view, unshown, shown_serial, recorded, flight }
     }
     /// The scene as the film knows it: where objects move, in the frame of the film. As it was loaded before
     /// there is a film.
@@ -97,7 +104,7 @@ impl<S: Space> Stage<S> {
     }
     /// What the pictures of the scene depend on; for caches.
     pub fn pose_key(&self) -> PoseKey {
-        (self.serial, self.posed().frame())
+        (self.serial, self.posed().frame(), self.shown_serial)
     }
     /// The path that is followed.
     pub fn views(&self) -> &[View<S>] {
@@ -263,6 +270,28 @@ impl<S: Space> SceneFacts for Scene<S> {
     }
 }
 
+/// A primitive at a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AtPixel {
+    /// Which.
+    pub prim: PrimId,
+    /// View depth there, world units.
+    pub depth: f32,
+    /// Whether one sees through it.
+    pub is_through: bool,
+}
+
+/// What hides a thing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HiddenBy {
+    /// A sentence or two; empty where the evidence names it already.
+    pub text: String,
+    /// The things that hide it, what hides most of it first, with their names.
+    pub by: Vec<(Subject, String)>,
+    /// Whether there are more than these.
+    pub is_part: bool,
+}
+
 /// A recorded film as panels read it that do not care about the space.
 #[derive(Clone, Copy)]
 pub struct Reading<'a> {
@@ -301,6 +330,15 @@ pub trait Staged {
     fn prims_below(&self, node: NodeId) -> usize;
     /// Smallest node that holds a primitive.
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId>;
+    /// Primitives at and below a node.
+    fn prims_of_node(&self, node: NodeId) -> Vec<PrimId>;
+    /// What hides primitives that are left out as hidden on the ground of the evidence that is event `at`;
+    /// `None` where the method cannot tell.
+    fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy>;
+    /// What covers the center of a pixel of the film's image, if nothing is culled, front to back.
+    fn layers_at(&self, pixel: [u32; 2]) -> Vec<AtPixel>;
+    /// Columns and rows of the film's image.
+    fn image_size(&self) -> Option<[u32; 2]>;
     /// Facts about a thing, by name.
     fn facts(&self, subject: Subject) -> Vec<(&'static str, String)>;
     /// Names and lengths of the view paths.
@@ -326,7 +364,7 @@ pub trait Staged {
     fn methods(&self) -> Vec<&'static Card>;
 }
 
-impl<S: Methods> Staged for Stage<S> {
+impl<S: Methods + Drawable> Staged for Stage<S> {
     fn scene(&self) -> &dyn SceneFacts {
         &*self.scene
     }
@@ -347,6 +385,18 @@ impl<S: Methods> Staged for Stage<S> {
     }
     fn prims_below(&self, node: NodeId) -> usize {
         self.hierarchy().map_or(0, |h| h.prims(node).len())
+    }
+    fn prims_of_node(&self, node: NodeId) -> Vec<PrimId> {
+        self.hierarchy().map_or(vec![], |h| h.prims(node).to_vec())
+    }
+    fn hidden_by(&self, at: usize, prims: &[PrimId]) -> Option<HiddenBy> {
+        self.hiders_of(at, prims)
+    }
+    fn layers_at(&self, pixel: [u32; 2]) -> Vec<AtPixel> {
+        self.covering(pixel)
+    }
+    fn image_size(&self) -> Option<[u32; 2]> {
+        self.recorded.as_ref().map(|r| [r.film.view().width, r.film.view().height])
     }
     fn leaf_of(&self, prim: PrimId) -> Option<NodeId> {
         let hierarchy = self.hierarchy()?;
@@ -437,7 +487,7 @@ fn degrees(radians: f32) -> String {
     (0..12).map(|decimals| format!("{exact:.decimals$}")).find(is_it).unwrap_or_else(|| exact.to_string())
 }
 
-impl<S: Methods> Stage<S> {
+impl<S: Methods + Drawable> Stage<S> {
     fn box_text(bounds: &Aabb<S::Vector>) -> String {
         format!("{} to {}", Self::vector(bounds.min), Self::vector(bounds.max))
     }

@@ -9,12 +9,15 @@ use super::camera::ObserverCamera;
 use super::findings::Findings;
 use super::making::Making;
 use super::measured::Measured;
+use super::objects::Listing;
 use super::outline::Outline;
+use super::pixel::PixelHistory;
 use super::plate::Export;
 use super::session::{Bookmark, Session};
 use super::shown::{Breakpoint, Detail, Dialog, Shown};
 use super::stage::{Reading, Staged};
 use super::undo::History;
+use super::why::Why;
 use super::worker::{Busy, FILM_CAP_EVENTS, Worker};
 use crate::culling::DEFAULT_METHOD;
 use crate::drawing::Subject;
@@ -43,6 +46,8 @@ pub enum Effect {
     FullScreen,
     /// Put every panel back.
     ResetLayout,
+    /// Bring the history of the pixel to the front.
+    ShowPixel,
     /// Put the cursor into the filter.
     FocusFilter,
     /// Close.
@@ -100,6 +105,12 @@ pub struct State {
     pub filter: String,
     /// Rows of the event tree.
     pub outline: Outline,
+    /// Why the selected thing ends as it does.
+    pub why: Why,
+    /// Which objects are listed.
+    pub listing: Listing,
+    /// The pixel that is looked into.
+    pub pixel: PixelHistory,
     /// The table that was measured last.
     pub measured: Option<Arc<Measured>>,
     /// What was found in the laboratory.
@@ -165,6 +176,9 @@ impl State {
             dialog: Dialog::None,
             filter: String::new(),
             outline: Outline::default(),
+            why: Why::default(),
+            listing: Listing::default(),
+            pixel: PixelHistory::default(),
             measured: None,
             findings: Findings::default(),
             notices: vec![],

@@ -152,7 +152,7 @@ impl Stage<Solid> {
         let only_fronts = !ask.is_eye && ask.shown.look_in == LookIn::Faces;
         let (mut solid, mut ghosts) = (Vec::new(), Vec::new());
         for &prim in scene.live() {
-            if only_fronts && scene.faces_away(prim, view.eye.position) {
+            if !self.shows(prim) || only_fronts && scene.faces_away(prim, view.eye.position) {
                 continue;
             }
             let role = role_of(recorded.stamps.prim(prim, ask.step));

@@ -11,6 +11,15 @@ use crate::raster::{
 };
 use crate::scene::{Progress, Scene};
 
+/// What hides a thing, as far as the method knows that left it out.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Hiders {
+    /// Occluders, each by a primitive of it; and how many there are, of which not all may be named.
+    Occluders(Vec<PrimId>, usize),
+    /// What had been drawn by then, with whose depths it was compared: the opaque ones of these primitives.
+    Drawn(Vec<PrimId>),
+}
+
 /// What a frame draws.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawList<S: Space> {
@@ -248,6 +257,11 @@ pub trait Shown<S: Space>: Method<S> {
     /// What has been drawn up to a step, of a method that stands something for primitives; `None` for one
     /// that draws primitives alone, of which verdicts tell.
     fn drawn(_: &Moment<'_, S, Self>) -> Option<DrawList<S>> {
+        None
+    }
+    /// What hides what is left out as hidden on the ground of `notes[at]`, of all notes of the frame; `None`
+    /// where the method cannot tell, or it is no primitive.
+    fn hiders(_: &Frame<'_, S, Self>, _notes: &[Self::Note], _at: usize) -> Option<Hiders> {
         None
     }
     /// Names of the method's pictures that are not of the world, such as of its image-space structures.

@@ -4,8 +4,8 @@ use std::any::Any;
 use std::sync::{Arc, Mutex, OnceLock};
 
 use super::{
-    Card, Claim, Compared, Context, Derived, DrawList, Event, Field, Frame, Knob, KnobValue, Method, Moment,
-    Note, Recorder, Shown, State, Verdict,
+    Card, Claim, Compared, Context, Derived, DrawList, Event, Field, Frame, Hiders, Knob, KnobValue, Method,
+    Moment, Note, Recorder, Shown, State, Verdict,
 };
 use crate::drawing::{Drawing, Subject};
 use crate::geometry::{NodeId, Space, View};
@@ -42,6 +42,9 @@ pub trait Reel: Send + Sync {
     /// The evidence that a step is about: what was just recorded, or the evidence of the decision just made.
     /// Queueing, leaving the node that was decided, and lines about the same change nothing about that.
     fn evidence_at(&self, step: usize) -> Option<usize>;
+    /// What hides what is left out as hidden on the ground of the evidence that is event `at`; `None` where
+    /// the method cannot tell.
+    fn hiders(&self, at: usize) -> Option<Hiders>;
     /// The kind and the operands of event `at`, for traces and the inspector.
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>);
     /// What event `at` did, in a sentence or two.
@@ -331,6 +334,12 @@ impl<S: Space, M: Shown<S>> Reel for Footage<S, M> {
             _ => true,
         };
         evidence.filter(goes_on)
+    }
+    fn hiders(&self, at: usize) -> Option<Hiders> {
+        match self.recorder.events[at] {
+            Event::Noted(i) => M::hiders(&self.frame(), &self.recorder.notes, i as usize),
+            _ => None,
+        }
     }
     fn fields(&self, at: usize) -> (&'static str, Vec<Field>) {
         let fields = match self.recorder.events[at] {

@@ -16,7 +16,7 @@ mod words;
 pub(crate) use card::line;
 pub use card::{Card, CodeLine, Departure, When, departs};
 pub(crate) use contract::keeps_nothing;
-pub use contract::{Derived, DrawList, Frame, Limit, Method, Moment, Shown, State};
+pub use contract::{Derived, DrawList, Frame, Hiders, Limit, Method, Moment, Shown, State};
 pub use event::{Event, Observer, Recorder, Tallied, Tally, Unobserved, Verdict};
 pub use film::{Film, Reel, notes};
 pub(crate) use knobs::surface_knobs;

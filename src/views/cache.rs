@@ -2,7 +2,7 @@
 //! holds. Each panel is given its own part.
 
 use super::handles::Hand;
-use super::{canvas, code, dialogs, events, pictures, space, strip, timeline};
+use super::{canvas, code, dialogs, events, objects, pictures, space, strip, timeline};
 use crate::app::Example;
 
 /// The parts, by the panels that keep them.
@@ -24,6 +24,8 @@ pub struct Cache {
     pub code: Option<code::Reached>,
     /// Of the event tree.
     pub scroll: events::Scroll,
+    /// Of the list of objects.
+    pub objects: objects::Kept,
     /// Of the dialogs.
     pub typing: dialogs::Typing,
     /// Of the start screen.

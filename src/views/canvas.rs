@@ -6,9 +6,9 @@ use glam::Vec2;
 
 use super::handles::{self, Hand, Handle};
 use super::{Answers, palette};
-use crate::app::{Command, Stage, State};
+use crate::app::{Command, PoseKey, Stage, State};
 use crate::drawing::{Drawing, Subject};
-use crate::figure::{self, Look, Sheet};
+use crate::figure::{Look, Sheet};
 use crate::geometry::{Either, Flat};
 use crate::render::screen;
 
@@ -16,7 +16,7 @@ use crate::render::screen;
 const AIM_PT: f32 = 54.0;
 
 /// The step's marks in the plane, and the film, step and look that they were drawn for.
-pub type World = ((u64, usize, Look), Drawing<Vec2>);
+pub type World = ((u64, PoseKey, usize, Look), Drawing<Vec2>);
 
 /// Shows flatland.
 pub fn show(
@@ -51,9 +51,9 @@ pub fn show(
     painter.rect_filled(rect, 0.0, palette::panel(state).canvas);
     if let Some(recorded) = &stage.recorded {
         let look = state.look();
-        let key = (recorded.serial, state.step, look);
+        let key = (recorded.serial, stage.pose_key(), state.step, look);
         if drawn.as_ref().is_none_or(|(k, _)| *k != key) {
-            *drawn = Some((key, figure::world(&*recorded.film, &recorded.stamps, state.step, &look)));
+            *drawn = stage.world(state.step, &look).map(|world| (key, world));
         }
         if let Some((_, world)) = drawn {
             let mut paper = Drawing { size_pt: Vec2::new(rect.width(), rect.height()), ..Drawing::default() };

@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::cache::Cache;
 use super::space::Tools;
-use super::{Answers, canvas, code, events, inspector, parameters, pictures, space, strip, timeline, why};
+use super::{
+    Answers, canvas, code, events, inspector, objects, parameters, pictures, pixel, space, strip, timeline,
+    why,
+};
 use crate::app::{Layout, State};
 use crate::geometry::Either;
 
@@ -31,6 +34,10 @@ pub enum Pane {
     Code,
     /// The method's own pictures.
     Pictures,
+    /// The objects of the scene.
+    Objects,
+    /// The history of a pixel.
+    Pixel,
 }
 
 impl Pane {
@@ -46,9 +53,11 @@ impl Pane {
             Self::Timeline => "Timeline",
             Self::Code => "Pseudocode",
             Self::Pictures => "Pictures",
+            Self::Objects => "Objects",
+            Self::Pixel => "Pixel",
         }
     }
-    const ALL: [Pane; 9] = [
+    const ALL: [Pane; 11] = [
         Self::Events,
         Self::Eye,
         Self::Observer,
@@ -58,6 +67,8 @@ impl Pane {
         Self::Timeline,
         Self::Code,
         Self::Pictures,
+        Self::Objects,
+        Self::Pixel,
     ];
 }
 
@@ -84,9 +95,11 @@ pub fn tree(layout: Layout) -> Tree<Pane> {
 }
 
 fn debug(tiles: &mut Tiles<Pane>) -> TileId {
-    let [events, eye, observer, why, inspector, parameters, timeline, code, own] =
+    let [events, eye, observer, why, inspector, parameters, timeline, code, own, objects, pixel] =
         Pane::ALL.map(|p| tiles.insert_pane(p));
     let eye = tiles.insert_tab_tile(vec![eye, own]);
+    let events = tiles.insert_tab_tile(vec![events, objects]);
+    let inspector = tiles.insert_tab_tile(vec![inspector, pixel]);
     let pictures = linear(tiles, LinearDir::Horizontal, &[(eye, 1.0), (observer, 1.25)]);
     let side = linear(tiles, LinearDir::Vertical, &[(why, 1.5), (inspector, 1.0), (parameters, 1.0)]);
     let below = linear(tiles, LinearDir::Horizontal, &[(timeline, 1.3), (code, 1.0)]);
@@ -113,6 +126,11 @@ pub fn is_sound(tree: &Tree<Pane>) -> bool {
     panes.len() == count
         && panes.contains(&Pane::Observer)
         && tree.root.is_some_and(|r| tree.tiles.get(r).is_some())
+}
+
+/// Brings a panel to the front of those in its place; returns whether the layout has it.
+pub fn bring(tree: &mut Tree<Pane>, pane: Pane) -> bool {
+    tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(other) if *other == pane))
 }
 
 /// The panel that stands where `pane` does: swapped views stand in each other's place.
@@ -160,6 +178,8 @@ impl egui_tiles::Behavior<Pane> for Dock<'_> {
             _ => {
                 egui::Frame::NONE.inner_margin(egui::Margin::symmetric(8, 4)).show(ui, |ui| match pane {
                     Pane::Events => events::show(state, &mut cache.scroll, ui, answers),
+                    Pane::Objects => objects::show(state, &mut cache.objects, ui, answers),
+                    Pane::Pixel => pixel::show(state, ui, answers),
                     Pane::Why => why::show(state, ui, answers),
                     Pane::Inspector => inspector::show(state, ui, answers),
                     Pane::Parameters => parameters::show(state, &mut cache.hand.gesture, ui, answers),

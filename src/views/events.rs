@@ -81,7 +81,8 @@ fn search(state: &State, scroll: &mut Scroll, ui: &mut egui::Ui, answers: &mut A
             .desired_width(room);
         let response = ui.add(edit).on_hover_text(
             "Words that must hold, or must not after a “-”:\nkind:node  verdict:outside  node:5  prim:7  \
-             under:12  under:door  line:visible:3  depth>4",
+             under:12  under:door  \
+             under:\"garage door\"  object:3  line:visible:3  depth>4",
         );
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter events"));
         if std::mem::take(&mut scroll.focus_filter) {

@@ -7,6 +7,7 @@ use eframe::egui::{self, CursorIcon, Pos2, Response, Stroke};
 use super::palette;
 use crate::app::{Gesture, State};
 use crate::drawing::Role;
+use crate::geometry::PrimId;
 
 /// A part of the Eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub struct Hand {
     pub is_picture_focused: bool,
     /// Width over height of the Observer's picture.
     pub aspect: f32,
+    /// The pixel of the Eye's picture whose menu is open, and what is drawn there.
+    pub menu_of: Option<([u32; 2], Option<PrimId>)>,
 }
 
 /// How near the pointer must come.

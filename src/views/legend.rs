@@ -4,7 +4,8 @@
 use eframe::egui::{self, Sense, vec2};
 use glam::Vec2;
 
-use crate::app::State;
+use super::Answers;
+use crate::app::{Action, State};
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
 use crate::figure::role_of;
 use crate::geometry::Either;
@@ -31,7 +32,7 @@ pub fn verdict_mark(state: &State, ui: &mut egui::Ui, verdict: Verdict) {
 }
 
 /// The legend in one wrapping line: the states that this film has, then the marks of the moment.
-pub fn show(state: &State, ui: &mut egui::Ui) {
+pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for (role, text) in state.legend() {
@@ -44,5 +45,8 @@ pub fn show(state: &State, ui: &mut egui::Ui) {
         }
         let unit = if matches!(state.stage, Some(Either::Flat(_))) { "segments" } else { "triangles" };
         ui.weak(format!("(counts in {unit})"));
+        if state.unshown_words().is_some() && ui.link("Show all objects").clicked() {
+            answers.push(Action::ShowObjects.into());
+        }
     });
 }

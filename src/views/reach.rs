@@ -111,7 +111,7 @@ impl Outside<'_> {
         let Some(at) = clicked else { return };
         self.response.request_focus();
         let (origin, direction) = ray(self.view, self.response.rect, at);
-        let hit = figure::pick(self.stage.posed(), origin, direction, |_| true);
+        let hit = figure::pick(self.stage.posed(), origin, direction, |p| self.stage.shows(p));
         if self.response.double_clicked() {
             match hit {
                 // The point under the cursor becomes what the Observer turns around.
@@ -165,16 +165,28 @@ pub fn look_around(
     rect: Rect,
     answers: &mut Answers,
 ) {
-    if let Some(at) = response.interact_pointer_pos().filter(|p| response.clicked() && rect.contains(*p)) {
-        response.request_focus();
+    let hit = |at: Pos2| {
         let (origin, direction) = ray(&stage.view, rect, at);
         let drawn = |p| {
             let known = stage.recorded.as_ref().map_or(Known::Unseen, |r| r.stamps.prim(p, state.step));
-            matches!(known, Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial))
+            stage.shows(p)
+                && matches!(
+                    known,
+                    Known::Unseen | Known::Open | Known::Decided(Verdict::Visible | Verdict::Partial)
+                )
         };
-        let hit = figure::pick(stage.posed(), origin, direction, drawn);
-        answers.push(Command::Select(hit.map_or(Subject::None, |(p, _)| Subject::Prim(p))));
+        figure::pick(stage.posed(), origin, direction, drawn).map(|(prim, _)| prim)
+    };
+    if let Some(at) = response.interact_pointer_pos().filter(|p| response.clicked() && rect.contains(*p)) {
+        response.request_focus();
+        answers.push(Command::Select(hit(at).map_or(Subject::None, Subject::Prim)));
     }
+    let under = |at: Pos2| {
+        let [x, y] = [(at.x - rect.left()) / rect.width(), (at.y - rect.top()) / rect.height()];
+        let pixel = [x * stage.view.width as f32, y * stage.view.height as f32].map(|n| n as u32);
+        rect.contains(at).then(|| (pixel, hit(at)))
+    };
+    super::pixel::interact(state, hand, ui, response, under, answers);
     hand.is_flying |= response.has_focus();
     let mut view = stage.view;
     let eye = &mut view.eye;

@@ -170,7 +170,7 @@ fn upload(state: &State, stage: &Stage<Solid>, now: &mut Uploaded, gpu: &RenderS
     let Some(layer) = resources.get_mut::<SpaceLayer>() else { return };
     if now.scene != stage.pose_key() {
         *now = Uploaded { scene: stage.pose_key(), ..Uploaded::default() };
-        layer.set_scene(&gpu.device, stage.posed());
+        layer.set_scene(&gpu.device, stage.posed(), stage.shown_prims());
     }
     let Some(recorded) = &stage.recorded else { return };
     if now.film != recorded.serial {

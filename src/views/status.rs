@@ -13,7 +13,7 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     if state.staged().is_none() {
         return;
     }
-    legend::show(state, ui);
+    legend::show(state, ui, answers);
     ui.separator();
     ui.horizontal(|ui| {
         if let Some(busy) = state.busy() {

@@ -83,6 +83,13 @@ pub fn show(
         colors.faint,
     );
     super::space::changed_depths(state, stage, ui, layout(rect).0);
+    let column = |x: f32| ((x - rect.left()) / per_column.max(1e-6)) as usize;
+    let under = |at: egui::Pos2| {
+        let shown = image.get(column(at.x))?;
+        let nearest = shown.opaque.or(shown.through.last().copied()).map(|(prim, _)| prim);
+        Some(([column(at.x) as u32, 0], nearest))
+    };
+    super::pixel::interact(state, hand, ui, &response, under, answers);
     interact(stage, image, per_column, &response, answers);
     super::canvas::focus_ring(state, ui, &response);
 }

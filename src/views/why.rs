@@ -3,9 +3,9 @@
 use eframe::egui::{self, RichText, ScrollArea};
 
 use super::Answers;
-use crate::app::{Action, Because, Command, State, why};
+use crate::app::{Action, Because, Command, Filter, State};
 use crate::drawing::Subject;
-use crate::drawing::words::capitalized;
+use crate::drawing::words::{capitalized, count};
 
 /// A thing by its name.
 pub fn subject_name(state: &State, subject: Subject) -> String {
@@ -24,6 +24,10 @@ pub fn subject_name(state: &State, subject: Subject) -> String {
 /// Shows the explanation.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
     let Some(stage) = state.staged() else { return };
+    if state.selection != Subject::None {
+        let ground = egui::Frame::NONE.inner_margin(egui::Margin { top: 4, ..egui::Margin::ZERO });
+        egui::Panel::bottom("why-actions").frame(ground).show(ui, |ui| actions(state, ui, answers));
+    }
     ScrollArea::vertical().auto_shrink(false).id_salt("why").show(ui, |ui| {
         if state.selection == Subject::None {
             ui.label("Nothing is selected.");
@@ -49,19 +53,31 @@ pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
                 }
             }
         });
-        for because in why(stage, state.selection, state.step) {
-            reason(state, &because, ui, answers);
+        if let Some(known) = state.why.standing(stage, state.step) {
+            ui.label(known.text);
+            ui.add_space(4.0);
         }
-        ui.horizontal_wrapped(|ui| {
-            super::action_button(state, ui, Action::PreviousOnSelected, "‹ about it", answers);
-            super::action_button(state, ui, Action::NextOnSelected, "about it ›", answers);
-            if matches!(state.selection, Subject::Node(_) | Subject::Prim(_)) {
-                super::action_button(state, ui, Action::SelectParent, "Node above", answers);
+        for because in state.why.reasons() {
+            reason(state, because, ui, answers);
+        }
+    });
+}
+
+/// What can be done about the selected thing; it stays in sight while the reasons are scrolled.
+fn actions(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
+    ui.horizontal_wrapped(|ui| {
+        super::action_button(state, ui, Action::PreviousOnSelected, "‹", answers);
+        super::action_button(state, ui, Action::NextOnSelected, "›", answers);
+        if matches!(state.selection, Subject::Node(_) | Subject::Prim(_)) {
+            super::action_button(state, ui, Action::SelectParent, "Above", answers);
+        }
+        if let Some(filter) = Filter::about(state.selection) {
+            super::action_button(state, ui, Action::Breakpoint, "Break", answers);
+            let button = ui.button("Filter").on_hover_text("List only what happens to it");
+            if button.clicked() {
+                answers.push(Command::Filter(filter));
             }
-            if matches!(state.selection, Subject::Node(_) | Subject::Prim(_) | Subject::Object(_)) {
-                super::action_button(state, ui, Action::Breakpoint, "Breakpoint", answers);
-            }
-        });
+        }
     });
 }
 
@@ -75,21 +91,21 @@ fn reason(state: &State, because: &Because, ui: &mut egui::Ui, answers: &mut Ans
         text = text.weak();
     }
     ui.label(text);
-    if because.step.is_some() || because.by.is_some() {
+    if because.step.is_some() || !because.by.is_empty() {
         ui.horizontal_wrapped(|ui| {
             match because.step {
                 Some(_) if is_here => {
                     ui.weak("This is the present step.");
                 }
-                Some(step) if ui.link(format!("Go to step {step}")).clicked() => {
+                Some(step) if ui.link(format!("Go to step {}", count(step))).clicked() => {
                     answers.push(Command::GoTo(step));
                 }
                 _ => {}
             }
-            if let Some((subject, name)) = &because.by
-                && ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked()
-            {
-                answers.push(Command::Select(*subject));
+            for (subject, name) in &because.by {
+                if ui.link(format!("Select {name}")).on_hover_text("What hides it").clicked() {
+                    answers.push(Command::Select(*subject));
+                }
             }
         });
     }

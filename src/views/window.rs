@@ -31,7 +31,7 @@ pub struct App {
 /// Frames without work before a screenshot is taken.
 const QUIET_FRAMES: u32 = 8;
 /// Keys in eframe's storage.
-const LAYOUT: &str = "layout-1";
+const LAYOUT: &str = "layout-2";
 const SESSION: &str = "session-1";
 
 impl App {
@@ -137,6 +137,13 @@ impl App {
                     ctx.send_viewport_cmd(ViewportCommand::Fullscreen(self.is_fullscreen));
                 }
                 Effect::ResetLayout => self.tree = dock::tree(self.state.shown.layout),
+                Effect::ShowPixel => {
+                    // A layout without the list has at least its first sentence.
+                    let said = self.state.staged().and_then(|stage| self.state.pixel.said(stage));
+                    if !dock::bring(&mut self.tree, Pane::Pixel) {
+                        said.into_iter().for_each(|said| self.state.tell(said));
+                    }
+                }
                 Effect::FocusFilter => self.cache.scroll.focus_filter = true,
                 Effect::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
             }

@@ -449,6 +449,17 @@ pub fn sight_lines<S: Faces>(
     label(to, at(pixels.x1, pixels.y1, near), format!("nearest {}", short(near)));
 }
 
+impl<S: Faces> DepthNote<S> {
+    /// The primitive that was drawn, if one was.
+    pub fn drawn(&self) -> Option<PrimId> {
+        if let Self::Rasterized(Rasterized { prim, is_hidden: false, .. }) = self {
+            Some(*prim)
+        } else {
+            None
+        }
+    }
+}
+
 impl<S: Faces> Answered<S> {
     fn draw(&self, view: &View<S>, to: &mut Drawing<S::Vector>) {
         to.bounds(Layer::Emphasis, Role::Current, Subject::Node(self.node), &self.bounds);

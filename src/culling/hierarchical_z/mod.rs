@@ -31,10 +31,10 @@ use self::index::CubeIndex;
 use self::walk::{Scratch, Walk};
 use super::cubes::Cubes;
 use super::depth::picture::probe;
-use super::depth::{Faces, Tiled};
+use super::depth::{DepthNote, Faces, Tiled};
 use crate::drawing::Drawing;
 use crate::method::{
-    Card, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
+    Card, DrawList, Event, Frame, Hiders, Knob, Knobs, Method, Moment, Observer, Shown, State, keeps_nothing,
     surface_knobs, words,
 };
 use crate::raster::DepthScale;
@@ -236,6 +236,15 @@ impl<S: Faces> State<S, HierarchicalZ> for Tiled<S> {
 }
 
 impl<S: Faces> Shown<S> for HierarchicalZ {
+    fn hiders(_: &Frame<'_, S, Self>, notes: &[Self::Note], at: usize) -> Option<Hiders> {
+        // What a cube holds is drawn at once, and each primitive of it is reported after that.
+        let is_of_cube = |note: &&Evidence<S>| {
+            matches!(note, Evidence::Facing(_) | Evidence::Depth(DepthNote::Rasterized(_)))
+        };
+        let until = at + notes[at..].iter().take_while(is_of_cube).count();
+        let drawn = notes[..until].iter().filter_map(|note| note.depth()?.drawn());
+        Some(Hiders::Drawn(drawn.collect()))
+    }
     fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
         if let Some(note) = moment.note {
             note.draw(moment.frame.scene, moment.frame.view, to);

@@ -9,9 +9,9 @@ use super::relation::{Classified, Decisive, EdgeTest, EyeSide, Margin, Occlusion
 use super::space::{Point, Shape, corner};
 use crate::drawing::words::capitalized;
 use crate::drawing::{Drawing, Layer, Mark, Role, Subject};
-use crate::geometry::{Aabb, NodeId, PrimId, Vector, View};
+use crate::geometry::{Aabb, NodeId, ObjectId, PrimId, Vector, View};
 use crate::method::evidence::{Facing, Tested, integer, label, number, outline as prim_outline, short};
-use crate::method::{Claim, Compared, Context, Field, Frame, Note, Tallied, Tally, Value};
+use crate::method::{Claim, Compared, Context, Field, Frame, Hiders, Note, Tallied, Tally, Value};
 
 /// What the method records.
 #[derive(Clone, Copy, Debug)]
@@ -114,9 +114,9 @@ impl Edge {
             Some(_) => "between",
         }
     }
-    fn sentence<S: Shape>(&self) -> String {
+    fn sentence<S: Shape>(&self, context: &Context<'_, S>) -> String {
         let plane = plane_word::<S>();
-        let who = owner_name(self.owner);
+        let who = owner_name(context, self.owner);
         let head = format!(
             "{} {} of {} of the occluder of {} {}",
             if S::Vector::AXES == 2 { "End" } else { "Edge" },
@@ -238,7 +238,7 @@ impl Related {
     }
 
     fn sentence<S: Shape>(&self, context: &Context<'_, S>) -> String {
-        let (who, by) = (owner_name(self.owner), occluder_name(context, self.name));
+        let (who, by) = (owner_name(context, self.owner), occluder_name(context, self.name));
         let kept = if self.reused { " The planes were kept from an earlier frame." } else { "" };
         let plane = plane_word::<S>();
         let why = match self.reason {
@@ -401,10 +401,30 @@ fn occluder_name<S: Shape>(context: &Context<'_, S>, prim: PrimId) -> String {
     format!("the occluder of {} {prim}{of}", S::PRIM)
 }
 
-fn owner_name(owner: Owner) -> String {
+fn owner_name<S: Shape>(context: &Context<'_, S>, owner: Owner) -> String {
+    let object = |o: ObjectId| context.scene.objects().get(o.at()).map_or("", |object| &object.name);
     match owner {
         Owner::Node(n) => format!("node {n}"),
-        Owner::Object(o) => format!("object {o}"),
+        Owner::Object(o) => format!("object {o} {}", object(o)).trim_end().to_owned(),
+    }
+}
+
+/// What hides what a note says is hidden: the occluder, or those that do so together.
+pub fn hiders<S: Shape>(notes: &[Evidence<S>], at: usize) -> Option<Hiders> {
+    match &notes[at] {
+        Evidence::Related(n) if n.occlusion == Occlusion::Full => Some(Hiders::Occluders(vec![n.name], 1)),
+        Evidence::Joined(joined) => {
+            // Occluders are named where they were chosen, before all tests.
+            let name = |member: &u32| {
+                notes.iter().find_map(|note| match note {
+                    Evidence::Chosen(chosen) if chosen.occluder == *member => Some(chosen.name),
+                    _ => None,
+                })
+            };
+            let named = joined.members().iter().filter_map(name).collect();
+            Some(Hiders::Occluders(named, joined.count as usize))
+        }
+        _ => None,
     }
 }
 
@@ -560,13 +580,13 @@ impl<S: Shape> Note<S> for Evidence<S> {
                 if n.new { "; it was not in the frame before" } else { "" }
             ),
             Self::Tested(n) => n.sentence(context),
-            Self::Edge(n) => n.sentence::<S>(),
+            Self::Edge(n) => n.sentence(context),
             Self::Related(n) => n.sentence(context),
             Self::Joined(n) => format!(
                 "{} occluders hide {} together: the eye is inside all their supporting {}s but those through \
                  edges that two of them share from opposite sides ({} in all).",
                 n.count,
-                owner_name(n.owner),
+                owner_name(context, n.owner),
                 plane_word::<S>(),
                 n.shared
             ),

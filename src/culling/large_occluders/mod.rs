@@ -43,8 +43,8 @@ use self::space::Shape;
 use self::walk::Walk;
 use crate::drawing::Drawing;
 use crate::method::{
-    Card, CodeLine, Departure, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
-    When, surface_knobs,
+    Card, CodeLine, Departure, DrawList, Event, Frame, Hiders, Knob, Knobs, Method, Moment, Observer, Shown,
+    State, When, surface_knobs,
 };
 use crate::scene::{Progress, Scene, Surfaces};
 
@@ -401,6 +401,9 @@ impl<S: Shape> State<S, LargeOccluders> for Active {
 }
 
 impl<S: Shape> Shown<S> for LargeOccluders {
+    fn hiders(_: &Frame<'_, S, Self>, notes: &[Self::Note], at: usize) -> Option<Hiders> {
+        explain::hiders(notes, at)
+    }
     fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
         explain::draw(&moment.state.0, &moment.frame, moment.note, to);
     }

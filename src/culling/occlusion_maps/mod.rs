@@ -49,7 +49,7 @@ use super::depth::Faces;
 use crate::drawing::Drawing;
 use crate::geometry::Space;
 use crate::method::{
-    Card, Derived, DrawList, Event, Frame, Knob, Knobs, Method, Moment, Observer, Shown, State,
+    Card, Derived, DrawList, Event, Frame, Hiders, Knob, Knobs, Method, Moment, Observer, Shown, State,
     surface_knobs, words,
 };
 use crate::raster::{DepthScale, Opacity};
@@ -380,6 +380,18 @@ impl<S: Faces> State<S, OcclusionMaps> for Maps<S> {
 }
 
 impl<S: Faces> Shown<S> for OcclusionMaps {
+    fn hiders(frame: &Frame<'_, S, Self>, notes: &[Self::Note], at: usize) -> Option<Hiders> {
+        let (mut drawn, prims) = (Vec::new(), |leaf| frame.index.tree().prims_below(leaf));
+        for note in &notes[..at] {
+            match note {
+                Evidence::Covered(c) if c.drawn == c.node => drawn.extend_from_slice(prims(c.node)),
+                // What stands in for an occluder is not of the scene, and a plane cuts occluders.
+                Evidence::Covered(_) | Evidence::Plane(_) => return None,
+                _ => {}
+            }
+        }
+        Some(Hiders::Drawn(drawn))
+    }
     fn explain(moment: &Moment<'_, S, Self>, to: &mut Drawing<S::Vector>) {
         picture::explain(moment, to);
     }

@@ -80,6 +80,8 @@ struct Marks {
 pub struct SpaceLayer {
     pipelines: Pipelines,
     scene: Option<Arc<Scene<Solid>>>,
+    /// The triangles that are shown.
+    prims: Vec<PrimId>,
     objects: Vec<Aabb<Vec3>>,
     chunks: Vec<Chunk>,
     nodes: Nodes,
@@ -95,6 +97,7 @@ impl SpaceLayer {
         Self {
             pipelines: Pipelines::new(device, blit_format),
             scene: None,
+            prims: Vec::new(),
             objects: Vec::new(),
             chunks: Vec::new(),
             nodes: Nodes::default(),
@@ -104,11 +107,13 @@ impl SpaceLayer {
         }
     }
 
-    /// Uploads a scene and forgets the film and marks of the last one. Once a scene.
-    pub fn set_scene(&mut self, device: &wgpu::Device, scene: &Arc<Scene<Solid>>) {
+    /// Uploads those triangles of a scene that are shown, and forgets the film and marks of the last one.
+    /// Once a scene.
+    pub fn set_scene(&mut self, device: &wgpu::Device, scene: &Arc<Scene<Solid>>, prims: Vec<PrimId>) {
         let inner = pack::inner_sides(scene);
         self.chunks.clear();
-        for prims in scene.live().chunks(CHUNK) {
+        self.prims = prims;
+        for prims in self.prims.chunks(CHUNK) {
             let upload = |label, contents: &[u8]| {
                 let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
                 device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -141,10 +146,10 @@ impl SpaceLayer {
         hierarchy: &dyn Hierarchy<Solid>,
         wrong: &[PrimId],
     ) {
-        let Some(scene) = self.scene.as_ref().filter(|s| s.prim_count() == stamps.prims().len()) else {
+        if self.scene.as_ref().is_none_or(|s| s.prim_count() != stamps.prims().len()) {
             return;
-        };
-        for (chunk, prims) in self.chunks.iter_mut().zip(scene.live().chunks(CHUNK)) {
+        }
+        for (chunk, prims) in self.chunks.iter_mut().zip(self.prims.chunks(CHUNK)) {
             let words = pack::stamps(prims, Some(stamps), wrong);
             queue.write_buffer(&chunk.stamps, 0, bytemuck::cast_slice(&words));
             let (order, indices) = Order::of(&words);
