@@ -654,7 +654,7 @@ fn a_figure_has_the_picture_of_the_screen() {
             }
             let share = unlike(&screen, &figure.rgba, size);
             eprintln!("{scene}, step {step}: {share}");
-            assert!(share < 0.03, "{scene}, step {step}: {share} of the squares differ");
+            assert!(share < 0.01, "{scene}, step {step}: {share} of the squares differ");
             // Another step is another picture, so that this is no accident.
             if let Some(before) = before.replace(screen) {
                 assert!(unlike(&before, &figure.rgba, size) > share, "{scene}, step {step}");

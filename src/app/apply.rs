@@ -44,6 +44,7 @@ impl State {
             Command::Observe(camera) => self.observe(camera),
             Command::List(listing) => self.listing = listing,
             Command::FlipShown(object) => self.flip_shown(object),
+            Command::ShowWithout(objects) => self.show_without(objects),
             Command::Pixel(at) => self.look_into(at),
             Command::Filter(text) => self.filter = text,
             Command::Fold(at) => self.outline.toggle(at),

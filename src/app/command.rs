@@ -1,6 +1,8 @@
 //! Everything that the explorer can do. An [`Action`] is menu item, palette entry, shortcut,
 //! tooltip and test name at once; a [`Command`] is an action or something with operands.
 
+use std::collections::BTreeSet;
+
 use super::any::AnyView;
 use super::camera::ObserverCamera;
 use super::findings::Laboratory;
@@ -269,6 +271,8 @@ pub enum Command {
     List(Listing),
     /// Shows an object no longer, or again.
     FlipShown(ObjectId),
+    /// Shows all objects but these.
+    ShowWithout(BTreeSet<ObjectId>),
     /// Looks into a pixel of the Eye's image, by column and row; or into none.
     Pixel(Option<[u32; 2]>),
     /// Shows a picture of the method, by its word.
@@ -345,7 +349,6 @@ pub fn fuzzy(typed: &str, title: &str) -> Option<i32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     #[test]
     fn every_action_has_a_name_of_its_own_and_no_key_is_taken_twice() {

@@ -276,9 +276,8 @@ impl State {
 
     /// How a figure is made, for its file.
     fn made(&self, export: &Export, format: Format, file: &str) -> Made {
-        let folder = Path::new(file).parent().unwrap_or(Path::new(""));
         Made {
-            command: self.command(export, format, folder),
+            command: self.command(export, format, Path::new(file)),
             picture: self.picture_words(export),
             steps: export.steps.map(|steps| steps.to_string()),
             form: export.steps.map(|_| export.form.word().into()),

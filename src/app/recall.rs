@@ -1,5 +1,6 @@
 //! Starting with what the command line names or what was open last, and saving it.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::any::ViewRecord;
@@ -14,7 +15,7 @@ use super::shown::{Breakpoint, Detail, Dialog, Layout, LookIn, Shown, Surface, T
 use super::start::Start;
 use super::state::{Notice, State};
 use crate::drawing::Subject;
-use crate::geometry::{NodeId, ObjectId, PrimId};
+use crate::geometry::{NodeId, ObjectId, PrimId, each};
 use crate::method::Settings;
 use crate::raster::DepthScale;
 use crate::trace::Counts;
@@ -32,6 +33,7 @@ impl State {
     /// What is open, as a session.
     pub fn session(&self) -> Session {
         let stage = self.staged();
+        let path = stage.and_then(|s| s.brought_path());
         let s = &self.shown;
         Session {
             cullscope_session: VERSION,
@@ -39,8 +41,11 @@ impl State {
             scene_hash: stage.map_or(String::new(), |s| s.scene().hash_hex()),
             method: self.method.clone(),
             settings: self.settings.0.clone(),
-            place: stage.map_or((0, 0), |s| s.place()),
-            // Also where it was not moved: its path may be a flight, or a file that is not named here.
+            place: match (&path, stage.map_or((0, 0), |s| s.place())) {
+                (Some(_), (_, frame)) => (0, frame),
+                (None, place) => place,
+            },
+            path,
             eye: self.stage.as_ref().map(|s| ViewRecord::from(&s.view())),
             step: self.step,
             coarse: self.detail == Detail::Coarse,
@@ -170,6 +175,9 @@ impl State {
             self.method = session.method.clone();
             self.settings = Settings(session.settings.clone());
         }
+        if let Some(Err(why)) = session.path.as_ref().map(|text| each!(stage, s => s.bring(text))) {
+            self.notices.push(Notice { is_error: true, text: why.to_string() });
+        }
         stage.go(session.place.0, session.place.1);
         if let Some(view) = session.eye.as_ref().and_then(|v| v.any()) {
             stage.set_view(&view);
@@ -292,12 +300,40 @@ pub(super) fn spoken_command(text: &str) -> Option<Command> {
             ("object", n) => Command::Select(Subject::Object(ObjectId(n.parse().ok()?))),
             _ => return None,
         },
+        "hide" => Command::ShowWithout(spoken_numbers(value)?.into_iter().map(ObjectId).collect()),
         "observe" => Command::Observe(ObserverCamera::parse(value)?),
         "picture" => Command::Picture(value.to_owned()),
         "depths" => Command::Depths(DepthScale::ALL.into_iter().find(|s| s.name() == value)?),
         _ => return None,
     })
 }
+
+/// Numbers and ranges of them, such as `1,4-9`, as `hide` takes them.
+fn spoken_numbers(text: &str) -> Option<BTreeSet<u32>> {
+    let mut all = BTreeSet::new();
+    for part in text.split(',') {
+        let (from, to) = part.split_once('-').unwrap_or((part, part));
+        let (from, to) = (from.parse::<u32>().ok()?, to.parse::<u32>().ok()?);
+        all.extend((from <= to && to - from < MOST_HIDDEN).then_some(from..=to)?);
+    }
+    Some(all)
+}
+
+/// The same in words.
+pub(super) fn numbers_spoken(numbers: impl IntoIterator<Item = u32>) -> String {
+    let mut ranges: Vec<(u32, u32)> = Vec::new();
+    for n in numbers {
+        match ranges.last_mut() {
+            Some((_, to)) if *to + 1 == n => *to = n,
+            _ => ranges.push((n, n)),
+        }
+    }
+    let word = |(from, to): &(u32, u32)| if from == to { format!("{from}") } else { format!("{from}-{to}") };
+    ranges.iter().map(word).collect::<Vec<_>>().join(",")
+}
+
+/// Numbers in a range of `hide`, at most.
+const MOST_HIDDEN: u32 = 1 << 24;
 
 /// A thing as `select` takes it.
 pub(super) fn spoken_subject(subject: Subject) -> Option<String> {

@@ -6,7 +6,7 @@ use super::camera::ObserverCamera;
 use super::command::Action;
 use super::open::named_from;
 use super::plate::{Export, Form, Picture};
-use super::recall::spoken_subject;
+use super::recall::{numbers_spoken, spoken_subject};
 use super::shown::{LookIn, Surface};
 use super::state::State;
 use crate::drawing::Subject;
@@ -14,9 +14,15 @@ use crate::raster::DepthScale;
 use crate::render::Format;
 
 impl State {
-    /// The command line that makes a figure again in this folder.
-    pub(super) fn command(&self, export: &Export, format: Format, folder: &Path) -> String {
+    /// The command line that makes a figure's file again in its folder: where its views came from elsewhere,
+    /// from itself.
+    pub(super) fn command(&self, export: &Export, format: Format, file: &Path) -> String {
         let Some(stage) = self.staged() else { return String::new() };
+        let folder = file.parent().unwrap_or(Path::new(""));
+        if !stage.is_path_of_scene() {
+            let name = file.file_name().unwrap_or_default().to_string_lossy();
+            return format!("cullscope figure --scene {} --format {}", quoted(&name), format.name());
+        }
         let scene = named_from(stage.scene().source(), Some(folder));
         let mut words: Vec<String> = ["cullscope", "figure", "--scene"].map(String::from).to_vec();
         words.extend([quoted(&scene), "--method".into(), self.method.clone()]);
@@ -24,15 +30,14 @@ impl State {
             words.extend(["--set".into(), quoted(&format!("{name}={value}"))]);
         }
         let (path, frame) = stage.place();
-        let is_own = stage.is_path_of_scene();
-        for spoken in (is_own && (path, frame) != (0, 0))
+        for spoken in ((path, frame) != (0, 0))
             .then(|| format!("frame:{path}:{frame}"))
             .into_iter()
             .chain(self.spoken_look(export))
         {
             words.extend(["--do".into(), spoken]);
         }
-        if !is_own || stage.is_eye_moved() {
+        if stage.is_eye_moved() {
             words.push(stage.eye_text());
         }
         words.extend(match export.steps {
@@ -82,6 +87,10 @@ impl State {
             Subject::Eye => Some(Action::SelectEye.info().name.to_owned()),
             subject => spoken_subject(subject).map(|thing| format!("select:{thing}")),
         });
+        let hidden = self.unshown();
+        if !hidden.is_empty() {
+            spoken.push(format!("hide:{}", numbers_spoken(hidden.into_iter().map(|object| object.0))));
+        }
         if self.depths != DepthScale::default() {
             spoken.push(format!("depths:{}", self.depths.name()));
         }

@@ -127,6 +127,9 @@ pub struct Session {
     /// View path and view in it.
     #[serde(default)]
     pub place: (usize, usize),
+    /// The path that is followed, as a view file, if it did not come with the scene; it is then the first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<String>,
     /// The Eye.
     #[serde(default)]
     pub eye: Option<ViewRecord>,

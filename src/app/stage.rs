@@ -15,7 +15,7 @@ use crate::geometry::{Aabb, Eye, NodeId, ObjectId, PrimId, Space, Vector, View, 
 use crate::index::Hierarchy;
 use crate::method::{Card, Film, Reel, settings_for};
 use crate::raster::Drawable;
-use crate::scene::{Report, Scene, framing_view, motion_path, write_views};
+use crate::scene::{Report, Scene, SceneError, framing_view, motion_path, parse_views, write_views};
 use crate::trace::{Moves, Stamps};
 use crate::truth::Judgement;
 
@@ -124,6 +124,15 @@ impl<S: Space> Stage<S> {
         let is_far = reach(at) <= base.far.max(reach(base.position));
         view.eye.far = if is_far { base.far } else { reach(at) * 1.1 };
         view
+    }
+    /// Adds a path as the first, from a view file.
+    ///
+    /// # Errors
+    /// If the text is none.
+    pub fn bring(&mut self, text: &str) -> Result<(), SceneError> {
+        let path = parse_views(text.as_bytes(), "views of the session", self.scene.origin())?;
+        self.paths.insert(0, path);
+        Ok(())
     }
     /// Goes to a view of a path; out of range is clamped.
     pub fn go(&mut self, path: usize, frame: usize) {
@@ -358,6 +367,8 @@ pub trait Staged {
     /// Whether the path that is followed is the scene's, with the same number that it has there: then the
     /// place names the view.
     fn is_path_of_scene(&self) -> bool;
+    /// The path that is followed as a view file, if it did not come with the scene.
+    fn brought_path(&self) -> Option<String>;
     /// Parameters of the film that are not by default, as the command line takes them.
     fn changed(&self) -> Vec<(&'static str, String)>;
     /// Every method of the space.
@@ -447,6 +458,9 @@ impl<S: Methods + Drawable> Staged for Stage<S> {
     fn is_path_of_scene(&self) -> bool {
         let own = Self::new(self.scene.clone(), None, 0).paths;
         own.get(self.path).is_some_and(|path| path.views == self.paths[self.path].views)
+    }
+    fn brought_path(&self) -> Option<String> {
+        (!self.is_path_of_scene()).then(|| write_views(&self.paths[self.path], self.scene.origin()))
     }
     fn changed(&self) -> Vec<(&'static str, String)> {
         let Some(film) = self.recorded.as_ref().map(|r| &r.film) else { return vec![] };

@@ -1,5 +1,5 @@
-//! The flatland twin of a view of space: what the level plane through the Eye cuts of the scene, culled by the
-//! same method from the same place.
+//! The flatland twin of a view of space: what the level plane through the Eye cuts of the scene, culled by
+//! the same method from the same place.
 
 use std::sync::Arc;
 

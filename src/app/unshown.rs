@@ -62,6 +62,8 @@ impl State {
     /// Shows all objects but these.
     pub(super) fn show_without(&mut self, unshown: BTreeSet<ObjectId>) {
         if let Some(stage) = &mut self.stage {
+            let count = stage.get().scene().object_count();
+            let unshown = unshown.into_iter().filter(|object| object.at() < count).collect();
             each!(stage, s => s.show_without(unshown));
         }
     }

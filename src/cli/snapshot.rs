@@ -65,8 +65,8 @@ pub(super) struct Shot {
     /// After the first event that passes a filter of the explorer, such as `verdict:hidden under:12`
     #[arg(long = "where", value_name = "FILTER", group = "moment", requires = "scene")]
     filter: Option<String>,
-    /// observer, eye, pseudocode, flatland-twin (of space: the level plane through the Eye, culled the same way),
-    /// a picture of the method by name, or all; several with commas
+    /// observer, eye, pseudocode, flatland-twin (of space: the level plane through the Eye, culled the same
+    /// way), a picture of the method by name, or all; several with commas
     /// [default: observer]
     #[arg(long, value_name = "NAME", value_delimiter = ',', requires = "scene")]
     picture: Vec<String>,

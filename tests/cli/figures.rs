@@ -1,11 +1,11 @@
 //! Figures of one's own: what the explorer shows of a step, as files of the real program.
 
-use std::fs;
 use std::path::Path;
+use std::{fs, process};
 
 use cullscope::app::{Action, Command, Export, Picture, State};
 use cullscope::drawing::Subject;
-use cullscope::geometry::PrimId;
+use cullscope::geometry::{ObjectId, PrimId};
 use cullscope::render::{Format, recipe};
 use serde_json::Value as Json;
 
@@ -109,6 +109,7 @@ fn the_window_writes_what_the_command_writes() {
         state.apply(Command::Select(Subject::Prim(PrimId(1))));
         state.apply(Action::CycleSurface);
         state.apply(Action::CycleLookIn);
+        state.apply(Command::ShowWithout([1, 3, 4].map(ObjectId).into()));
         let mut camera = state.observer;
         camera.orbit(0.3, -0.2);
         camera.slide(glam::Vec2::new(0.1, -0.7));
@@ -227,7 +228,14 @@ fn several_steps_are_one_page_several_pages_or_an_animation() {
     done(&here, &with(&trace, &["--out", "run.jsonl"]));
     let said =
         done(&here, &["trace", "figure", "run.jsonl", "--frame", "1", "--step", "12", "--out", "traced"]);
-    made_again(&here.join(said.trim()));
+    // Views that are not the scene's are in the file, which is made again from itself.
+    let traced = here.join("traced");
+    let (file, before) = (here.join(said.trim()), fs::read(here.join(said.trim())).expect("a figure"));
+    let line = carried(&file)["figure"]["command"].as_str().expect("a command").to_owned();
+    let words = words(&line);
+    done(&traced, &words[1..].iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(fs::read(&file).expect("a figure") == before, "{line}");
+    assert!(done(&here, &["figure", "--check", "traced"]).contains("1 of 1 figures"));
     let text = fs::read_to_string(here.join("run.jsonl")).expect("a trace");
     fs::write(here.join("run.jsonl"), text.replacen("hidden", "visible", 1)).expect("a trace");
     for (words, status, what) in [
@@ -375,6 +383,28 @@ fn vectors_hide_what_is_behind() {
         ["figure", "--scene", "generate:building?polygons=20000", "--method", "z-buffer", "--vectors"];
     let said = refused(&here, &large, 1);
     assert!(said.contains("too many for vectors") && said.lines().count() <= 2, "{said}");
+}
+
+#[test]
+fn figures_do_not_depend_on_the_number_of_threads() {
+    let here = folder("threads");
+    let views = ["--eye", "8.5,1,-8.5", "--target", "20,1.1,-12", "--fov", "47.3", "--size", "64x48"];
+    let solid = with(&["figure", "--scene", "boxes.obj", "--method", "occlusion-maps"], &views);
+    let made: Vec<Vec<Vec<u8>>> = ["1", "2"]
+        .into_iter()
+        .map(|threads| {
+            let more = ["--picture", "all", "--last", "--format", "svg,pdf,png", "--out", threads];
+            let output = process::Command::new(env!("CARGO_BIN_EXE_cullscope"))
+                .args(with(&solid, &more))
+                .env("RAYON_NUM_THREADS", threads)
+                .current_dir(&here)
+                .output()
+                .expect("the program runs");
+            let said = String::from_utf8(output.stdout).expect("UTF-8");
+            said.lines().map(|file| fs::read(here.join(file)).expect("a figure")).collect()
+        })
+        .collect();
+    assert!(made[0].len() >= 12 && made[0] == made[1]);
 }
 
 #[test]
