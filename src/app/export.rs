@@ -34,6 +34,8 @@ const LABEL_PT: f32 = 17.0;
 const MOST_ENLARGED: f32 = 1.6;
 /// No picture is narrower, points.
 const LEAST_PT: f32 = 20.0;
+/// Letters below this are hard to read on paper.
+pub const SMALL_PT: f32 = 5.0;
 /// Figures of fewer parts are made at once.
 const LONG_PARTS: usize = 4;
 
@@ -366,7 +368,13 @@ impl State {
             Err(why) => Err(why),
         };
         match written {
-            Ok(()) => self.tell(format!("The figure was written to {path}.")),
+            Ok(()) => {
+                self.tell(format!("The figure was written to {path}."));
+                let least = making.least_letters_pt();
+                if least < SMALL_PT {
+                    self.tell(format!("Its smallest letters are {least:.1} pt: a larger size suits it."));
+                }
+            }
             Err(why) => self.fail(why),
         }
     }

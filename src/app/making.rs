@@ -5,8 +5,8 @@
 
 use super::plate::{Export, Form, MOVING_DPI, Picture};
 use super::twin::Twin;
-use crate::drawing::Drawing;
 use crate::drawing::words::count;
+use crate::drawing::{Drawing, Mark};
 use crate::figure::page::Entry;
 use crate::render::{self, Animation, Format, PngSize, SvgOptions};
 
@@ -28,6 +28,7 @@ pub struct Making {
     /// Pages of a PDF file so far.
     drawn: Vec<Drawing>,
     animation: Option<Animation>,
+    least_letters_pt: f32,
     /// The run of the flatland twin, where it is shown.
     pub(super) twin: Option<Twin>,
 }
@@ -46,8 +47,13 @@ impl Making {
             cells: Vec::new(),
             drawn: Vec::new(),
             animation: None,
+            least_letters_pt: f32::INFINITY,
             twin: None,
         }
+    }
+    /// The size of the smallest letters of its pages so far, points.
+    pub fn least_letters_pt(&self) -> f32 {
+        self.least_letters_pt
     }
     /// How many parts it has.
     pub fn parts(&self) -> usize {
@@ -80,6 +86,11 @@ impl Making {
     /// Takes the next page; the bytes of the file after the last one.
     pub(super) fn take(&mut self, drawing: Drawing) -> Result<Option<Vec<u8>>, String> {
         let is_last = self.done == self.pages.len();
+        for item in &drawing.items {
+            if let Mark::Text { size_pt, .. } = item.mark {
+                self.least_letters_pt = self.least_letters_pt.min(size_pt);
+            }
+        }
         let (theme, recipe) = (self.export.theme, self.recipe.as_str());
         let made = match (self.export.form, self.format) {
             (Form::Page, Format::Svg) => {

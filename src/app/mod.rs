@@ -55,7 +55,7 @@ pub use any::{AnyStage, AnyView};
 pub use camera::ObserverCamera;
 pub use command::{Action, Command, Info, Menu, fuzzy};
 pub use concern::Concern;
-pub use export::recipe_in;
+pub use export::{SMALL_PT, recipe_in};
 pub use file::{discard_unfinished, write_whole};
 pub use filter::{Filter, FilterError};
 pub use findings::{Findings, Laboratory, Map};

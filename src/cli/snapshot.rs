@@ -9,10 +9,10 @@ use super::plates::{Files, write};
 use super::progress::Bar;
 use super::remake::wait;
 use super::view::{Asked, ViewArgs};
-use super::{CliError, World, scene, suggest};
+use super::{CliError, World, output, scene, suggest};
 use crate::app::{
-    AnyOpened, AnyView, Command, Export, Filter, Form, Opened, Picture, RATE, Session, Stage, State, Steps,
-    word,
+    AnyOpened, AnyView, Command, Export, Filter, Form, Opened, Picture, RATE, SMALL_PT, Session, Stage,
+    State, Steps, word,
 };
 use crate::drawing::words::count;
 use crate::figure::Paper;
@@ -431,6 +431,11 @@ fn made(
             return Err(CliError::Interrupted);
         }
         if let Some(bytes) = state.go_on(&mut making).map_err(failed)? {
+            let least = making.least_letters_pt();
+            if least < SMALL_PT {
+                let help = "a larger --paper, or fewer pictures on a page, suit it";
+                output::say(&format!("note: {name}: its smallest letters are {least:.1} pt; {help}"));
+            }
             return Ok(bytes);
         }
     }

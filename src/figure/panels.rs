@@ -138,10 +138,34 @@ pub fn labelled(mut picture: Drawing, label: &str) -> Drawing {
     picture
 }
 
-/// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt` and puts a piece of paper under
-/// each, so that they are read over any picture.
+/// A place for a label below those that it would lie over, or above them where there is no room.
+fn apart(at: Vec2, place: impl Fn(Vec2) -> [Vec2; 2], plates: &[[Vec2; 2]], bottom: f32) -> Vec2 {
+    let meets = |at: Vec2| {
+        let [low, high] = place(at);
+        let is_over = |p: &&[Vec2; 2]| low.cmplt(p[1]).all() && p[0].cmplt(high).all();
+        plates.iter().find(is_over).copied()
+    };
+    let [top, end] = place(at).map(|corner| corner.y - at.y);
+    for is_down in [true, false] {
+        let mut moved = at;
+        // Each move passes one of them.
+        for _ in 0..=plates.len() {
+            match meets(moved) {
+                None if is_down && moved.y + end > bottom => break,
+                None => return moved,
+                Some([_, below]) if is_down => moved.y = below.y - top,
+                Some([above, _]) => moved.y = above.y - end,
+            }
+        }
+    }
+    at
+}
+
+/// Moves the labels of evidence into the rectangle from `min_pt` to `max_pt`, below each other where they
+/// would lie over each other, and puts a piece of paper under each, so that they are read over any picture.
 pub fn plate_labels(drawing: &mut Drawing, min_pt: Vec2, max_pt: Vec2) {
     let items = std::mem::take(&mut drawing.items);
+    let mut plates: Vec<[Vec2; 2]> = Vec::new();
     for mut item in items {
         if let Mark::Text { at, text, size_pt, anchor, font } = &mut item.mark
             && item.layer == Layer::Labels
@@ -154,11 +178,43 @@ pub fn plate_labels(drawing: &mut Drawing, min_pt: Vec2, max_pt: Vec2) {
             at.x = start.min(max_pt.x - width - air).max(min_pt.x + air);
             at.y = (at.y - *size_pt * 0.5)
                 .clamp(min_pt.y + *size_pt + air, (max_pt.y - air * 2.0).max(min_pt.y + *size_pt + air));
-            let (low, high) =
-                (*at + Vec2::new(-air, -*size_pt * 0.95), *at + Vec2::new(width + air, *size_pt * 0.3));
+            let place = |at: Vec2| {
+                [at + Vec2::new(-air, -*size_pt * 0.95), at + Vec2::new(width + air, *size_pt * 0.3)]
+            };
+            *at = apart(*at, place, &plates, max_pt.y);
+            let [low, high] = place(*at);
+            plates.push([low, high]);
             let plate = vec![low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
             drawing.push(Layer::Labels, Role::Paper, Subject::None, Mark::Area(plate));
         }
         drawing.items.push(item);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_do_not_lie_over_each_other() {
+        for y in [20.0, 95.0] {
+            let mut drawing = Drawing { size_pt: Vec2::new(200.0, 100.0), ..Drawing::default() };
+            for (x, text) in [(50.0, "nearest 10.34"), (60.0, "drawn to 15.00"), (55.0, "right: 17.68 in")] {
+                drawing.text(Layer::Labels, Role::Evidence, Vec2::new(x, y), 8.0, Anchor::Start, text);
+            }
+            plate_labels(&mut drawing, Vec2::ZERO, Vec2::new(200.0, 100.0));
+            let plates: Vec<[Vec2; 2]> = drawing
+                .items
+                .iter()
+                .filter_map(|i| if let Mark::Area(p) = &i.mark { Some([p[0], p[2]]) } else { None })
+                .collect();
+            assert_eq!(plates.len(), 3);
+            for (i, [low, high]) in plates.iter().enumerate() {
+                assert!(low.y >= 0.0 && high.y <= 100.0, "{low} {high}");
+                for [a, b] in &plates[..i] {
+                    assert!(!(low.cmplt(*b).all() && a.cmplt(*high).all()), "{low} {high} over {a} {b}");
+                }
+            }
+        }
     }
 }

@@ -11,6 +11,9 @@ use crate::figure::{Paper, page::PT_PER_MM};
 use crate::geometry::Either;
 use crate::render::{Animation, Format};
 
+/// Pictures of a method in a row.
+const OWN_IN_ROW: usize = 3;
+
 /// What is chosen in the dialog beyond the figure itself.
 pub struct Choice {
     /// The file's format.
@@ -93,18 +96,23 @@ fn pictures(state: &State, export: &mut Export, ui: &mut egui::Ui) {
     let shared =
         [(Picture::Observer, "Observer view"), (Picture::Eye, "Eye view"), (Picture::Code, "pseudocode")];
     let twin = matches!(state.stage, Some(Either::Solid(_))).then_some((Picture::Twin, "flatland twin"));
-    let own = own.iter().enumerate().map(|(i, name)| (Picture::Own(i), *name));
-    ui.horizontal_wrapped(|ui| {
-        ui.set_max_width(440.0);
-        for (picture, name) in shared.into_iter().chain(twin).chain(own) {
-            let mut is_shown = export.shown().contains(&picture);
-            if ui.checkbox(&mut is_shown, name).changed() {
-                let mut pictures = export.shown().to_vec();
-                pictures.retain(|p| *p != picture);
-                pictures.extend(is_shown.then_some(picture));
-                pictures.sort();
-                export.pictures = pictures;
-            }
+    let shared: Vec<(Picture, &str)> = shared.into_iter().chain(twin).collect();
+    let own: Vec<(Picture, &str)> =
+        own.iter().enumerate().map(|(i, name)| (Picture::Own(i), *name)).collect();
+    ui.vertical(|ui| {
+        for row in [&shared[..]].into_iter().chain(own.chunks(OWN_IN_ROW)) {
+            ui.horizontal(|ui| {
+                for &(picture, name) in row {
+                    let mut is_shown = export.shown().contains(&picture);
+                    if ui.checkbox(&mut is_shown, name).changed() {
+                        let mut pictures = export.shown().to_vec();
+                        pictures.retain(|p| *p != picture);
+                        pictures.extend(is_shown.then_some(picture));
+                        pictures.sort();
+                        export.pictures = pictures;
+                    }
+                }
+            });
         }
     });
 }

@@ -8,7 +8,7 @@ use crate::app::{Action, Command, Dialog, LookIn, Menu, SceneFacts, State, Surfa
 use crate::drawing::words::count;
 
 /// Room for the buttons at the right.
-const AT_RIGHT: f32 = 150.0;
+const AT_RIGHT: f32 = 178.0;
 
 /// Shows the menus.
 pub fn show(state: &State, ui: &mut egui::Ui, answers: &mut Answers) {
