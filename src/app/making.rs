@@ -3,12 +3,17 @@
 //! A part is one picture of one step. The parts of a page stand beside each other; several pages are those of
 //! a PDF file or the pictures of an animation.
 
-use super::plate::{Export, Form, MOVING_DPI, Picture};
+use rayon::prelude::*;
+
+use super::plate::{Export, Form, MOVING_DPI, Picture, RATE};
 use super::twin::Twin;
 use crate::drawing::words::count;
 use crate::drawing::{Drawing, Mark};
 use crate::figure::page::Entry;
-use crate::render::{self, Animation, Format, PngSize, SvgOptions};
+use crate::render::{self, Animation, Format, PngSize, RenderError, SvgOptions};
+
+/// Pages of an animation that are painted at once, on all threads.
+const BATCH: usize = 8;
 
 /// What stands in one picture: its step and what it shows.
 pub(super) type Part = (usize, Picture);
@@ -105,21 +110,38 @@ impl Making {
                 }
                 render::pages(&self.drawn, theme, Some(recipe)).map(Some)
             }
-            (Form::Animation(rate), _) => {
-                let count = self.pages.len();
-                let begin = || Animation::new(count, rate, MOVING_DPI, render::texts(&drawing, Some(recipe)));
-                let mut animation = self.animation.take().unwrap_or_else(begin);
-                let pixels = render::pixels(&drawing, theme, PngSize::Dpi(MOVING_DPI));
-                match pixels.and_then(|pixels| animation.push(pixels)) {
-                    Ok(()) if is_last => animation.finish().map(Some),
-                    Ok(()) => {
-                        self.animation = Some(animation);
-                        Ok(None)
-                    }
-                    Err(why) => Err(why),
+            (Form::Animation(_), _) => {
+                self.drawn.push(drawing);
+                if !is_last && self.drawn.len() < BATCH {
+                    return Ok(None);
                 }
+                self.animate(is_last)
             }
         };
         made.map_err(|e| e.to_string())
+    }
+
+    /// Adds the pages that wait to the animation; the bytes of the file after the last one.
+    fn animate(&mut self, is_last: bool) -> Result<Option<Vec<u8>>, RenderError> {
+        let pages = std::mem::take(&mut self.drawn);
+        let theme = self.export.theme;
+        let pixels: Vec<_> =
+            pages.par_iter().map(|page| render::pixels(page, theme, PngSize::Dpi(MOVING_DPI))).collect();
+        let mut animation = match self.animation.take() {
+            Some(animation) => animation,
+            None => {
+                let rate = if let Form::Animation(rate) = self.export.form { rate } else { RATE };
+                let texts = pages.first().map_or(Vec::new(), |page| render::texts(page, Some(&self.recipe)));
+                Animation::new(self.pages.len(), rate, MOVING_DPI, texts)
+            }
+        };
+        for pixels in pixels {
+            animation.push(pixels?)?;
+        }
+        if is_last {
+            return animation.finish().map(Some);
+        }
+        self.animation = Some(animation);
+        Ok(None)
     }
 }

@@ -63,13 +63,13 @@ impl Animation {
     /// If it has another size, or there are more than were said.
     pub fn push(&mut self, pixels: Pixels) -> Result<(), RenderError> {
         let failed = |e: png::EncodingError| RenderError::Picture(e.to_string());
-        self.pushed += 1;
-        let is_last = self.pushed == self.count;
+        let is_last = self.pushed + 1 == self.count;
         let delay = if is_last { self.delay_ms.saturating_mul(REST) } else { self.delay_ms };
         let Some((writer, last)) = &mut self.begun else {
             let mut writer = self.begin(&pixels, delay).map_err(failed)?;
             writer.write_image_data(&rgb(&pixels, [0, 0, pixels.width, pixels.height])).map_err(failed)?;
             self.begun = Some((writer, pixels));
+            self.pushed = 1;
             return Ok(());
         };
         if (pixels.width, pixels.height) != (last.width, last.height) {
@@ -82,6 +82,7 @@ impl Animation {
         writer.set_frame_delay(delay, 1000).map_err(failed)?;
         writer.write_image_data(&rgb(&pixels, [x, y, width, height])).map_err(failed)?;
         *last = pixels;
+        self.pushed += 1;
         Ok(())
     }
 
@@ -105,8 +106,8 @@ impl Animation {
     /// # Errors
     /// If there are fewer pictures than were said.
     pub fn finish(self) -> Result<Vec<u8>, RenderError> {
-        let Some((writer, _)) = self.begun else {
-            return Err(RenderError::Picture("the sequence has no picture".into()));
+        let Some((writer, _)) = self.begun.filter(|_| self.pushed == self.count) else {
+            return Err(RenderError::Picture("pictures of the sequence are missing".into()));
         };
         writer.finish().map_err(|e| RenderError::Picture(e.to_string()))?;
         let bytes = std::mem::take(&mut *self.bytes.0.lock().unwrap_or_else(PoisonError::into_inner));

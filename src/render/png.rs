@@ -1,6 +1,7 @@
 //! Pixels as PNG files, and the recipe that a file carries.
 
 use glam::Vec2;
+use png::Compression;
 
 use crate::drawing::Pixels;
 
@@ -38,12 +39,22 @@ pub(super) fn enlarged(pixels: &Pixels, size_pt: Vec2) -> Pixels {
 
 /// A picture as a PNG file, pixel by pixel.
 pub fn png_pixels(pixels: &Pixels) -> Vec<u8> {
-    encode(pixels, &[], None)
+    encode(pixels, &[], None, Compression::Balanced)
+}
+
+/// The same for a picture that is read at once and not kept.
+pub(super) fn png_passing(pixels: &Pixels) -> Vec<u8> {
+    encode(pixels, &[], None, Compression::Fastest)
 }
 
 /// A PNG file of pixels, with texts (iTXt chunks) and a resolution. Rows that are missing are black; an
 /// opaque picture is written without its alpha channel.
-pub(super) fn encode(pixels: &Pixels, texts: &[(&str, &str)], dpi: Option<f32>) -> Vec<u8> {
+pub(super) fn encode(
+    pixels: &Pixels,
+    texts: &[(&str, &str)],
+    dpi: Option<f32>,
+    compression: Compression,
+) -> Vec<u8> {
     let (width, height, rgba) = (pixels.width.max(1), pixels.height.max(1), &pixels.rgba[..]);
     let mut whole;
     let length = 4 * width as usize * height as usize;
@@ -61,7 +72,7 @@ pub(super) fn encode(pixels: &Pixels, texts: &[(&str, &str)], dpi: Option<f32>) 
     let mut encoder = png::Encoder::new(&mut out, width, height);
     encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Balanced);
+    encoder.set_compression(compression);
     describe(&mut encoder, texts, dpi);
     // Writing to memory cannot fail, and the length was made to fit.
     if let Ok(mut writer) = encoder.write_header() {

@@ -37,7 +37,7 @@ pub fn png(
     let (pixels, dpi) = pixels_of(drawing, look.into(), size)?;
     let texts = texts(drawing, metadata);
     let texts: Vec<(&str, &str)> = texts.iter().map(|(key, text)| (*key, text.as_str())).collect();
-    Ok(encode(&pixels, &texts, Some(dpi)))
+    Ok(encode(&pixels, &texts, Some(dpi), png::Compression::Balanced))
 }
 
 /// What a PNG file says of a drawing, by keyword.

@@ -23,7 +23,7 @@ use super::face;
 use super::hatch::hatching;
 use super::number::number;
 use super::piece::{self, Line, Paint, Piece, Shape, Stroke};
-use super::png::{enlarged, png_pixels};
+use super::png::{enlarged, png_passing, png_pixels};
 use super::theme::{HATCH_WIDTH_PT, Hatch, Look, Rgb};
 
 /// Millimeters in a point.
@@ -40,16 +40,17 @@ pub struct SvgOptions<'a> {
 
 /// A drawing as SVG text.
 pub fn svg(drawing: &Drawing, look: impl Into<Look>, options: &SvgOptions) -> String {
-    write(drawing, look.into(), options, !options.outline_text)
+    write(drawing, look.into(), options, true)
 }
 
-/// The same with or without fonts inside; our own rasterizer has them anyway.
-pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: bool) -> String {
+/// The same for a file, or for our own rasterizer, which has the fonts anyway.
+pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, is_file: bool) -> String {
     let size = drawing.size_pt.max(Vec2::ONE);
     let mut writer = Writer {
         look,
         size,
         outline_text: options.outline_text,
+        is_file,
         body: String::new(),
         run: Run::default(),
         chars: BTreeMap::new(),
@@ -71,7 +72,7 @@ pub(super) fn write(drawing: &Drawing, look: Look, options: &SvgOptions, embed: 
     if let Some(recipe) = options.metadata {
         let _ = writeln!(out, "<metadata id=\"recipe\">{}</metadata>", escape(recipe));
     }
-    if embed {
+    if is_file && !options.outline_text {
         fonts(&writer.chars, &mut out);
     }
     let _ = writeln!(out, "<rect id=\"paper\" width=\"{w}\" height=\"{h}\" fill=\"{}\"/>", hex(look.paper()));
@@ -112,6 +113,8 @@ struct Writer {
     look: Look,
     size: Vec2,
     outline_text: bool,
+    /// Whether it is a file; else our own rasterizer reads it at once.
+    is_file: bool,
     body: String,
     run: Run,
     /// What the fonts must have.
@@ -248,6 +251,7 @@ impl Writer {
     fn image(&mut self, [min, max]: [Vec2; 2], pixels: &Pixels, subject: &str) {
         let size = max - min;
         let seen = Pixels { rgba: self.look.see(&pixels.rgba).into(), ..*pixels };
+        let png = if self.is_file { png_pixels } else { png_passing };
         let rest = format!(
             "{subject} x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
              style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{}\"/>",
@@ -255,7 +259,7 @@ impl Writer {
             number(min.y),
             number(size.x),
             number(size.y),
-            BASE64.encode(png_pixels(&enlarged(&seen, size))),
+            BASE64.encode(png(&enlarged(&seen, size))),
         );
         self.element("image", "", rest);
     }
