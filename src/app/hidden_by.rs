@@ -142,19 +142,9 @@ pub(super) fn named(scene: &dyn SceneFacts, prim: PrimId) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::command::Command;
-    use super::super::state::State;
+    use super::super::tests::opened_with as opened;
     use super::*;
     use crate::method::Verdict;
-
-    fn opened(source: &str, method: &str) -> State {
-        let mut state = State::new();
-        for command in [Command::Open(source.into()), Command::Method(method.into())] {
-            state.apply(command);
-            state.block_until_idle();
-        }
-        state
-    }
 
     /// Whatever depths prove hidden lies at each of its pixels behind something that had been drawn by then,
     /// and that is named.

@@ -145,18 +145,9 @@ pub fn listed(rows: &[ObjectRow], scene: &dyn SceneFacts, listing: &Listing) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::command::{Action, Command};
-    use super::super::state::State;
+    use super::super::command::Action;
+    use super::super::tests::opened_with as opened;
     use super::*;
-
-    fn opened(source: &str, method: &str) -> State {
-        let mut state = State::new();
-        for command in [Command::Open(source.into()), Command::Method(method.into())] {
-            state.apply(command);
-            state.block_until_idle();
-        }
-        state
-    }
 
     /// At every step the rows together are the counts of the legend, and a whole says what its parts are.
     #[test]

@@ -120,19 +120,11 @@ impl<S: Drawable> Stage<S> {
 mod tests {
     use super::super::command::Command;
     use super::super::state::State;
+    use super::super::tests::opened_with as opened;
     use super::*;
     use crate::geometry::{Either, each};
     use crate::raster::{Target, render};
     use crate::scene::failures;
-
-    fn opened(source: &str, method: &str) -> State {
-        let mut state = State::new();
-        for command in [Command::Open(source.into()), Command::Method(method.into())] {
-            state.apply(command);
-            state.block_until_idle();
-        }
-        state
-    }
 
     /// Some pixels of a scene: the nearest opaque thing is what an image of everything shows; how many pixels
     /// were empty and how many had more than one layer.

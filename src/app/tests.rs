@@ -18,6 +18,16 @@ fn opened(source: &str) -> State {
     state
 }
 
+/// A scene with a method.
+pub(super) fn opened_with(source: &str, method: &str) -> State {
+    let mut state = State::new();
+    for command in [Command::Open(source.into()), Command::Method(method.into())] {
+        state.apply(command);
+        state.block_until_idle();
+    }
+    state
+}
+
 /// What a person sees that a step decides.
 fn seen(state: &State) -> (usize, String, Option<u8>, crate::trace::Counts) {
     let film = state.film().expect("a film");
